@@ -170,7 +170,7 @@ pub fn suite(bytes: &[u8]) {
 /// Reads a line of the journal. What is kept again is the same.
 pub fn journal(bytes: &[u8]) {
     let Some(entry) = results::read_line(bytes) else { return };
-    let again = results::line(&entry.key, &entry.submission, &entry.result);
+    let again = results::format_line(&entry.key, &entry.submission, &entry.result);
     let same = results::read_line(&again).expect("our own line is sound");
     // Not by `==`: what is not a number is kept, too.
     assert_eq!(format!("{same:?}"), format!("{entry:?}"));

@@ -1,9 +1,8 @@
 //! **fosssim-oracle** re-simulates every step of a FOSSSim submission from the submission's own state, compares every
 //! polynomial that it logged with the one it should have logged, and reports what is right, what is wrong and where.
 //!
-//! The rooms are crates of the workspace; this is the program on top of them and a facade under one name for each. They
-//! are listed from the lowest layer to the highest; a room imports only from those above it in this list.
-//! `ARCHITECTURE.md` describes the whole flow.
+//! The crates of the workspace are re-exported under short names, from the lowest layer to the highest. Each imports
+//! only from those above it in this list. `ARCHITECTURE.md` describes the whole flow.
 #![forbid(unsafe_code)]
 
 pub use fosssim_num as num;

@@ -1,4 +1,4 @@
-//! The command `fosssim-oracle`: a shim around [`fosssim_oracle::cli`].
+//! The command `fosssim-oracle`, which calls [`fosssim_oracle::cli`].
 #![forbid(unsafe_code)]
 
 fn main() -> std::process::ExitCode {

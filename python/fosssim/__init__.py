@@ -1,7 +1,7 @@
-"""Scenes and traces of FOSSSim: simulate, check, explain, and look at pairs.
+"""Scenes and traces of FOSSSim: simulate, check, explain, and examine pairs.
 
-Everything has the bits of the program ``fosssim-oracle``: recordings, verdicts, reports and pairs. Lengths, times and
-masses have the scene's own units; arrays hold doubles and can't be written.
+All results equal those of the program ``fosssim-oracle`` bit for bit: recordings, verdicts, reports and pairs. Lengths,
+times and masses have the scene's units. Arrays contain doubles and are read-only.
 
 >>> import fosssim
 >>> scene = fosssim.Scene("asset:ContinuousTimeTests/head-on-equal-masses")
@@ -14,7 +14,7 @@ True
 >>> fosssim.explain(flawed.scene, flawed)[0].key
 'pe-square-no-eh'
 
-Impulses, polynomials and ``table()`` are what ``pandas.DataFrame`` takes.
+``pandas.DataFrame`` accepts impulses, polynomials and ``table()``.
 """
 
 from __future__ import annotations
@@ -65,22 +65,22 @@ def __dir__() -> list[str]:
 PathLike = Union[str, "_os.PathLike[str]"]
 Rules = Literal["both", "fair", "parity"]
 
-#: Kinds of pairs by their number in tables; -1 is none.
+#: The kinds of pairs, by their number in tables; -1 means no kind.
 KINDS = ("particle-particle", "particle-edge", "particle-half-plane")
 
 
 class Error(ValueError):
-    """What the program refuses, in the program's words."""
+    """An error, with the program's message."""
 
 
 class _Session:
-    """Requests that are answered one after the other."""
+    """A session of requests that are answered one after the other."""
 
     def __init__(self) -> None:
         self.native = _native.Session()
 
     def ask(self, what: str, *parts: bytes, file: bytes = b"", **values: Any) -> tuple[Any, list[bytes]]:
-        """The answer's values, and its further parts."""
+        """Sends a request; returns the answer's values and its further parts."""
         first, *rest = self.native.ask([_json.dumps({"do": what, **values}).encode(), *parts], file)
         answer = _json.loads(first)
         if isinstance(answer, dict) and "error" in answer:
@@ -89,45 +89,45 @@ class _Session:
 
 
 def _numbers(data: bytes, *shape: int) -> NDArray[np.float64]:
-    """An array that lies where the bytes lie."""
+    """Returns an array that shares the memory of the bytes."""
     return np.frombuffer(data, dtype=np.float64).reshape(shape)
 
 
 def scenes() -> list[str]:
-    """The names of the scenes that come with the program, as ``Scene`` takes them."""
+    """Returns the names of the built-in scenes, in the form for ``Scene``."""
     listed, _ = _Session().ask("scenes")
     groups = [group for assignment in listed["assignments"] for group in assignment["groups"]]
     return [f"asset:{group['group']}/{name}" for group in groups for name in group["names"]]
 
 
 class Scene:
-    """A scene: one that comes with the program (``asset:Group/name``), or a file, or XML.
+    """A scene: a built-in one (``asset:Group/name``), a file, or XML.
 
-    A scene that the program's strict reader refuses raises ``Error`` with its messages, line and column.
+    A scene that the program's strict reader rejects raises ``Error`` with its messages, line and column.
     """
 
     #: The scene's name in reports.
     name: str
-    #: The XML as it was read.
+    #: The XML of the scene, unchanged.
     xml: bytes
-    #: Simulated time, the length of a step, and the number of steps.
+    #: The simulated time, the length of a step, and the number of steps.
     duration: float
     time_step: float
     steps: int
-    #: Places and velocities at the start, ``(particles, 2)``.
+    #: The positions and velocities at the start, ``(particles, 2)``.
     positions: NDArray[np.float64]
     velocities: NDArray[np.float64]
-    #: Masses and radii, ``(particles,)``.
+    #: The masses and radii of the particles, ``(particles,)``.
     masses: NDArray[np.float64]
     radii: NDArray[np.float64]
-    #: Whether forces and responses leave a particle alone, ``(particles,)``.
+    #: Whether each particle is fixed, so that forces and responses do not move it, ``(particles,)``.
     fixed: NDArray[np.bool_]
     #: The particles at both ends of each edge, ``(edges, 2)``.
     edges: NDArray[np.intp]
 
     def __init__(self, source: PathLike | None = None, *, xml: str | bytes | None = None) -> None:
         if (source is None) == (xml is None):
-            raise TypeError("a scene has a source or its XML, and not both")
+            raise TypeError("a scene needs either a source or its XML")
         self.name = "scene" if source is None else _os.fspath(source)
         if xml is not None:
             self.xml = xml.encode() if isinstance(xml, str) else bytes(xml)
@@ -151,7 +151,7 @@ class Scene:
 
 
 SceneLike = Union[Scene, PathLike]
-"""A scene, or the name of one."""
+"""A scene, or the name of a scene."""
 
 
 def _scene(scene: SceneLike) -> Scene:
@@ -164,31 +164,31 @@ _POLYNOMIAL = np.dtype([*_PLACE, ("number", np.int32), ("start", np.int64), ("si
 
 
 class Trace:
-    """A trace of a scene: what ``FOSSSim -o`` writes, as it is or packed by gzip.
+    """A trace of a scene: the output of ``FOSSSim -o``, plain or packed by gzip.
 
-    A trace that is damaged or cut holds the records before that place; ``problem`` says what follows.
-    ``asset:Group/name`` is the scene's recording, and ``asset:Group/name/flawed`` the wrong trace that comes with one.
+    A trace that is damaged or cut contains the records before the damage; ``problem`` describes it.
+    ``asset:Group/name`` is the scene's recording, and ``asset:Group/name/flawed`` is a built-in wrong trace.
     """
 
-    #: The scene.
+    #: The scene that the trace belongs to.
     scene: Scene
     #: The trace's name in reports.
     name: str
-    #: The bytes of the file.
+    #: The bytes of the trace, unpacked.
     data: bytes
-    #: Places and velocities by record, ``(records, particles, 2)``. The first record is the start; how many records a
-    #: step has depends on the scene's collision handling.
+    #: The positions and velocities by record, ``(records, particles, 2)``. The first record is the start. The number of
+    #: records per step depends on the scene's collision handling.
     positions: NDArray[np.float64]
     velocities: NDArray[np.float64]
-    #: Why no more records can be read, if there should be more.
+    #: The reason why no more records can be read, if some are missing.
     problem: str | None
 
     def __init__(self, scene: SceneLike, source: PathLike | bytes | None = None, *, name: str | None = None) -> None:
         if source is None:
-            # Its name tells the scene.
+            # The name contains the scene's.
             source = _os.fspath(scene.name if isinstance(scene, Scene) else scene)
             if not source.startswith("asset:"):
-                raise TypeError("a trace has a scene and a source")
+                raise TypeError("a trace needs a scene and a source")
             scene = source[: -len("/flawed")] if source.endswith("/flawed") else source
         self.scene = scene = _scene(scene)
         self.name = name or ("trace" if isinstance(source, bytes) else _os.fspath(source))
@@ -200,7 +200,7 @@ class Trace:
         self.velocities = _numbers(velocities, records, particles, 2)
 
     def __len__(self) -> int:
-        """The number of records."""
+        """Returns the number of records."""
         return len(self.positions)
 
     @property
@@ -211,7 +211,7 @@ class Trace:
 
     @property
     def times(self) -> NDArray[np.float64]:
-        """The simulated time of each record: that of its step's end."""
+        """The simulated time at the end of each record's step."""
         return self.steps * np.float64(self.scene.time_step)
 
     @cached_property
@@ -222,33 +222,33 @@ class Trace:
     def impulses(self) -> NDArray[np.void]:
         """The impulses of all records, with their contacts.
 
-        One row each: ``record``, ``step``, ``kind`` (see ``KINDS``), the objects ``first`` and ``second``, the contact
+        A row has: ``record``, ``step``, ``kind`` (see ``KINDS``), the objects ``first`` and ``second``, the contact
         normal ``normal_x``, ``normal_y``, and the ``time`` of impact as a fraction of the step.
         """
         return np.frombuffer(self._logs[0], dtype=_IMPULSE)
 
     @property
     def polynomials(self) -> NDArray[np.void]:
-        """The polynomials of all records, of which ``coefficients`` has the numbers.
+        """The polynomials of all records; their coefficients are in ``coefficients``.
 
-        One row each: ``record``, ``step``, the pair (``kind``, ``first``, ``second``), which ``number`` of the pair's it
-        is, and the ``start`` and ``size`` of its coefficients. A trace does not name pairs: they are those that the
-        reference tests in this step, and -1 where the trace has more polynomials.
+        A row has: ``record``, ``step``, the pair (``kind``, ``first``, ``second``), the ``number`` of the polynomial in
+        the pair, and the ``start`` and ``size`` of its coefficients. A trace does not name pairs, so they are those
+        that the reference tests in the step, or -1 for surplus polynomials of the trace.
         """
         return np.frombuffer(self._logs[1], dtype=_POLYNOMIAL)
 
     @property
     def coefficients(self) -> NDArray[np.float64]:
-        """The coefficients of all polynomials, the highest power first, as ``numpy.polyval`` takes them."""
+        """The coefficients of all polynomials, the highest power first, as ``numpy.polyval`` expects."""
         return _numbers(self._logs[2], -1)
 
     def polynomial(self, row: int) -> NDArray[np.float64]:
-        """The coefficients of one row of ``polynomials``."""
+        """Returns the coefficients of one row of ``polynomials``."""
         start, size = self.polynomials[row][["start", "size"]].item()
         return self.coefficients[start : start + size]
 
     def table(self) -> dict[str, NDArray[Any]]:
-        """Columns for ``pandas.DataFrame``, ``pyarrow.table`` and the like: a row for each record and particle."""
+        """Returns columns for ``pandas.DataFrame`` or ``pyarrow.table``, with a row for each record and particle."""
         records, particles = self.positions.shape[:2]
         columns = {"record": np.arange(records), "step": self.steps, "time": self.times}
         return {
@@ -259,7 +259,7 @@ class Trace:
         }
 
     def save(self, path: PathLike) -> None:
-        """Writes the file that FOSSSim would write."""
+        """Writes the trace to a file, in the format of FOSSSim."""
         Path(path).write_bytes(self.data)
 
     def __repr__(self) -> str:
@@ -269,52 +269,52 @@ class Trace:
 
 @dataclass(frozen=True)
 class Finding:
-    """Something in which a trace differs from the reference."""
+    """A kind of difference between a trace and the reference."""
 
-    #: The step of the first one, and how many there are.
+    #: The step of the first difference, and the number of differences.
     step: int
     count: int
-    #: Its kind, such as ``coefficient`` or ``wrong_normal``, and a sentence about it.
+    #: The kind, such as ``coefficient`` or ``wrong_normal``, and a sentence about the first one.
     kind: str
     text: str
-    #: All that the JSON report says of it.
+    #: The finding in the JSON report.
     data: dict[str, Any] = field(repr=False)
 
 
 @dataclass(frozen=True)
 class Mistake:
-    """A mistake that explains what is wrong."""
+    """A mistake that explains the faults of a trace."""
 
-    #: Its name in the catalogue, and a sentence.
+    #: The name in the catalogue, and a sentence about the mistake.
     key: str
     text: str
     #: Further sentences, which may give a formula away.
     details: list[str]
-    #: All that the JSON report says of it.
+    #: The explanation in the JSON report.
     data: dict[str, Any] = field(repr=False)
 
 
 @dataclass(frozen=True)
 class Report:
-    """What ``fosssim-oracle check`` says of a trace. A notebook shows the page with its viewer."""
+    """The report of ``fosssim-oracle check`` on a trace. A notebook shows it as a page with a viewer."""
 
     accepted: bool
-    #: In words, such as ``wrong answer``, and a sentence.
+    #: The verdict, such as ``wrong answer``, and a sentence about it.
     verdict: str
     summary: str
-    #: Steps that were judged, and the numbers of those that are wrong.
+    #: The number of judged steps, and the numbers of the wrong ones.
     steps: int
     wrong_steps: list[int]
     findings: list[Finding]
     mistakes: list[Mistake]
-    #: The report as ``--format json`` writes it, and the trace.
+    #: The report in the form of ``--format json``, and the trace.
     data: dict[str, Any] = field(repr=False)
     trace: Trace = field(repr=False)
     rules: Rules = field(repr=False)
 
     @cached_property
     def html(self) -> str:
-        """The report as ``--format html`` writes it; it is made when it is asked for."""
+        """The report in the form of ``--format html``, which is created when it is first read."""
         return _check(self.trace, self.rules, html=True)[1][1].decode()
 
     def _repr_html_(self) -> str:
@@ -326,7 +326,7 @@ class Report:
 
 
 def _trace(source: PathLike | bytes) -> bytes:
-    """The bytes of a trace."""
+    """Returns the bytes of a trace, unpacked."""
     name = "" if isinstance(source, bytes) else _os.fspath(source)
     if name.startswith("asset:"):
         scene, _, flawed = name.partition("/flawed")
@@ -334,7 +334,7 @@ def _trace(source: PathLike | bytes) -> bytes:
             example, (trace,) = _Session().ask("example")
             if f"asset:{example['scene']}" == scene:
                 return trace
-            raise Error(f"no wrong trace comes with {scene}; asset:{example['scene']}/flawed is there")
+            raise Error(f"{scene} has no built-in wrong trace; use asset:{example['scene']}/flawed")
         return simulate(name).data
     data = source if isinstance(source, bytes) else Path(name).read_bytes()
     try:
@@ -344,7 +344,7 @@ def _trace(source: PathLike | bytes) -> bytes:
 
 
 def simulate(scene: SceneLike) -> Trace:
-    """The reference's trace of a scene, bit for bit that of ``fosssim-oracle simulate``."""
+    """Simulates a scene; returns the same trace as ``fosssim-oracle simulate``, bit for bit."""
     scene, session = _scene(scene), _Session()
     session.ask("simulate", scene.xml, scene=scene.name)
     _, (trace,) = session.ask("trace")
@@ -366,9 +366,9 @@ def _traced(scene: SceneLike | Trace, trace: Trace | PathLike | bytes | None) ->
 def check(
     scene: SceneLike | Trace, trace: Trace | PathLike | bytes | None = None, *, rules: Rules = "both"
 ) -> Report:
-    """Judges a trace by the rule books ``fair``, ``parity`` or ``both``, and explains what is wrong.
+    """Judges a trace by the rule books ``fair``, ``parity`` or ``both``, and explains its faults.
 
-    A :class:`Trace` knows its scene, and so does the name of a trace that comes with the module.
+    The scene alone is sufficient if it is a :class:`Trace`, or the name of a built-in trace.
     """
     if rules not in get_args(Rules):
         raise Error(f"rules must be both, fair or parity, not {rules!r}")
@@ -392,31 +392,31 @@ def check(
 
 
 def explain(scene: SceneLike | Trace, trace: Trace | PathLike | bytes | None = None) -> list[Mistake]:
-    """The mistakes that explain what is wrong in a trace; none where it is right."""
+    """Returns the mistakes that explain the faults of a trace; empty if it is right."""
     return check(scene, trace).mistakes
 
 
 @dataclass(frozen=True)
 class Grade:
-    """Points for a submission's traces."""
+    """The grade of a submission's traces."""
 
     name: str
     suite: str
-    #: In words, such as ``wrong answer``.
+    #: The verdict, such as ``wrong answer``.
     verdict: str
     points: float
     max_points: float
     #: Columns for ``pandas.DataFrame``, a row for each scene: group, scene, verdict, points and the likely mistake.
     table: dict[str, list[Any]] = field(repr=False)
-    #: The grade as ``grade --traces --format json`` writes it.
+    #: The grade in the form of ``grade --traces --format json``.
     data: dict[str, Any] = field(repr=False)
 
 
 def grade(folder: PathLike, suite: PathLike | None = None, *, student: bool = False) -> Grade:
-    """Grades a folder of traces, ``Group/name.bin`` or ``name.bin``, as ``fosssim-oracle grade --traces`` does.
+    """Grades a folder of traces, ``Group/name.bin`` or ``name.bin``, like ``fosssim-oracle grade --traces``.
 
-    The suite is one that comes with the program, such as ``t1m3``, or a file; its scenes are then looked for beside it.
-    For a student it leaves out what the suite's hints keep back.
+    The suite is a built-in one, such as ``t1m3``, or a file, whose scenes are in the same folder.
+    With ``student``, parts that the suite's hints hide are left out.
     """
     folder, session = Path(folder), _Session()
     parts: list[bytes] = []
@@ -449,12 +449,12 @@ def grade(folder: PathLike, suite: PathLike | None = None, *, student: bool = Fa
 
 
 Point = Sequence[float]
-"""A moving point: place and displacement, ``(x, y, dx, dy)``."""
+"""A moving point: position and displacement, ``(x, y, dx, dy)``."""
 
 
 @dataclass(frozen=True)
 class Particles:
-    """Two particles."""
+    """A pair of two particles."""
 
     centers: tuple[Point, Point]
     radii: tuple[float, float]
@@ -462,7 +462,7 @@ class Particles:
 
 @dataclass(frozen=True)
 class Edge:
-    """A particle and an edge."""
+    """A pair of a particle and an edge."""
 
     center: Point
     ends: tuple[Point, Point]
@@ -471,7 +471,7 @@ class Edge:
 
 @dataclass(frozen=True)
 class HalfPlane:
-    """A particle and a half-plane."""
+    """A pair of a particle and a half-plane."""
 
     center: Point
     radius: float
@@ -481,12 +481,12 @@ class HalfPlane:
 
 @dataclass(frozen=True)
 class Pair:
-    """What ``fosssim-oracle detect`` says of a pair. A notebook shows the picture."""
+    """The report of ``fosssim-oracle detect`` on a pair. A notebook shows its picture."""
 
     collides: bool
-    #: A sentence.
+    #: The decision as a sentence.
     decision: str
-    #: The report as ``--format text``, ``json`` and ``svg`` write it.
+    #: The report in the forms of ``--format text``, ``json`` and ``svg``.
     text: str = field(repr=False)
     data: dict[str, Any] = field(repr=False)
     svg: str = field(repr=False)
@@ -496,10 +496,10 @@ class Pair:
 
 
 def detect(pair: Particles | Edge | HalfPlane) -> Pair:
-    """Looks at one pair: polynomials, intervals, the decision and the contact's normal."""
+    """Computes one pair: polynomials, intervals, the decision and the contact's normal."""
     kind = {Particles: "pp", Edge: "pe", HalfPlane: "ph"}.get(type(pair))
     if kind is None:
-        raise TypeError(f"a pair is Particles, an Edge or a HalfPlane, not {type(pair).__name__}")
+        raise TypeError(f"a pair must be Particles, an Edge or a HalfPlane, not {type(pair).__name__}")
     values = {name: np.asarray(value, dtype=np.float64).tolist() for name, value in vars(pair).items()}
     answer, (text, data, svg, _) = _Session().ask("detect", kind=kind, **values)
     return Pair(answer["collides"], answer["decision"], text.decode(), _json.loads(data), svg.decode())

@@ -1,5 +1,5 @@
-//! The native part of the Python module `fosssim` (`fosssim/__init__.py` has the surface that people use). Numbers
-//! go over as bytes in the machine's order, which NumPy reads where they lie.
+//! The native part of the Python module `fosssim` (`fosssim/__init__.py` has the public interface). Numbers are passed
+//! as bytes in the machine's order, which NumPy reads without a copy.
 use fosssim_browser::{PageHost, PageSession, parts};
 use fosssim_model::{
     scene::{self, LoadedScene, Scene},
@@ -9,7 +9,7 @@ use fosssim_num::vector::Vec2;
 use fosssim_report::problems;
 use pyo3::{exceptions::PyValueError, prelude::*, pybacked::PyBackedBytes, types::PyBytes};
 
-/// A trace in memory, the only file of a request.
+/// A trace in memory, which is the only file of a request.
 struct Memory<'a>(&'a [u8]);
 
 impl PageHost for Memory<'_> {
@@ -23,7 +23,7 @@ impl PageHost for Memory<'_> {
     fn progress(&self, _: u32, _: u32) {}
 }
 
-/// Doubles as bytes.
+/// Returns doubles as bytes.
 fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyBytes>> {
     PyBytes::new_with(py, 8 * numbers.len(), |into| {
         for (place, number) in into.chunks_exact_mut(8).zip(numbers) {
@@ -44,7 +44,7 @@ fn read(name: &str, xml: &[u8]) -> PyResult<Scene> {
 mod _native {
     use super::*;
 
-    /// Requests that are answered one after the other.
+    /// A session of requests that are answered one after the other.
     #[pyclass]
     #[derive(Default)]
     struct Session(PageSession);
@@ -56,7 +56,7 @@ mod _native {
             Self::default()
         }
 
-        /// Answers a request about a trace: a list of byte strings of which the first is JSON; so is the answer.
+        /// Answers a request about a trace. Request and answer are lists of byte strings, the first of which is JSON.
         fn ask<'py>(
             &mut self,
             py: Python<'py>,
@@ -70,7 +70,7 @@ mod _native {
         }
     }
 
-    /// Positions and velocities of all records that can be read, and why no more can.
+    /// Returns the positions and velocities of all readable records, and the reason why no more can be read.
     #[pyfunction]
     fn states<'py>(
         py: Python<'py>,
@@ -97,8 +97,8 @@ mod _native {
         Ok((bytes(py, &positions)?, bytes(py, &velocities)?, fault))
     }
 
-    /// Returns the logs of all records that can be read: impulses, polynomials and coefficients, each packed as
-    /// `fosssim/__init__.py` says.
+    /// Returns the logs of all readable records: impulses, polynomials and coefficients, each packed as in
+    /// `fosssim/__init__.py`.
     #[pyfunction]
     fn logs<'py>(
         py: Python<'py>,
@@ -112,7 +112,7 @@ mod _native {
             let mut reader = Reader::from_slice(&trace, layout);
             let (mut frame, mut record, mut before) = (Frame::default(), 0_u64, None);
             let (mut impulses, mut polynomials, mut coefficients) = (Vec::new(), Vec::new(), Vec::new());
-            // Of the step that the record belongs to.
+            // The labels of the record's step.
             let mut of_step: Vec<Label> = Vec::new();
             while let Ok(true) = reader.next(&mut frame) {
                 let place = [record.to_ne_bytes(), u64::from(layout.step_of(record)).to_ne_bytes()].concat();
@@ -147,8 +147,8 @@ mod _native {
         Ok([&impulses, &polynomials, &coefficients].map(|packed| PyBytes::new(py, packed)))
     }
 
-    /// Returns the contents of a scene: duration, time step, steps, records of each; positions, velocities, masses and
-    /// radii of particles as doubles; whether each is fixed, a byte each; the ends of edges as pairs.
+    /// Returns the contents of a scene: duration, time step, steps, records per step; positions, velocities, masses and
+    /// radii of particles as doubles; a byte for each particle, whether it is fixed; the ends of edges as pairs.
     #[pyfunction]
     #[expect(clippy::type_complexity, reason = "a tuple that Python names")]
     fn scene<'py>(

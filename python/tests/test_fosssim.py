@@ -120,7 +120,7 @@ def test_what_is_refused_says_so_in_the_programs_words(tmp_path):
         fosssim.Trace(fosssim.scenes()[0] + "/flawed")
     with pytest.raises(fosssim.Error, match="rules must be both, fair or parity, not 'strict'"):
         fosssim.check(FLAWED, rules="strict")
-    with pytest.raises(TypeError, match="a pair is Particles"):
+    with pytest.raises(TypeError, match="a pair must be Particles"):
         fosssim.detect((1, 2))
     with pytest.raises(fosssim.Error, match=r"broken:1:\d+: "):
         (tmp_path / "broken").write_text("<scene><particle/></scene>")

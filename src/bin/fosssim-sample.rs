@@ -1,4 +1,5 @@
-//! `fosssim-sample`: the [sample](fosssim_oracle::sample) as a program of its own, for tests and for developers.
+//! The program `fosssim-sample`: the [sample](fosssim_oracle::sample) as a separate program, for tests and for
+//! developers.
 #![forbid(unsafe_code)]
 
 fn main() -> std::process::ExitCode {

@@ -1,5 +1,5 @@
-//! The terminal: standard output that survives a closed pipe, the decision about colors, lines that fit, and progress
-//! bars that nothing is written across.
+//! The terminal: standard output that survives a closed pipe, the choice of colors, line breaks, and progress bars that
+//! other output does not overwrite.
 use super::{
     arguments::ColorChoice,
     arguments::values::TextOrJson,
@@ -22,7 +22,7 @@ use std::{
 };
 use terminal_size::{Width, terminal_size_of};
 
-/// The value of `--color`.
+/// The value of the option `--color`.
 static COLOR: OnceLock<ColorChoice> = OnceLock::new();
 
 /// Stores the value of `--color`; the first call counts.
@@ -30,7 +30,7 @@ pub(super) fn choose_color(color: ColorChoice) {
     let _ = COLOR.set(color);
 }
 
-/// Whether `--quiet` was given.
+/// Whether the option `--quiet` was given.
 static QUIET: AtomicBool = AtomicBool::new(false);
 
 /// Turns off reports on standard output, bars and warnings; errors are still printed.
@@ -61,28 +61,29 @@ pub(super) fn style() -> Style {
     }
 }
 
-/// Returns whether the locale's characters are UTF-8: the first of these variables that is set decides.
+/// Returns whether the locale's encoding is UTF-8, by the first of its variables that is set.
 fn shows_signs() -> bool {
     let mut set = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().filter_map(|name| std::env::var(name).ok());
     let name = set.find(|value| !value.is_empty()).unwrap_or_default().to_lowercase();
     name.contains("utf-8") || name.contains("utf8")
 }
 
-/// The width below which no line is wrapped: a terminal that claims less does not know its size.
-const NARROWEST: u16 = 20;
+/// The minimum width for line breaks; a terminal that claims less does not know its size.
+const MIN_WIDTH: u16 = 20;
 
-/// Returns the columns of standard output's terminal, if it is one.
+/// Returns the width of standard output's terminal in columns, if it is one.
 pub(super) fn width() -> Option<usize> {
     match terminal_size_of(io::stdout()) {
-        Some((Width(width), _)) if width >= NARROWEST => Some(width.into()),
+        Some((Width(width), _)) if width >= MIN_WIDTH => Some(width.into()),
         _ => None,
     }
 }
 
-/// Prints a report for people. On a terminal its lines are broken at words.
+/// Prints a report for people. On a terminal, lines are broken between words.
 ///
 /// # Errors
-/// As [`print`].
+///
+/// The errors of [`print`].
 pub(super) fn report(text: &str) -> Result<()> {
     match width() {
         Some(width) => print(wrap::wrap(text, width)),
@@ -90,10 +91,11 @@ pub(super) fn report(text: &str) -> Result<()> {
     }
 }
 
-/// Prints a report in this format.
+/// Prints a report in the requested format.
 ///
 /// # Errors
-/// As [`print`].
+///
+/// The errors of [`print`].
 pub(super) fn show(format: TextOrJson, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<()> {
     match format {
         TextOrJson::Text => report(&text()),
@@ -101,10 +103,11 @@ pub(super) fn show(format: TextOrJson, text: impl FnOnce() -> String, json: impl
     }
 }
 
-/// Prints to standard output. Nobody listening any more is no error: the verdict is in the exit code.
+/// Prints to standard output. A closed pipe is not an error, because the verdict is in the exit code.
 ///
 /// # Errors
-/// Another fault, such as a full disk.
+///
+/// Another error, such as a full disk.
 pub(super) fn print(text: impl AsRef<[u8]>) -> Result<()> {
     if is_quiet() {
         return Ok(());
@@ -114,12 +117,12 @@ pub(super) fn print(text: impl AsRef<[u8]>) -> Result<()> {
         .context("cannot write to standard output")
 }
 
-/// Prints to standard error, above the bars; there is nowhere left to report a failure.
+/// Prints to standard error, above the bars; its own errors cannot be reported.
 pub(super) fn complain(text: impl AsRef<[u8]>) {
     write_above_bars(text.as_ref());
 }
 
-/// Prints a remark that is no error to standard error.
+/// Prints a remark that is not an error to standard error.
 pub(super) fn remark(text: impl AsRef<[u8]>) {
     if !is_quiet() {
         complain(text);
@@ -134,19 +137,19 @@ pub(super) fn ignore_closed_pipe(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Returns whether bars are useful: on a terminal, unless they are switched off.
+/// Returns whether bars are useful, because standard error is a terminal and they are not switched off.
 pub(super) fn wants_bars() -> bool {
     io::stderr().is_terminal() && !is_quiet()
 }
 
-/// Returns a place for bars on standard error. Until [`clear_bars`] everything else is written above them, and an
-/// interrupt takes them away.
+/// Returns a place for bars on standard error. Until [`clear_bars`], all other output appears above them, and an
+/// interrupt removes them.
 pub(super) fn show_bars() -> MultiProgress {
     interrupt::clean_up_when_interrupted();
     on_screen().get_or_insert_with(MultiProgress::new).clone()
 }
 
-/// Adds a bar of this length with this template.
+/// Adds a bar with a length and a template.
 pub(super) fn add_bar(bars: &MultiProgress, length: u64, template: &str) -> ProgressBar {
     let bar = bars.add(ProgressBar::new(length));
     if let Ok(style) = ProgressStyle::with_template(template) {
@@ -155,13 +158,13 @@ pub(super) fn add_bar(bars: &MultiProgress, length: u64, template: &str) -> Prog
     bar
 }
 
-/// The longest time that a command may take before a bar appears.
-const PATIENCE: Duration = Duration::from_secs(1);
+/// The time that a command may take before a bar appears.
+const BAR_DELAY: Duration = Duration::from_secs(1);
 
 /// The time between two movements of a bar.
-const TICK: Duration = Duration::from_millis(200);
+const BAR_INTERVAL: Duration = Duration::from_millis(200);
 
-/// A bar on standard error, when that is a terminal and the command takes longer than a second.
+/// A bar on standard error, if that is a terminal and the command takes longer than a second.
 pub(super) struct Bar {
     steps: u64,
     begun: Option<Instant>,
@@ -169,17 +172,17 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    /// Creates a bar over this number of steps.
+    /// Creates a bar for a number of steps.
     pub(super) fn new(steps: u32) -> Self {
         Self { steps: u64::from(steps), begun: wants_bars().then(Instant::now), shown: None }
     }
 
-    /// Returns a bar for this number of runs of a program, each of which may take long: it is shown immediately, with
-    /// the elapsed time.
+    /// Creates a bar for a number of runs of a program, each of which may take long. It is shown immediately, with the
+    /// elapsed time.
     pub(super) fn for_runs(runs: u64) -> Self {
         let bar = |runs| {
             let bar = add_bar(&show_bars(), runs, "{spinner} {elapsed}: run {pos} of {len}, {wide_msg}");
-            bar.enable_steady_tick(TICK);
+            bar.enable_steady_tick(BAR_INTERVAL);
             bar
         };
         Self { steps: runs, begun: None, shown: wants_bars().then(|| bar(runs)) }
@@ -193,9 +196,9 @@ impl Bar {
         }
     }
 
-    /// Shows the number of steps that are done.
+    /// Shows the number of finished steps.
     pub(super) fn show_step(&mut self, step: u32) {
-        if self.shown.is_none() && self.begun.is_some_and(|begun| begun.elapsed() >= PATIENCE) {
+        if self.shown.is_none() && self.begun.is_some_and(|begun| begun.elapsed() >= BAR_DELAY) {
             self.shown = Some(add_bar(&show_bars(), self.steps, "{wide_bar} step {pos} of {len}, {eta} left"));
         }
         if let Some(bar) = &self.shown {

@@ -7,10 +7,10 @@ use std::{fs, os::unix::fs::MetadataExt, path::Path};
 
 const FILE: &str = "fosssim.toml";
 
-/// The size of the largest file that is read.
-const LARGEST: u64 = 1 << 16;
+/// The maximum size of the file, in bytes.
+const MAX_BYTES: u64 = 1 << 16;
 
-/// The contents of the file. Paths are seen from its folder.
+/// The contents of the file, with paths relative to its folder.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Defaults {
@@ -20,13 +20,14 @@ struct Defaults {
     jobs: Option<u16>,
 }
 
-/// Adds the defaults to the options of `grade`, as seen from a working folder. What is typed wins over them.
+/// Adds the defaults in a working folder to the options of `grade`. Typed options have precedence.
 ///
 /// # Errors
-/// When the file can't be read, or holds something else.
+///
+/// When the file can't be read, or has an invalid content.
 pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
     for folder in working.ancestors() {
-        let text = match Place::new(folder, FILE).read(LARGEST) {
+        let text = match Place::new(folder, FILE).read(MAX_BYTES) {
             Ok(text) => text,
             Err(FileError::Missing { .. }) => continue,
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", folder.join(FILE).display())),
@@ -34,7 +35,7 @@ pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
         if !is_trusted(&folder.join(FILE)) {
             continue;
         }
-        let context = || format!("{}: suite, output, hints and jobs may be in it", folder.join(FILE).display());
+        let context = || format!("{}: it may contain suite, output, hints and jobs", folder.join(FILE).display());
         let read: Defaults = toml::from_str(&String::from_utf8_lossy(&text)).with_context(context)?;
         let below = |name: &String| {
             let path = if folder == working { name.into() } else { folder.join(name) };
@@ -47,15 +48,15 @@ pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
         let all = [("suite", suite), ("output", output), ("hints", read.hints), ("jobs", jobs)];
         return Ok(command.mut_subcommand("grade", |grade| {
             let given = all.into_iter().filter_map(|(name, value)| Some((name, value?)));
-            // It lives as long as the program, as texts of help do.
+            // The value lives as long as the program, as texts of help require.
             given.fold(grade, |grade, (name, value)| grade.mut_arg(name, |arg| arg.default_value(&*value.leak())))
         }));
     }
     Ok(command)
 }
 
-/// Returns whether a file is this user's or the system's: in a folder that all may write to, another user may have
-/// written it.
+/// Returns whether a file belongs to this user or the system; in a folder that all users may write to, another user may
+/// have written it.
 fn is_trusted(file: &Path) -> bool {
     let owner = |path: &Path| fs::metadata(path).map(|data| data.uid()).ok();
     let found = owner(file);

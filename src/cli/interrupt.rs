@@ -1,7 +1,7 @@
-//! Cleans up when the user ends the program, and ensures that it ends.
+//! Cleans up after the user interrupts the program, and ensures that it ends.
 //!
-//! The first signal lets a grading finish: programs are ended, and known results are written. If nothing moves for some
-//! seconds the program ends all the same.
+//! After the first signal a grading finishes: programs are ended, and known results are written. After a few seconds
+//! without progress, the program ends anyway.
 use super::{exit, screen};
 use crate::suite::Cancellation;
 use std::{
@@ -15,8 +15,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The longest time without any progress after the first signal.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// The maximum time without progress after the first signal.
+const IDLE_LIMIT: Duration = Duration::from_secs(5);
 
 /// Returns the temporary files that an interrupt has to remove.
 pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
@@ -29,19 +29,19 @@ pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
 pub(super) fn clean_up_when_interrupted() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
-        // Without a handler an interrupt leaves a hidden file behind, which is better than not working at all.
+        // Without a handler, an interrupt leaves a hidden file behind, which is better than not working at all.
         drop(ctrlc::set_handler(|| end()));
     });
 }
 
-/// Ends the program, and leaves nothing half done behind.
+/// Ends the program, and removes incomplete outputs.
 fn end() -> ! {
-    // The code below could wait, too: for a lock, or for a reader of its output.
+    // The code below could block, too: on a lock, or on a reader of its output.
     thread::spawn(|| {
         thread::sleep(Duration::from_secs(1));
         std::process::exit(exit::INTERRUPTED.into());
     });
-    // Held until the end: no rename and no new file in between.
+    // The lock is held until the end, so that no file is renamed or created in between.
     let pending = pending();
     for path in pending.iter() {
         drop(fs::remove_file(path));
@@ -50,16 +50,16 @@ fn end() -> ! {
     std::process::exit(exit::INTERRUPTED.into());
 }
 
-/// The number of movements.
-static MOVES: AtomicU64 = AtomicU64::new(0);
+/// The number of signs of progress.
+static ACTIVITY: AtomicU64 = AtomicU64::new(0);
 
-/// Notes that something moves, so that a wait is not in vain.
+/// Records progress, so that the wait continues.
 pub(super) fn show_activity() {
-    MOVES.fetch_add(1, Ordering::Relaxed);
+    ACTIVITY.fetch_add(1, Ordering::Relaxed);
 }
 
-/// Returns a cancellation that SIGINT and SIGTERM trigger. A second signal ends the program immediately, and so does
-/// this program itself if the grading does not finish.
+/// Returns a cancellation that SIGINT and SIGTERM trigger. A second signal ends the program immediately, and so does a
+/// grading that does not finish.
 pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
     static SHARED: OnceLock<Arc<Cancellation>> = OnceLock::new();
     SHARED
@@ -69,7 +69,7 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
             let mut first = None;
             // Without a handler a signal ends the program, and the sandbox ends with it.
             drop(ctrlc::set_handler(move || {
-                // `timeout` and a terminal may send one stop twice.
+                // `timeout` and a terminal may send one signal twice.
                 let first = *first.get_or_insert_with(Instant::now);
                 if signalled.is_cancelled() {
                     if first.elapsed() > Duration::from_secs(1) {
@@ -77,7 +77,7 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
                     }
                     return;
                 }
-                // First of all: whatever follows could wait, too.
+                // Start this thread first, because the following calls could block, too.
                 thread::spawn(end_when_nothing_moves);
                 signalled.cancel();
                 screen::write_above_bars(b"\nstopping (once more to stop immediately)\n");
@@ -88,10 +88,10 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
 }
 
 fn end_when_nothing_moves() {
-    let (mut moves, mut since) = (MOVES.load(Ordering::Relaxed), Instant::now());
-    while since.elapsed() < PATIENCE {
+    let (mut moves, mut since) = (ACTIVITY.load(Ordering::Relaxed), Instant::now());
+    while since.elapsed() < IDLE_LIMIT {
         thread::sleep(Duration::from_millis(100));
-        let now = MOVES.load(Ordering::Relaxed);
+        let now = ACTIVITY.load(Ordering::Relaxed);
         if now != moves {
             (moves, since) = (now, Instant::now());
         }

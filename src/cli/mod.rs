@@ -1,4 +1,4 @@
-//! The command line: arguments, files, the terminal. The only room with files; everything else takes and gives bytes.
+//! The command line: arguments, files, the terminal. Only this module opens files; all others use bytes.
 
 mod arguments;
 mod commands;
@@ -17,20 +17,20 @@ use anyhow::Result;
 use clap::{CommandFactory, FromArgMatches};
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 
-/// Runs the command that the program's arguments name.
+/// Runs the command in the program's arguments.
 #[must_use]
 pub fn main() -> ExitCode {
-    // A copy to which a mistake is pinned is a submission, and nothing else.
+    // A copy with a pinned mistake is only a submission.
     if let Some(mistake) = sample::pin::pinned_mistake() {
         return sample::main(std::env::args_os(), Some(mistake));
     }
-    // Before all other commands, since this is called most often and is over soonest.
+    // This is checked before all other commands, because it is called most often and must start fast.
     crate::original::run_if_meant(&original::Program).unwrap_or_else(run)
 }
 
-/// Returns every other command.
+/// Runs any other command.
 fn run(words: Vec<OsString>) -> ExitCode {
-    // Before anything else and before any thread: this process may be a sandbox's supervisor.
+    // This must come before everything else and before any thread: the process may be a sandbox's supervisor.
     if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {
         return code;
     }
@@ -38,7 +38,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
     if words.get(1).is_some_and(|word| word == "sample") {
         return sample::main(words.into_iter().skip(1), None);
     }
-    // A half-written output is then removed like after any other failure.
+    // An incomplete output is then removed like after any other error.
     crate::sandbox::let_large_writes_fail();
     let program = words.first().cloned().unwrap_or_default();
     let command = match command(&words) {
@@ -49,13 +49,13 @@ fn run(words: Vec<OsString>) -> ExitCode {
     let arguments = match parsed.and_then(|mut found| arguments::Arguments::from_arg_matches_mut(&mut found)) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version come this way, too. A closed pipe does not change the exit code.
+            // Help and version are reported here, too. A closed pipe does not change the exit code.
             drop(error.print());
             return ExitCode::from(if error.use_stderr() { exit::FAULT } else { exit::ACCEPTED });
         }
     };
     console::choose_color(arguments.color);
-    // Options before the command kept it from being recognized above.
+    // Options before the command prevented its recognition above.
     if let arguments::Command::Original(original) = &arguments.command {
         let name = [program.as_bytes(), b" original"].concat();
         return crate::original::main(&name, &original.words, &original::Program);
@@ -63,7 +63,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
     commands::run(&arguments.command).map_or_else(|error| fault(&error), ExitCode::from)
 }
 
-/// Returns the command line, with the defaults that hold in the working folder.
+/// Returns the command line, with the defaults in the working folder.
 fn command(words: &[OsString]) -> Result<clap::Command> {
     let command = arguments::Arguments::command();
     match std::env::current_dir() {
@@ -74,7 +74,7 @@ fn command(words: &[OsString]) -> Result<clap::Command> {
 
 /// Prints an error.
 fn fault(error: &anyhow::Error) -> ExitCode {
-    // Names of files are a stranger's words, too.
+    // Names of files are untrusted text, too.
     console::complain(plain(&format!("error: {error:#}\n")));
     ExitCode::from(exit::FAULT)
 }

@@ -1,4 +1,4 @@
-//! The parts of this program that the drop-in for the original needs: pictures.
+//! The part of this program that the drop-in for the original needs: pictures.
 use crate::original::{NO_PICTURE_FOLDER, Pictures, Services};
 use crate::{
     cli::output::Folder,
@@ -9,13 +9,13 @@ use crate::{
 use anyhow::Result;
 use std::path::Path;
 
-/// The folder of `-g 1`.
+/// The folder for the pictures of `-g 1`.
 const PNGS: &str = "pngs";
 
-/// Width and height of the pictures.
-const SIDE: u32 = 512;
+/// The width and the height of the pictures, in pixels.
+const PICTURE_SIDE: u32 = 512;
 
-/// This program.
+/// The implementation of pictures by this program.
 pub(super) struct Program;
 
 impl Services for Program {
@@ -36,14 +36,14 @@ impl Services for Program {
             None => None,
             Some(folder) => Some(Folder::existing(folder).ok_or_else(|| NO_PICTURE_FOLDER.to_owned())?),
         };
-        let size = Size::new(SIDE, SIDE).map_err(|error| error.to_string())?;
+        let size = Size::new(PICTURE_SIDE, PICTURE_SIDE).map_err(|error| error.to_string())?;
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
         let painter = Painter::new(scene, &Extent::for_scene(scene, &start), PictureOptions { size, label: false });
         Ok(Box::new(PictureFolders { painter, raster: Raster::new(size), png, svg }))
     }
 }
 
-/// The pictures of `-g 1` and `-m DIR`: one per step, as PNG in the folder `pngs`, as SVG in a folder of choice.
+/// The pictures of `-g 1` and `-m DIR`: one per step, as PNG in the folder `pngs`, or as SVG in a chosen folder.
 struct PictureFolders {
     painter: Painter,
     raster: Raster,

@@ -1,10 +1,10 @@
-//! Output files: they appear whole, by renaming a finished temporary file next to the target, or not at all.
+//! Output files, which are written atomically, by renaming a finished temporary file next to the target.
 //!
 //! An error, SIGINT and SIGTERM remove the temporary file. Standard output and character devices such as `/dev/null`
 //! are written directly. Pipes, sockets and block devices are rejected: a pipe without a reader would block forever.
 //!
-//! A file that the user names may be a link: then its target is replaced. In a folder for many files the names are
-//! ours, and an existing entry with such a name is replaced, also a link.
+//! If a file that the user names is a link, its target is replaced. In a folder for many files, an existing entry with
+//! the same name is replaced, even a link.
 use super::{
     console,
     interrupt::{clean_up_when_interrupted, pending, show_activity},
@@ -22,7 +22,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// An output that is being written.
+/// An output while it is written.
 #[derive(Debug)]
 pub(super) enum Output {
     /// The output is discarded.
@@ -31,14 +31,15 @@ pub(super) enum Output {
     Stdout,
     /// A character device.
     Device(File, PathBuf),
-    /// A file, for the moment under another name.
+    /// A file, which has a temporary name until it is finished.
     File(Replacement),
 }
 
 impl Output {
-    /// Prepares an output. Nothing appears under its name before [`Output::finish`].
+    /// Prepares an output. Its name does not appear before [`Output::finish`].
     ///
     /// # Errors
+    ///
     /// When the output can't be written, or is one of `inputs`.
     pub(super) fn create(name: &Path, inputs: &[Identity]) -> Result<Self> {
         if ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].into_iter().any(|own| name == Path::new(own)) {
@@ -54,7 +55,7 @@ impl Output {
             Ok(existing) => {
                 let kind = existing.file_type();
                 if inputs.contains(&Identity::from_metadata(&existing)) {
-                    bail!("it is also an input; choose another name");
+                    bail!("it is also an input; choose another output");
                 } else if kind.is_dir() {
                     bail!("it is a directory; name a file inside");
                 } else if kind.is_char_device() {
@@ -62,9 +63,9 @@ impl Output {
                 } else if !kind.is_file() {
                     bail!("it is a pipe, socket or block device; use `-` for standard output");
                 }
-                // The rename would replace a protected file as well: check first whether it may be written.
+                // The rename would replace a protected file as well, so check first whether it may be written.
                 OpenOptions::new().write(true).open(name)?;
-                // Replaced is the file that a symbolic link points to, not the link.
+                // Replace the target of a symbolic link, not the link.
                 target = name.canonicalize()?;
                 mode = Some(existing.permissions().mode() & 0o777);
             }
@@ -84,7 +85,7 @@ impl Output {
         }
         let name = target.file_name().context("it names a directory; name a file inside")?;
         let begin = || files::Folder::to_write(folder)?.replacement(name, mode);
-        Ok(Self::File(begun(begin).with_context(|| format!("no file can be made in {}", folder.display()))?))
+        Ok(Self::File(begin_file(begin).with_context(|| format!("cannot create a file in {}", folder.display()))?))
     }
 
     /// Returns whether this is standard output, so that nothing else may be printed there.
@@ -92,7 +93,7 @@ impl Output {
         matches!(self, Self::Stdout)
     }
 
-    /// Returns the place of a file's bytes before it appears under its name, for a program that writes them.
+    /// Returns the path of the temporary file, for a program that writes to it.
     pub(super) fn temporary_path(&self) -> Option<PathBuf> {
         match self {
             Self::File(file) => Some(file.unfinished_path()),
@@ -100,9 +101,10 @@ impl Output {
         }
     }
 
-    /// Writes all bytes, and lets the file appear under its name.
+    /// Writes all bytes, and moves the file to its final name.
     ///
     /// # Errors
+    ///
     /// When it can't be written.
     pub(super) fn finish_with(mut self, bytes: &[u8]) -> Result<()> {
         let name = self.name();
@@ -110,9 +112,10 @@ impl Output {
         self.finish()
     }
 
-    /// Finishes as [`Output::finish_with`] does; a message tells the user the file's name.
+    /// Finishes like [`Output::finish_with`], and prints the file's name.
     ///
     /// # Errors
+    ///
     /// When it can't be written.
     pub(super) fn finish_and_tell(self, bytes: &[u8], is_page: bool) -> Result<()> {
         let file = match &self {
@@ -121,7 +124,7 @@ impl Output {
         };
         self.finish_with(bytes)?;
         if let Some(file) = file {
-            say_where(&file, is_page);
+            print_path(&file, is_page);
         }
         Ok(())
     }
@@ -135,10 +138,11 @@ impl Output {
         }
     }
 
-    /// Lets the file appear under its name.
+    /// Moves the file to its final name.
     ///
     /// # Errors
-    /// When the last bytes or the rename fail; the target is then as it was before.
+    ///
+    /// When the last bytes or the rename fail; the target is unchanged then.
     pub(super) fn finish(mut self) -> Result<()> {
         console::ignore_closed_pipe(self.flush())?;
         match self {
@@ -151,15 +155,15 @@ impl Output {
     }
 }
 
-/// Prints the place of an output; a page is for a browser.
-pub(super) fn say_where(file: &Path, is_page: bool) {
+/// Prints the path of an output; a page is to be opened in a browser.
+pub(super) fn print_path(file: &Path, is_page: bool) {
     let what = if is_page { "to look at" } else { "written" };
     console::remark(format!("{what}: {}\n", one_line(&file.display().to_string())));
 }
 
 impl Output {
-    /// Writes to the present place of the bytes. Without a reader all of them count as `taken`: a reader that has ended
-    /// must not keep the command from finishing.
+    /// Calls `act` with the writer. If the reader has closed the pipe, the result is `taken`, so that the command can
+    /// finish.
     fn through<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
         match self {
             Self::Nowhere => Ok(taken),
@@ -187,43 +191,46 @@ impl Write for Output {
     }
 }
 
-/// Writes a whole file by rename.
+/// Writes a file atomically.
 ///
 /// # Errors
-/// When it can't be written; the old file, if there is one, is unharmed.
+///
+/// When it can't be written; an old file is unchanged then.
 pub(super) fn write(name: &Path, bytes: &[u8]) -> Result<()> {
     Output::create(name, &[])?.finish_with(bytes)
 }
 
-/// Writes a whole file by rename, below a folder for results: folders on the way are made, and no link is followed.
+/// Writes a file atomically, below a folder for results: missing folders are created, and no link is followed.
 ///
 /// # Errors
-/// When it can't be written; the old file, if there is one, is unharmed.
+///
+/// When it can't be written; an old file is unchanged then.
 pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
-    find_replaced(|| place.replacement(), |file| file.write_all(bytes))
+    write_whole(|| place.replacement(), |file| file.write_all(bytes))
         .with_context(|| format!("cannot write {}", place.path().display()))
 }
 
-/// Writes what a reader yields, as [`write_at`] does.
+/// Writes the content of a reader, like [`write_at`].
 ///
 /// # Errors
-/// As for [`write_at`], and when it can't be read.
+///
+/// The errors of [`write_at`], and when the reader fails.
 pub(super) fn copy_at(place: &Place, from: &mut impl io::Read) -> io::Result<()> {
-    find_replaced(|| place.replacement(), |file| io::copy(from, file).map(drop))
+    write_whole(|| place.replacement(), |file| io::copy(from, file).map(drop))
 }
 
-/// Makes a whole file in one go.
-fn find_replaced(
+/// Writes a whole file in one call, replacing an old one.
+fn write_whole(
     begin: impl FnOnce() -> io::Result<Replacement>,
     fill: impl FnOnce(&mut Replacement) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut file = begun(begin)?;
+    let mut file = begin_file(begin)?;
     fill(&mut file)?;
     finish_file(file)
 }
 
-/// Begins a file, which an interrupt removes.
-fn begun(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacement> {
+/// Begins a file that an interrupt removes.
+fn begin_file(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacement> {
     clean_up_when_interrupted();
     show_activity();
     let mut pending = pending();
@@ -232,7 +239,7 @@ fn begun(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacem
     Ok(file)
 }
 
-/// Lets a file appear under its name.
+/// Moves a finished file to its final name.
 fn finish_file(file: Replacement) -> io::Result<()> {
     let mut pending = pending();
     let path = file.unfinished_path();
@@ -242,22 +249,23 @@ fn finish_file(file: Replacement) -> io::Result<()> {
     finished
 }
 
-/// A folder that many files of our own names are written into, each by rename. What has such a name already is
-/// replaced, and links are not followed: a user who prepares a folder can't make us write elsewhere.
+/// A folder for many files, each of which is written atomically. Existing files with the same names are replaced, and
+/// links are not followed, so that a user who prepares a folder can't redirect the output.
 #[derive(Debug)]
 pub(super) struct Folder(files::Folder);
 
 impl Folder {
-    /// Returns an existing folder, or a new one.
+    /// Opens an existing folder, or creates a new one.
     ///
     /// # Errors
-    /// When it is none, or can't be made.
+    ///
+    /// When the path is not a folder, or the folder can't be created.
     pub(super) fn open(name: &Path) -> Result<Self> {
         match fs::create_dir(name) {
             Ok(()) => {}
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists && name.is_dir() => {}
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
-                bail!("{} is not a folder; name one for the pictures", name.display())
+                bail!("{} is not a folder; choose one for the pictures", name.display())
             }
             Err(error) => return Err(error).with_context(|| format!("cannot make the folder {}", name.display())),
         }
@@ -265,32 +273,33 @@ impl Folder {
         Ok(Self(opened))
     }
 
-    /// Returns an existing folder.
+    /// Opens an existing folder.
     pub(super) fn existing(name: &Path) -> Option<Self> {
         files::Folder::to_write(name).ok().map(Self)
     }
 
-    /// Returns the output's name as typed, fit for printing.
+    /// Returns the output's name as typed, in printable form.
     pub(super) fn name(&self) -> String {
         self.0.given_path().display().to_string()
     }
 
-    /// Returns whether there is a file of this name.
+    /// Returns whether the folder has a file with a name.
     pub(super) fn holds(&self, name: &str) -> bool {
         self.0.holds(OsStr::new(name))
     }
 
-    /// Writes a whole file by rename.
+    /// Writes a file atomically.
     ///
     /// # Errors
+    ///
     /// When it can't be written.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
-        find_replaced(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
+        write_whole(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
             .with_context(|| format!("cannot write {}", self.0.given_path().join(name).display()))
     }
 }
 
-/// Returns whether a name has this extension, whatever its case.
+/// Returns whether a name has an extension, ignoring case.
 pub(super) fn has_extension(name: &Path, extension: &str) -> bool {
     name.extension().and_then(OsStr::to_str).is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }

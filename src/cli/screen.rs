@@ -1,18 +1,18 @@
-//! The bars on standard error, and their removal.
+//! The progress bars on standard error, and their removal.
 use indicatif::{MultiProgress, ProgressDrawTarget};
 use std::{
     io::{self, Write},
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-/// The bars on standard error.
+/// The visible progress bars.
 static ON_SCREEN: Mutex<Option<MultiProgress>> = Mutex::new(None);
 
 pub(super) fn on_screen() -> MutexGuard<'static, Option<MultiProgress>> {
     ON_SCREEN.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Writes to standard error, above the bars; there is nowhere left to report a failure.
+/// Writes to standard error, above the bars; its own errors cannot be reported.
 pub(super) fn write_above_bars(text: &[u8]) {
     let write = || drop(io::stderr().lock().write_all(text));
     match &*on_screen() {
@@ -21,11 +21,11 @@ pub(super) fn write_above_bars(text: &[u8]) {
     }
 }
 
-/// Takes the bars away.
+/// Removes the progress bars.
 pub(super) fn clear_bars() {
     if let Some(bars) = on_screen().take() {
         drop(bars.clear());
-        // Another thread may have drawn meanwhile; from here on none can, and its drawing is removed.
+        // Another thread may have drawn since; after this none can, and its drawing is removed.
         bars.set_draw_target(ProgressDrawTarget::hidden());
         drop(io::stderr().lock().write_all(b"\r\x1b[2K"));
     }

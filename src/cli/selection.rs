@@ -1,19 +1,20 @@
-//! Scenes selected by name, as `grade --scene` and `scene list` take them.
+//! Scenes that are selected by name, for `grade --scene` and `scene list`.
 use crate::suite::{library, near};
 use anyhow::{Context, Result, bail};
 use glob::Pattern;
 
-/// Patterns of scene names; none selects everything.
+/// Patterns of scene names; an empty list selects everything.
 #[derive(Debug, Default)]
 pub(super) struct Selection {
     patterns: Vec<Pattern>,
 }
 
 impl Selection {
-    /// Creates a selection among these names.
+    /// Creates a selection among names.
     ///
     /// # Errors
-    /// A pattern that can't be understood, or that takes none of the names.
+    ///
+    /// A pattern that is invalid, or that matches no name.
     pub(super) fn new(words: &[String], names: &[&str]) -> Result<Self> {
         let mut patterns = Vec::new();
         for word in words {
@@ -21,7 +22,7 @@ impl Selection {
             let bare = bare.strip_suffix(".xml").unwrap_or(bare);
             let pattern = Pattern::new(bare).with_context(|| format!("the pattern {word}"))?;
             if !names.iter().any(|name| takes(&pattern, name)) {
-                bail!("{word} names no scene; there are {}", nearest_names(bare, names));
+                bail!("{word} matches no scene; there are {}", nearest_names(bare, names));
             }
             patterns.push(pattern);
         }
@@ -34,19 +35,19 @@ impl Selection {
     }
 }
 
-/// Returns whether a pattern takes a name. It is compared with the whole name (as [`library::takes`] does), or with the
-/// name after its group.
+/// Returns whether a pattern matches a name. It is compared with the full name (like [`library::takes`]), and with the
+/// name without its group.
 fn takes(pattern: &Pattern, name: &str) -> bool {
     library::takes(pattern, name) || name.rsplit('/').next().is_some_and(|last| pattern.matches(last))
 }
 
 /// The number of names that are given as examples.
-const EXAMPLES: usize = 3;
+const MAX_EXAMPLES: usize = 3;
 
-/// Returns the names that are nearest to the typed one.
+/// Returns the names that are most similar to a typed one, as text.
 fn nearest_names(typed: &str, names: &[&str]) -> String {
-    let shown = near::nearest(typed, names.iter().copied(), EXAMPLES).join(", ");
-    if names.len() > EXAMPLES { format!("{shown} and {} more", names.len() - EXAMPLES) } else { shown }
+    let shown = near::nearest(typed, names.iter().copied(), MAX_EXAMPLES).join(", ");
+    if names.len() > MAX_EXAMPLES { format!("{shown} and {} more", names.len() - MAX_EXAMPLES) } else { shown }
 }
 
 #[cfg(test)]

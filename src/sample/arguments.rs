@@ -1,4 +1,4 @@
-//! The command line: the course's arguments, and additional ones.
+//! The command line of the sample: the course's arguments, and additional ones.
 use super::pin;
 use crate::{
     student::{self, Mistake, Student, all_rows},
@@ -11,64 +11,65 @@ use std::{
 };
 
 /// The environment variable that names a mistake.
-const VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
+const MISTAKE_VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
 
-/// A copy or link of the program with this prefix makes the mistake that follows it.
+/// A copy or link named PREFIX plus a mistake's id makes that mistake.
 const NAME_PREFIX: &str = "fosssim-sample.";
 
-/// The greatest number of mistakes together.
+/// The maximum number of mistakes in one program.
 const MAX_COUNT: usize = Student::MAX_MISTAKES;
 
-/// A sample submission: simulates a scene as a student's program would, with documented mistakes on request.
+/// A sample submission: simulates a scene like a student's program, with documented mistakes on request.
 #[derive(Debug, Parser)]
 #[command(
     name = "fosssim-sample",
     version,
-    after_help = "The mistake may also be given by the environment variable FOSSSIM_SAMPLE_MISTAKE, or by a copy or \
-                  link of this program that is called fosssim-sample.ID. --mistake wins over the name, the name over \
-                  the variable. `fosssim-oracle demo --program FILE` writes a copy that makes its mistake in any \
-                  case.\n\nExit status: 0 done, 1 it could not be done, 2 usage, 3 the course's program \
-                  would never have ended here."
+    after_help = "The environment variable FOSSSIM_SAMPLE_MISTAKE can name the mistake, too, and so can a copy or \
+                  link of this program that is called fosssim-sample.ID. --mistake has precedence over the name, and \
+                  the name over the variable. `fosssim-oracle demo --program FILE` writes a copy that makes \
+                  its mistake in any case.\n\nExit status: 0 done, 1 failed, 2 wrong usage, 3 the course's program would never \
+                  have ended"
 )]
 pub struct Options {
     /// The scene, an XML file.
     #[arg(short, long, required_unless_present = "list", value_name = "FILE")]
     pub scene: Option<PathBuf>,
-    /// Where to write the trace, a file or a pipe. Without it no trace is saved.
+    /// The file or pipe for the trace. By default no trace is written.
     #[arg(short, long = "outputfile", value_name = "FILE")]
     pub output: Option<PathBuf>,
-    /// Only 0 is accepted: there is no window.
+    /// The display; only 0 is accepted, because there is no window.
     #[arg(short, long, default_value = "0", value_parser = ["0"], value_name = "0")]
     display: String,
-    /// Accepted for the sake of the protocol; no effect without a window.
+    /// Accepted for compatibility with the protocol; it has no effect without a window.
     #[arg(short, long, default_value = "1", value_parser = ["0", "1"], value_name = "0|1")]
     paused: String,
-    /// Makes the mistake with this id, or several with commas between them.
+    /// The id of a mistake to make, or several ids separated by commas.
     #[arg(long, value_name = "ID[,ID]...")]
     mistake: Option<String>,
-    /// Computes this number of million useless rounds first, as a slow program does.
+    /// The number of useless rounds to compute first, in millions, to simulate a slow program.
     #[arg(long, value_name = "N", default_value = "0")]
     pub busy: u32,
-    /// Lists the mistakes, with one sentence for each.
+    /// List the mistakes, with one sentence for each.
     #[arg(long)]
     pub list: bool,
-    /// Lists them as JSON.
+    /// List the mistakes as JSON.
     #[arg(long, requires = "list")]
     pub json: bool,
 }
 
 impl Options {
-    /// Returns the program's author.
+    /// Returns the student who wrote the program.
     ///
     /// # Errors
+    ///
     /// A sentence about a mistake that does not exist.
     pub fn student(&self, pinned: Option<&str>, program: Option<&OsString>) -> Result<Student, String> {
         student(pinned, self.mistake.clone(), program.map(Path::new))
     }
 }
 
-/// Returns the student with the mistakes that are pinned to the program, or else those that the command line, the
-/// program's name or the environment selects.
+/// Returns the student with the pinned mistakes, or with those that the command line, the program's name or the
+/// environment selects.
 fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>) -> Result<Student, String> {
     let (source, ids) = if let Some(id) = pinned {
         if id == pin::RIGHT {
@@ -79,21 +80,21 @@ fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>)
         ("--mistake", ids)
     } else if let Some(ids) = mistake_of_name(program) {
         ("the program's name", ids)
-    } else if let Some(ids) = std::env::var(VARIABLE).ok().filter(|ids| !ids.is_empty()) {
-        (VARIABLE, ids)
+    } else if let Some(ids) = std::env::var(MISTAKE_VARIABLE).ok().filter(|ids| !ids.is_empty()) {
+        (MISTAKE_VARIABLE, ids)
     } else {
         return Ok(Student::default());
     };
-    let mistakes = ids.split(',').map(|id| mistake(source, id)).collect::<Result<Vec<_>, _>>()?;
+    let mistakes = ids.split(',').map(|id| parse_mistake(source, id)).collect::<Result<Vec<_>, _>>()?;
     if mistakes.len() > MAX_COUNT {
         return Err(format!("{source} names {} mistakes, but at most {MAX_COUNT} can be combined", mistakes.len()));
     }
     Ok(mistakes.into_iter().fold(Student::default(), |student, mistake| student.with_mistake(Some(mistake))))
 }
 
-fn mistake(source: &str, id: &str) -> Result<Mistake, String> {
-    let meant = || near::meant(id, all_rows().map(|row| row.id));
-    let unknown = || format!("{source} asks for the mistake '{id}', which --list does not have{}", meant());
+fn parse_mistake(source: &str, id: &str) -> Result<Mistake, String> {
+    let meant = || near::suggest(id, all_rows().map(|row| row.id));
+    let unknown = || format!("{source} names the mistake '{id}', which does not exist; --list shows all{}", meant());
     student::find(id).map(|row| row.mistake).ok_or_else(unknown)
 }
 

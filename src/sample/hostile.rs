@@ -1,4 +1,4 @@
-//! The deeds of hostile programs in addition to simulating. Everything is bounded where it could harm a machine without
+//! The actions of hostile programs in addition to simulating. They are limited where they could harm a machine without
 //! a sandbox; only the endless loop and the sleep last forever.
 use std::{
     fs::File,
@@ -12,14 +12,14 @@ use std::{
 
 use crate::student::{Area, Mistake, Student};
 
-/// The bytes of a flood behind the trace, and of one on standard output or error.
+/// The number of bytes of a flood after the trace, or on standard output or error.
 const FLOOD_BYTES: usize = 256 << 20;
 const PRINTED_BYTES: usize = 16 << 20;
 
-/// The memory that a hog takes.
+/// The number of bytes of memory that a memory hog allocates.
 const HOG_BYTES: usize = 4 << 30;
 
-/// The variable for the names of hostile programs.
+/// The environment variable with the names of hostile child programs.
 const CHILD_VARIABLE: &str = "FOSSSIM_SAMPLE_CHILD";
 
 /// The output of the original oracle after a run without faults.
@@ -34,13 +34,12 @@ Overall success: Passed.
 {\"score\": 100, \"output\": \"accepted\"}
 ";
 
-/// Text that escapes from a log that is not cleaned: colors, the window's title, markup, a formula, control
-/// characters.
+/// Text that attacks a log without escaping: colors, the window's title, markup, a formula, control characters.
 const ESCAPES: &str = "\u{1b}[2J\u{1b}[31;1mred\u{1b}[m \u{1b}]0;title\u{7} <script>alert(1)</script> \
     <b onmouseover='x'>&amp;</b> | `code` **bold** ::error::no \r\n=HYPERLINK(\"http://example.invalid\",\"x\")\n\
     ]]> \u{202e}reversed\u{202c} \u{0}\u{8}\u{c}\n";
 
-/// Ends programs that do nothing at all, and children that only wait.
+/// Runs the actions at the start: of programs that do nothing else, and of children that only wait.
 pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8>> {
     if std::env::var_os(CHILD_VARIABLE).is_some() {
         sleep(Duration::from_secs(60));
@@ -56,7 +55,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
         }
         Some(Mistake::HostileChildren) => {
             for _ in 0..3 {
-                // No process waits for them: they are meant to be left behind.
+                // No process waits for the child, because it is meant to be left behind.
                 let _child = Command::new(std::env::current_exe()?)
                     .env(CHILD_VARIABLE, "1")
                     .args(["--list"])
@@ -73,16 +72,16 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
 
 /// A hostile act in the middle of a run.
 pub enum MidwayAct {
-    /// The simulation continues.
+    /// The program continues the simulation.
     GoOn,
-    /// The program stops writing and leaves with this status.
+    /// The program stops writing and exits with this status.
     Leave(u8),
-    /// The program writes part of a record and leaves with this status.
+    /// The program writes part of a record and exits with this status.
     LeaveInsideRecord(u8),
 }
 
-/// Misbehaves in the middle of the run, that is before step `steps / 2 + 1`.
-pub fn midway(student: Student) -> io::Result<MidwayAct> {
+/// Runs the hostile action in the middle of the run, which is before step `steps / 2 + 1`.
+pub fn act_midway(student: Student) -> io::Result<MidwayAct> {
     match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileExitMidway) => return Ok(MidwayAct::Leave(3)),
         Some(Mistake::HostileTruncated) => return Ok(MidwayAct::LeaveInsideRecord(0)),
@@ -104,7 +103,7 @@ pub fn midway(student: Student) -> io::Result<MidwayAct> {
     Ok(MidwayAct::GoOn)
 }
 
-/// Writes the bytes behind the last record.
+/// Writes the bytes after the last record.
 pub fn write_after_trace(student: Student, output: &mut impl Write) -> io::Result<()> {
     match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileTrailingBytes) => output.write_all(&[0; 8]),
@@ -113,7 +112,7 @@ pub fn write_after_trace(student: Student, output: &mut impl Write) -> io::Resul
     }
 }
 
-/// Returns the status with which the program ends.
+/// Returns the exit status of the program.
 pub fn exit_status(student: Student) -> u8 {
     u8::from(student.makes(Mistake::HostileExitOne))
 }

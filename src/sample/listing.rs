@@ -10,7 +10,7 @@ struct Listing {
     mistakes: Vec<Entry>,
 }
 
-/// A row as the listing shows it.
+/// A row of the listing.
 #[derive(Serialize)]
 struct Entry {
     id: &'static str,
@@ -26,22 +26,22 @@ impl From<&Row> for Entry {
     }
 }
 
-/// Prints the catalogue on standard output.
+/// Prints the catalogue to standard output.
 pub fn print(json: bool) -> anyhow::Result<u8> {
     let text = if json {
         let listing = Listing { schema: "fosssim-sample/1", mistakes: all_rows().map(Entry::from).collect() };
         serde_json::to_string_pretty(&listing)? + "\n"
     } else {
-        table()
+        render_table()
     };
     match io::stdout().write_all(text.as_bytes()) {
-        // A reader that has seen enough is no fault.
+        // A closed pipe is not an error.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(0),
         result => Ok(result.map(|()| 0)?),
     }
 }
 
-fn table() -> String {
+fn render_table() -> String {
     let mut text = String::new();
     for (kind, title) in [
         (RowKind::Wrong, "Mistakes: the result is wrong."),

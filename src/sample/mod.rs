@@ -1,8 +1,8 @@
 //! The sample: plays a student's submission.
 //!
-//! It speaks the course's protocol (`-s scene.xml -d 0 -o trace.bin`) and can make documented mistakes. Its physics is
-//! the second simulator, `student`; it never uses the one that judges, `sim`. `fosssim-oracle sample` runs it, and a
-//! copy of the program with a [pinned](pin) mistake is only that.
+//! It implements the course's protocol (`-s scene.xml -d 0 -o trace.bin`) and can make documented mistakes. Its physics
+//! is the second simulator, `student`; it never uses the one that judges, `sim`. `fosssim-oracle sample` runs it, and
+//! so does every copy of the program with a [pinned](pin) mistake.
 #![expect(
     clippy::disallowed_methods,
     clippy::disallowed_types,
@@ -24,7 +24,7 @@ use std::{ffi::OsString, process::ExitCode};
 #[must_use]
 pub fn main(words: impl Iterator<Item = OsString>, pinned: Option<&str>) -> ExitCode {
     let words: Vec<OsString> = words.collect();
-    // A fault of syntax ends the program with status 2.
+    // A syntax error ends the program with status 2.
     let options = Options::parse_from(&words);
     let outcome = match options.student(pinned, words.first()) {
         _ if options.list => listing::print(options.json),

@@ -1,25 +1,26 @@
-//! A mistake that is pinned to a copy of this program: under every name and however it is started, the copy is the
-//! sample, and makes this mistake. This gives a wrong program that can be handed in like a student's.
+//! A mistake that is pinned to a copy of this program. Under every name the copy is the sample, and makes this mistake,
+//! so it can be submitted like a student's program.
 //!
-//! The program has a place for the mistake's id, and in the copy the id is there. The copy need not read anything when
-//! it runs, which the sandbox might not allow.
+//! The program has a reserved place for the mistake's id, which is filled in the copy. The copy therefore need not read
+//! any file, which the sandbox might not allow.
 
-/// The id in a copy that makes no mistake. Only the demo makes one, and removes it.
+/// The id in a copy that makes no mistake. Only the demo creates such a copy, and removes it.
 pub const RIGHT: &str = "right";
 
-/// The number of bytes for the id, or several ids with commas between them; the rest is zero.
-const ROOM: usize = 256;
-/// The bytes before them, by which the place is found, backwards: in the right order they are only in that place.
+/// The number of bytes for the id, or for several ids separated by commas; the rest is zero.
+const ID_BYTES: usize = 256;
+/// The bytes before the id, by which the place is found. They are stored backwards, so that they are in the right order
+/// only in the place itself.
 const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
-/// The whole place.
-const LENGTH: usize = MARK_BACKWARDS.len() + ROOM;
+/// The number of bytes of the place.
+const PLACE_BYTES: usize = MARK_BACKWARDS.len() + ID_BYTES;
 
-/// The place in the program.
-type Place = [u8; LENGTH];
+/// The place for the id in the program.
+type Place = [u8; PLACE_BYTES];
 
 static PINNED: Place = empty();
 
-/// Returns the mistake that is pinned to this program, if one is.
+/// Returns the mistake that is pinned to this program, if there is one.
 #[must_use]
 pub fn pinned_mistake() -> Option<&'static str> {
     read(&PINNED)
@@ -27,7 +28,7 @@ pub fn pinned_mistake() -> Option<&'static str> {
 
 /// Returns a place without a mistake.
 const fn empty() -> Place {
-    let mut place = [0; LENGTH];
+    let mut place = [0; PLACE_BYTES];
     let mut at = 0;
     while at < MARK_BACKWARDS.len() {
         place[at] = MARK_BACKWARDS[MARK_BACKWARDS.len() - 1 - at];
@@ -38,14 +39,13 @@ const fn empty() -> Place {
 
 /// Reads the mistake in a place, if there is one.
 fn read(place: &Place) -> Option<&str> {
-    // The compiler must not know the content of the place: it is overwritten later.
+    // The compiler must not know the content of the place, because it is overwritten later.
     let id = &std::hint::black_box(place)[MARK_BACKWARDS.len()..];
     let end = id.iter().position(|byte| *byte == 0).unwrap_or(id.len());
     std::str::from_utf8(&id[..end]).ok().filter(|id| !id.is_empty())
 }
 
-/// Writes a mistake's id into a copy of this program; nothing when it has no place of its own for it, or the id no
-/// room.
+/// Writes a mistake's id into a copy of this program; `None` if the program has no place, or the id is too long.
 #[must_use]
 pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut mark = MARK_BACKWARDS;
@@ -53,8 +53,8 @@ pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut found = program.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(at, _)| at);
     let (Some(at), None) = (found.next(), found.next()) else { return None };
     let mut copy = program.to_vec();
-    let room = copy.get_mut(at + mark.len()..at + LENGTH)?;
-    // One byte stays zero: the id's end.
+    let room = copy.get_mut(at + mark.len()..at + PLACE_BYTES)?;
+    // One byte stays zero, as the end of the id.
     if id.is_empty() || id.len() >= room.len() {
         return None;
     }
@@ -72,12 +72,12 @@ mod tests {
         let program = |place: &Place| [b"before", &place[..], b"after"].concat();
         assert_eq!(read(&empty()), None);
         let pinned = write(&program(&empty()), "pe-square-no-eh").expect("a place");
-        let place: &Place = pinned[6..6 + LENGTH].try_into().expect("as long");
+        let place: &Place = pinned[6..6 + PLACE_BYTES].try_into().expect("as long");
         assert_eq!(read(place), Some("pe-square-no-eh"));
-        assert_eq!((&pinned[..6], &pinned[6 + LENGTH..]), (&b"before"[..], &b"after"[..]));
+        assert_eq!((&pinned[..6], &pinned[6 + PLACE_BYTES..]), (&b"before"[..], &b"after"[..]));
         // Another id may be written over it, also a shorter one.
         let again = write(&pinned, "short").expect("a place");
-        assert_eq!(read(again[6..6 + LENGTH].try_into().expect("as long")), Some("short"));
+        assert_eq!(read(again[6..6 + PLACE_BYTES].try_into().expect("as long")), Some("short"));
     }
 
     #[test]
@@ -86,7 +86,7 @@ mod tests {
         assert_eq!(write(b"no sample at all", "a"), None);
         assert_eq!(write(&[place, place].concat(), "a"), None);
         assert_eq!(write(&place, ""), None);
-        assert_eq!(write(&place, &"x".repeat(ROOM)), None);
-        assert_eq!(write(&place[..LENGTH - 1], "a"), None);
+        assert_eq!(write(&place, &"x".repeat(ID_BYTES)), None);
+        assert_eq!(write(&place[..PLACE_BYTES - 1], "a"), None);
     }
 }

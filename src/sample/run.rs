@@ -1,4 +1,4 @@
-//! One run: load the scene, step, write the trace.
+//! One run of the sample: load the scene, step, write the trace.
 use std::{
     fs::File,
     hint::black_box,
@@ -13,8 +13,8 @@ use super::{
 use crate::student::{self, StepLog, Student, World};
 use anyhow::Context;
 
-/// The status of a run that the course's program would never have ended.
-const NEVER_ENDS: u8 = 3;
+/// The exit status of a run that the course's program would never have ended.
+const ENDLESS_STATUS: u8 = 3;
 
 type Output = Trace<Box<dyn Write>>;
 
@@ -54,7 +54,7 @@ fn simulate(world: &World, trace: &mut Output) -> anyhow::Result<u8> {
     let steps = world.scene.steps();
     for step in 1..=steps {
         if step == steps / 2 + 1 {
-            match hostile::midway(world.student)? {
+            match hostile::act_midway(world.student)? {
                 MidwayAct::GoOn => {}
                 MidwayAct::Leave(code) => return Ok(code),
                 MidwayAct::LeaveInsideRecord(code) => {
@@ -73,7 +73,7 @@ fn simulate(world: &World, trace: &mut Output) -> anyhow::Result<u8> {
         written.context("the trace can't be written")?;
         if let Err(failure) = stepped {
             eprintln!("step {step}: {failure}");
-            return Ok(NEVER_ENDS);
+            return Ok(ENDLESS_STATUS);
         }
     }
     Ok(0)

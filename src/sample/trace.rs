@@ -1,5 +1,5 @@
-//! The trace: positions, velocities, impulses and polynomials, record after record, strictly forwards so that a pipe
-//! will do (trace-format.md).
+//! The trace: positions, velocities, impulses and polynomials, record after record. It is written sequentially, so that
+//! a pipe is sufficient (trace-format.md).
 use std::io::{self, Write};
 
 use crate::{
@@ -9,23 +9,23 @@ use crate::{
 
 use super::hostile;
 
-/// Writes the records of one run.
+/// The writer of the records of one run.
 pub struct Trace<W> {
     output: W,
     student: Student,
     collision: Collision,
     records: u64,
-    /// Buffer of one record.
+    /// The buffer for one record.
     bytes: Vec<u8>,
 }
 
 impl<W: Write> Trace<W> {
-    /// Creates a trace for scenes of this collision type.
+    /// Creates a trace for scenes with a collision type.
     pub fn new(output: W, collision: &Collision, student: Student) -> Self {
         Self { output, student, collision: *collision, records: 0, bytes: Vec::new() }
     }
 
-    /// Writes one record into the buffer behind the trace.
+    /// Adds one record to the trace.
     pub fn record(&mut self, state: &State, log: &StepLog) -> io::Result<()> {
         self.records += 1;
         if self.records == 1 && self.student.makes(Mistake::LogNoInitial) {

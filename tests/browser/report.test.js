@@ -307,7 +307,7 @@ test("a motion that is too large is rounded, and the page says so", async (t) =>
   const { page, complaints, close } = await open(html);
   assert.match(
     await page.locator(".viewer .hint").first().innerText(),
-    /too large to be here to the last bit: positions are rounded to .* Exact are the records around these steps: 0, 1/,
+    /too large to be here to the last bit: positions are rounded to .* The records around these steps are exact: 0, 1/,
   );
   // What is looked at is exact, and what is far from it near enough.
   assert.match(

@@ -255,7 +255,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByText("applied, by admin").waitFor();
   await student.page.reload();
   await student.page.goto(`${address}/c/physics/s/1`);
-  await student.page.getByText("How the grade came to be").click();
+  await student.page.getByText("History of the grade").click();
   await student.page.getByText("Nobody should fail this").waitFor();
   const further = [
     "queue",

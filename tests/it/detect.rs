@@ -147,7 +147,7 @@ fn a_pair_of_a_trace_that_logs_too_little_is_found() {
     workspace.write("pruned.bin", trace);
     let pair = |word: &str| detect(&workspace, &format!("--scene {scene} --trace pruned.bin --step 1 --pair {word}"));
     assert!(
-        pair("pp:0,1").out().contains("What the trace logged\n  nothing for this pair in this pass\n"),
+        pair("pp:0,1").out().contains("What the trace logged\n  nothing is logged for this pair in this pass\n"),
         "{}",
         pair("pp:0,1").shown()
     );
@@ -179,7 +179,7 @@ fn what_can_not_be_looked_at_is_said() {
         ("--scene scene.xml --step 0 --pair pe:2,0", "there is no step 0"),
         ("--scene scene.xml --step 1 --pair pe:0,0", "particle 0 is an end of edge 0"),
         ("--scene scene.xml --step 1 --pair pe:2,1", "there is no edge 1; the scene has 1"),
-        ("--scene scene.xml --step 1 --pair pp:1,1", "a particle makes no pair with itself"),
+        ("--scene scene.xml --step 1 --pair pp:1,1", "a particle cannot form a pair with itself"),
         ("--scene scene.xml --step 1 --pair pe:2,0 --pass 99", "there is no pass 99"),
         ("--scene scene.xml --step 1 --pair pe:2,0 --pass 0", "0 is not in 1.."),
         ("--scene scene.xml --step 1", "--pair"),

@@ -147,7 +147,7 @@ fn shards_that_are_missing_doubled_or_foreign_are_told() {
     refused(&["merge", "class"], "class holds no shard that is done");
     refused(&["merge", "parts/shard-1-of-8"], "7 shards of 8 are missing");
     assert_eq!(grade("3/8", "third", &[]).code, Some(1));
-    refused(&["merge", "parts", "third"], "say where the results go: --output DIR");
+    refused(&["merge", "parts", "third"], "choose a folder for the results with --output DIR");
     let merged = workspace.run(["merge", "parts", "third", "--output", "merged", "--format", "csv"]);
     assert_eq!(merged.code, Some(1), "{}", merged.shown());
     assert_eq!(

@@ -81,7 +81,7 @@ async function recognized(file) {
   throw new Error(
     scenes.length
       ? `The trace begins like those of ${scenes.join(" and ")}: choose its scene, or drop its XML.`
-      : "Which scene is this a trace of? Choose one, or drop its XML.",
+      : "Which scene does this trace belong to? Choose one, or drop its XML.",
   );
 }
 
@@ -119,7 +119,7 @@ async function judge() {
     const answer =
       request && (await check.oracle.ask(request, { blobs: scene.xml ? [scene.xml] : [], files: [file], progress }));
     if (run !== check.run) return;
-    if (!answer) return say($("frame").hidden ? "Stopped." : "Stopped. The report is that of the run before.");
+    if (!answer) return say($("frame").hidden ? "Stopped." : "Stopped. The report is from the previous run.");
     const [json, html] = answer.parts;
     check.report = { name: bare(file.name), json, html };
     $("frame").srcdoc = text(html);

@@ -31,7 +31,7 @@ function engine(module, host) {
       throw new Error(
         why
           ? `the checker failed: ${why}; please report this`
-          : `the checker failed: ${error.message}; perhaps the browser has too little memory`,
+          : `the checker failed: ${error.message}; the browser may have too little memory`,
       );
     }
     const answer = bytes(begin >>> 0, exports.length() >>> 0);

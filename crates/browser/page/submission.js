@@ -57,7 +57,7 @@ async function takeFolder(name, found) {
   if (marks.files.size) return mark_all();
   $("marks-said").textContent = suite
     ? "Now drop the folder of traces."
-    : "There is no trace in that folder: they are called Group/name.bin.";
+    : "There is no trace in that folder. Traces are called Group/name.bin.";
 }
 
 // Returns the trace of a scene, by its full name or the name without its group. If the first group is in a subfolder,
@@ -144,7 +144,7 @@ function showMarks(suite, grade, rows, strange) {
       ),
     );
   if (known && !since.length)
-    since.push(el("p", { class: "hint" }, "Since the last drop nothing became right, and nothing wrong."));
+    since.push(el("p", { class: "hint" }, "Since the last drop nothing changed."));
   const names = strange.slice(0, 12).join(", ") + (strange.length > 12 ? ` and ${strange.length - 12} more` : "");
   const other = strange.length
     ? [

@@ -94,7 +94,7 @@ function told(value) {
   film.now = good ? value : null;
   for (const id of ["play", "step", "save-png", "save-svg", "save-gif", "save-trace"]) $(id).disabled = !good;
   if (!good) {
-    $("try-said").textContent = `${counted(errors, "error")}: the picture is that of the last scene without errors.`;
+    $("try-said").textContent = `${counted(errors, "error")}: the picture shows the last scene without errors.`;
     return;
   }
   $("try-said").textContent =

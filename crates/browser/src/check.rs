@@ -11,7 +11,7 @@ use fosssim_judge::{
 };
 use fosssim_model::scene::{self, Scene};
 use fosssim_report::{
-    check::{Check, LOOKED_AT, StepChoice, WrongSteps, is_wrong, looks_like, no_verdict, not_read},
+    check::{Check, SNIFFED_BYTES, StepChoice, WrongSteps, describe_no_verdict, describe_unread, is_wrong, looks_like},
     page, problems,
 };
 use serde::Deserialize;
@@ -41,8 +41,8 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let scene = read_scene(&request.scene, xml)?;
     let fault = ReadFault::new();
     let (mut trace, mut start) = (open(host, request.file, &fault), Vec::new());
-    // Unreadable bytes are reported below.
-    let _ = trace.by_ref().take(LOOKED_AT).read_to_end(&mut start);
+    // Bytes that can't be read are noticed below.
+    let _ = trace.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = looks_like(&start);
     let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
     let (mut told, mut wrong) = (PageProgress { host, all: scene.steps() }, WrongSteps::new(StepChoice::None));
@@ -51,11 +51,11 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let outcome = &examined.outcome;
     // Report judging as complete, because the search for the mistake, which follows, may take as long.
     host.progress(scene.steps(), scene.steps());
-    if let Some(why) = no_verdict(outcome, &request.scene) {
+    if let Some(why) = describe_no_verdict(outcome, &request.scene) {
         return Err(why);
     }
     if let Some(why) = fault.get() {
-        return Err(not_read(outcome, &request.trace, why));
+        return Err(describe_unread(outcome, &request.trace, why));
     }
     let explanations = if is_wrong(outcome) { examined.explain() } else { Vec::new() };
     let check = Check {

@@ -10,7 +10,7 @@ use fosssim_model::{
     sim::{RootSearch, Simulation},
     trace::{Layout, Recorder},
 };
-use fosssim_report::check::{LOOKED_AT, looks_like};
+use fosssim_report::check::{SNIFFED_BYTES, looks_like};
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, io::Read};
 
@@ -50,7 +50,7 @@ pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
     }
     let begins = |name: &&str| library::scene(name).is_some_and(|xml| is_beginning(xml, &start));
     let scenes: Vec<_> = library::names().filter(begins).collect();
-    let kind = looks_like(&start[..start.len().min(LOOKED_AT as usize)]);
+    let kind = looks_like(&start[..start.len().min(SNIFFED_BYTES as usize)]);
     Ok((json!({ "scenes": scenes, "looks_like": kind }), Vec::new()))
 }
 

@@ -80,7 +80,7 @@ impl PageSession {
             }
             PageRequest::Scene { name } => Ok((json!({}), vec![scenes::xml(&name)?.to_vec()])),
             PageRequest::Example => {
-                let (scene, trace) = library::FLAWED;
+                let (scene, trace) = library::FLAWED_TRACE;
                 Ok((json!({ "scene": scene }), vec![trace.to_vec()]))
             }
             PageRequest::Read { name } => check::read_scene(&name, xml).map(|_| (json!({}), Vec::new())),

@@ -59,7 +59,7 @@ impl DroppedSubmission {
                 (std::str::from_utf8(text).map_err(|_| "the suite is not UTF-8")?, dropped)
             }
             _ => (
-                plan::built_in(&name).ok_or_else(|| format!("there is no suite {name}{}", plan::meant(&name)))?,
+                plan::built_in(&name).ok_or_else(|| format!("there is no suite {name}{}", plan::suggest(&name)))?,
                 &[][..],
             ),
         };

@@ -1,16 +1,16 @@
-//! The findings of one rule book in a trace: the same type for both.
+//! The findings of one rule book in a trace; both books use this type.
 use super::{counts::FindingCounts, finding::Finding};
 
-/// The findings of one book.
+/// The findings of one rule book.
 #[derive(Debug, Clone, Default)]
 pub struct BookFindings {
-    /// Counts per kind of finding.
+    /// The number of findings of each kind.
     pub counts: FindingCounts,
-    /// Steps with at least one finding; the initial record is not a step.
+    /// The number of steps with at least one finding; the initial record is not a step.
     pub wrong_steps: u64,
     /// The first finding of each kind that occurred, in the order of [`FindingKind::ALL`](super::FindingKind::ALL).
     pub examples: Vec<Finding>,
-    /// The very first finding.
+    /// The earliest finding of the trace.
     pub first_divergence: Option<Finding>,
 }
 
@@ -25,7 +25,7 @@ impl BookFindings {
         }
     }
 
-    /// Sorts the examples, once all of them are there.
+    /// Sorts the examples after all of them were added.
     pub fn conclude(&mut self) {
         self.examples.sort_by_key(Finding::kind);
     }

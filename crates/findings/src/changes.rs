@@ -21,24 +21,24 @@ impl From<&Grade> for EarlierGrade {
     }
 }
 
-/// The changes of a submission since an earlier grading, in the groups that its grade holds.
+/// The changes of a submission since an earlier grading, in the groups of its grade.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Changes<'a> {
-    /// Points of these groups in the earlier grading, without extra ones; `None` if it had none.
+    /// The points of the compared groups in the earlier grading, without extra points; `None` if it had none.
     pub points: Option<f64>,
-    /// The points that these groups are worth.
+    /// The points that the compared groups are worth.
     pub max_points: f64,
-    /// Scenes that became right.
+    /// The scenes that became right.
     pub right: Vec<&'a SceneGrade>,
-    /// Scenes that are no longer right.
+    /// The scenes that are no longer right.
     pub broke: Vec<&'a SceneGrade>,
-    /// Scenes that fail with another verdict than before, with that verdict.
+    /// The scenes that fail with another verdict than before, each with the earlier verdict.
     pub others: Vec<(&'a SceneGrade, Verdict)>,
 }
 
 impl Grade {
-    /// Returns the changes since the earlier grading, if there is one. Scenes that were not run, now or then, have not
-    /// changed. Groups that are left out of this grade are not compared.
+    /// Returns the changes since the earlier grading, if there is one. A scene that was not run in either grading
+    /// counts as unchanged. Groups that are left out of this grade are not compared.
     #[must_use]
     pub fn changes(&self) -> Option<Changes<'_>> {
         let before = self.before.as_ref()?;

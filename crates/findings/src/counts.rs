@@ -26,7 +26,7 @@ impl FindingCounts {
         self.total() - self.get(FindingKind::Position) - self.get(FindingKind::Velocity)
     }
 
-    /// Returns the sum over all kinds.
+    /// Returns the number of findings of all kinds.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.0.iter().sum()

@@ -6,25 +6,25 @@ use super::{
 };
 use serde::{Deserialize, Serialize};
 
-/// The part of a trace that a report may show. With the lowest hints there is none.
+/// The part of a trace that a report may show; the lowest level of hints shows none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Disclosure {
-    /// The book whose verdict counts.
+    /// The rule book whose verdict counts.
     pub official: Book,
     /// The findings of the original's rules.
     pub parity: DisclosedBook,
     /// The findings of the fair rules, if requested.
     pub fair: Option<DisclosedBook>,
-    /// The residuals (oracle-behavior.md 6.3), which are values: with full hints only.
+    /// The residuals (oracle-behavior.md 6.3). They are values, so only full hints show them.
     pub residuals: Option<Residuals>,
-    /// The first damage that reading passed over.
+    /// The first damage that the reader skipped.
     pub damage: Option<Damage>,
     /// Whether bytes follow the last record.
     pub trailing_bytes: bool,
 }
 
 impl Disclosure {
-    /// Returns all that judging found.
+    /// Creates a disclosure of everything that judging found.
     #[must_use]
     pub fn from_outcome(judged: &Outcome, rules: Rules) -> Self {
         let book = |book: Book| {
@@ -47,7 +47,7 @@ impl Disclosure {
         }
     }
 
-    /// Returns the findings of the book whose verdict counts; the original's, if the fair one was not requested.
+    /// Returns the findings of the official rule book, or the original's if the fair rules were not requested.
     #[must_use]
     pub fn official(&self) -> &DisclosedBook {
         match (self.official, &self.fair) {
@@ -62,11 +62,11 @@ impl Disclosure {
 pub struct DisclosedBook {
     /// The book's verdict.
     pub ruling: Ruling,
-    /// Steps with at least one finding.
+    /// The number of steps with at least one finding.
     pub wrong_steps: u64,
     /// The number of findings of each kind.
     pub counts: FindingCounts,
-    /// The very first finding.
+    /// The earliest finding.
     pub first_divergence: Option<DisclosedFinding>,
     /// The first finding of each kind.
     pub examples: Vec<DisclosedFinding>,
@@ -77,14 +77,14 @@ pub struct DisclosedBook {
 pub enum DisclosedFinding {
     /// The place and the kind of the finding, without values.
     Place {
-        /// The step, from 1; 0 for the first record.
+        /// The step number, from 1; 0 for the first record.
         step: u32,
         /// The finding's kind.
         kind: FindingKind,
-        /// The place in the step.
+        /// The place of the finding in its step.
         place: FindingPlace,
     },
-    /// Everything.
+    /// The whole finding, with its values.
     Full(Finding),
 }
 

@@ -1,12 +1,13 @@
-//! The grade of an earlier grading, reduced to what a later one is compared with.
+//! The parts of an earlier grade that a later one is compared with.
 use serde::{Deserialize, Serialize};
 
-/// The part of an earlier grade with which a later one is compared. It reads `grade --format json` of any version.
+/// The parts of an earlier grade that a later one is compared with. They are read from `grade --format json` of any
+/// version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EarlierGrade {
     /// The submission's name.
     pub submission: String,
-    /// Groups in the suite's order.
+    /// The groups, in the suite's order.
     pub groups: Vec<EarlierGroup>,
 }
 

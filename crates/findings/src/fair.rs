@@ -7,11 +7,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairVerdict {
-    /// All rules are met.
+    /// The trace meets all rules.
     Accepted,
-    /// A rule is not met.
+    /// The trace breaks a rule.
     Rejected,
-    /// Undecided: judging was given up before its end, and nothing was wrong so far.
+    /// Judging stopped before its end, and found no fault until then.
     #[default]
     None,
 }
@@ -26,24 +26,24 @@ pub enum FairRefusal {
     Damaged,
     /// Bytes follow the last record.
     TrailingBytes,
-    /// Most of its decisions are such that round-off may flip them, and differ from the reference's: it shows nothing.
+    /// Most decisions of the trace are borderline and differ from the reference's, so the trace proves nothing.
     Undecided,
 }
 
-/// Which of the two accepted forms of the particle-edge approach polynomial a trace uses.
+/// The form of the particle-edge approach polynomial that a trace uses, of the two accepted ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
-    /// Both are possible: no finding distinguishes them.
+    /// No finding distinguishes the forms.
     #[default]
     Either,
-    /// The course's formula, with its slip in t^3.
+    /// The course's formula, which has a slip in t^3.
     Course,
-    /// The answer that the definition gives.
+    /// The formula that follows from the definition.
     Right,
 }
 
-/// A decision that round-off may flip, and that the trace has the other way.
+/// A decision that round-off may flip, and that differs from the reference's.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Borderline {
     /// The step, from 1.
@@ -52,33 +52,33 @@ pub struct Borderline {
     pub pass: Pass,
     /// The pair.
     pub pair: Pair,
-    /// Whether the trace takes it for a collision.
+    /// Whether the trace reports a collision.
     pub collides: bool,
 }
 
-/// The largest shares of their tolerances that right values used, 0 to 1; 0 where nothing differed.
+/// The largest shares of the tolerances that right values used, 0 to 1; 0 if no value differed.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Shares {
-    /// Polynomial coefficients.
+    /// The share of polynomial coefficients.
     #[serde(rename = "coefficients", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub coefficient: f64,
-    /// Contact normals.
+    /// The share of contact normals.
     #[serde(rename = "normals", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub normal: f64,
-    /// Positions.
+    /// The share of positions.
     #[serde(rename = "positions", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub position: f64,
-    /// Velocities.
+    /// The share of velocities.
     #[serde(rename = "velocities", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub velocity: f64,
 }
 
 impl Shares {
-    /// Takes the larger share of each.
+    /// Keeps the larger of both shares of each quantity.
     pub fn widen(&mut self, other: &Self) {
         self.coefficient = self.coefficient.max(other.coefficient);
         self.normal = self.normal.max(other.normal);
@@ -92,25 +92,24 @@ impl Shares {
 pub struct Judgement {
     /// The verdict.
     pub verdict: FairVerdict,
-    /// The reason why the trace is rejected as a whole, whatever its steps hold.
+    /// The reason why the whole trace is rejected, independent of its steps.
     pub refusal: Option<FairRefusal>,
     /// The findings by the fair rules.
     pub findings: BookFindings,
-    /// The first step that was not judged any more, because that would have taken too much work, or because the scene
-    /// itself has no result there.
+    /// The first step that was not judged, because it would take too much work or the scene has no result there.
     pub given_up: Option<u32>,
     /// The number of decisions about pairs in the trace, in all steps and passes.
     pub decisions: u64,
-    /// The number of borderline decisions that the trace has the other way.
+    /// The number of borderline decisions that differ from the reference's.
     pub borderline: u64,
-    /// The first of these decisions.
+    /// The first differing borderline decisions.
     pub borderline_examples: Vec<Borderline>,
-    /// The factor of all polynomials of all kinds as an interval, where it is not 1.
+    /// The interval of the common factor of all polynomials; `None` if the factor is 1.
     pub factor: Option<[f64; 2]>,
     /// The form of the approach polynomial.
     pub form: Form,
     /// The number of polynomials that lack other small coefficients than the reference's.
     pub lost: u64,
-    /// Used shares of the tolerances.
+    /// The used shares of the tolerances.
     pub shares: Shares,
 }

@@ -1,4 +1,4 @@
-//! Findings: the faults of a step, and their places.
+//! Findings, which are faults of a step with their places.
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, StepError},
     trace::LoggedImpulse,
@@ -7,7 +7,7 @@ use fosssim_num::polynomial::Polynomial;
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The kinds of findings, in the order in which reports list them.
+    /// The kinds of findings, in the order of reports.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
     #[serde(rename_all = "snake_case")]
     pub enum FindingKind {
@@ -21,7 +21,7 @@ fosssim_num::closed_set! {
         PolynomialCount = "wrong number of polynomials",
         /// A polynomial has another number of coefficients.
         PolynomialDegree = "wrong polynomial degree",
-        /// The reference's coefficients are all tiny, the trace's are not.
+        /// The reference's coefficients are all tiny, but the trace's are not.
         VanishingPolynomial = "polynomial should vanish",
         /// A coefficient differs after rescaling.
         Coefficient = "wrong coefficient",
@@ -39,20 +39,20 @@ fosssim_num::closed_set! {
         RecordsDiffer = "contradicting records",
         /// Fair rules: the trace holds a log that the course's library can't have written.
         ImpossibleLog = "impossible log",
-        /// Fair rules: coefficients that were lost as too small change a decision.
+        /// Fair rules: coefficients that were dropped as too small change a decision.
         TrimmedDecision = "decision changed by lost coefficients",
         /// Fair rules: the two accepted forms of the approach polynomial are mixed.
         MixedForms = "mixed forms of the approach",
-        /// Fair rules: the penalty force between two bodies was left out, or applied twice.
+        /// Fair rules: the penalty force between two bodies was left out or applied twice.
         PairForce = "force of a pair left out or doubled",
-        /// Fair rules: from the step's state, or with its polynomials, no next state exists.
+        /// Fair rules: no next state exists, from the step's state or with its polynomials.
         NoResult = "no next state",
     }
 }
 
 impl FindingKind {
-    /// Returns the original's message for it; `None` for positions and velocities, which only raise residuals, and for
-    /// what the original does not check.
+    /// Returns the original's message for the kind. `None` for positions and velocities, which only raise residuals,
+    /// and for kinds that the original does not check.
     #[must_use]
     pub const fn original_message(self) -> Option<&'static str> {
         match self {
@@ -68,14 +68,14 @@ impl FindingKind {
     }
 }
 
-/// One thing that is wrong.
+/// One fault of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
-    /// The step, from 1.
+    /// The step number, from 1.
     pub step: u32,
     /// The frame of the trace that was compared, from 0 (the initial record).
     pub frame: u64,
-    /// The fault, with its values.
+    /// The fault and its values.
     pub detail: FindingDetail,
 }
 
@@ -109,47 +109,48 @@ impl Finding {
 /// A fault, with expected (reference) and actual (trace) values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum FindingDetail {
-    /// The reference collides here, the trace does not.
+    /// A collision of the reference is missing in the trace.
     MissedCollision {
         /// The reference's collision.
         expected: Impulse,
     },
-    /// The trace collides here, the reference does not.
+    /// A collision of the trace is missing in the reference.
     SuperfluousCollision {
         /// The trace's collision.
         actual: LoggedImpulse,
     },
-    /// Both collide here, along different normals.
+    /// Both have the collision, with different normals.
     WrongNormal {
         /// The reference's collision.
         expected: Impulse,
         /// The trace's first collision of the same pair.
         actual: LoggedImpulse,
-        /// Euclidean distance of the normals.
+        /// The Euclidean distance of the normals.
         #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
-    /// Another number of polynomials.
+    /// The number of polynomials differs.
     PolynomialCount {
-        /// Logged by the reference.
+        /// The number of polynomials of the reference.
         expected: usize,
-        /// Logged by the trace.
+        /// The number of polynomials of the trace.
         actual: usize,
-        /// Polynomials of one detection pass over all pairs, with which missing or surplus passes are counted.
+        /// The number of polynomials in one detection pass over all pairs, by which missing and surplus passes are
+        /// counted.
         per_pass: usize,
     },
-    /// Another number of detection passes in one part of the step (fair rules).
+    /// The number of detection passes differs in one part of the step (fair rules).
     PassCount {
-        /// The part.
+        /// The part of the step.
         part: Part,
-        /// Passes of the reference.
+        /// The number of passes of the reference.
         expected: usize,
-        /// Passes in the trace.
+        /// The number of passes of the trace.
         actual: usize,
     },
-    /// Another number of coefficients.
+    /// The number of coefficients differs.
     PolynomialDegree {
-        /// Which polynomial.
+        /// The place of the polynomial.
         place: PolynomialPlace,
         /// The reference's polynomial.
         expected: Polynomial,
@@ -158,9 +159,9 @@ pub enum FindingDetail {
         /// The trace's first coefficients (at most six).
         actual: Polynomial,
     },
-    /// The reference's polynomial vanishes, the trace's does not.
+    /// The reference's polynomial vanishes, but the trace's does not.
     VanishingPolynomial {
-        /// Which polynomial.
+        /// The place of the polynomial.
         place: PolynomialPlace,
         /// The reference's polynomial.
         expected: Polynomial,
@@ -169,17 +170,17 @@ pub enum FindingDetail {
     },
     /// A coefficient differs.
     Coefficient {
-        /// Which polynomial.
+        /// The place of the polynomial.
         place: PolynomialPlace,
-        /// The highest power of t whose coefficient differs once the factor on which most agree is taken out.
+        /// The highest power of t whose coefficient differs after division by the factor of most coefficients.
         power: usize,
-        /// The reference's coefficient times that factor.
+        /// The reference's coefficient, multiplied by that factor.
         #[serde(with = "fosssim_num::written")]
         expected: f64,
         /// The trace's coefficient.
         #[serde(with = "fosssim_num::written")]
         actual: f64,
-        /// The distance between both.
+        /// The distance between both coefficients.
         #[serde(with = "fosssim_num::written")]
         residual: f64,
         /// The values that the original compares; `None` from the fair rules.
@@ -189,7 +190,7 @@ pub enum FindingDetail {
         /// The trace's whole polynomial.
         actual_polynomial: Polynomial,
     },
-    /// A position differs by more than the bound of the maximum residual.
+    /// A position differs by more than the bound of the maximum position residual.
     Position {
         /// The particle.
         particle: usize,
@@ -199,11 +200,11 @@ pub enum FindingDetail {
         /// The trace's position (x, y).
         #[serde(with = "fosssim_num::written")]
         actual: [f64; 2],
-        /// Euclidean distance.
+        /// The Euclidean distance of the positions.
         #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
-    /// A velocity differs by more than the bound of the maximum residual.
+    /// A velocity differs by more than the bound of the maximum velocity residual.
     Velocity {
         /// The particle.
         particle: usize,
@@ -213,58 +214,58 @@ pub enum FindingDetail {
         /// The trace's velocity (x, y).
         #[serde(with = "fosssim_num::written")]
         actual: [f64; 2],
-        /// Euclidean distance.
+        /// The Euclidean distance of the velocities.
         #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
-    /// The time of impact is not where the polynomials turn positive (fair rules).
+    /// The time of impact is not the time when the polynomials become positive (fair rules).
     ContactTime {
         /// The reference's collision.
         expected: Impulse,
-        /// The trace's.
+        /// The trace's collision.
         actual: LoggedImpulse,
     },
-    /// A collision that the trace already has (fair rules).
+    /// The trace repeats a collision (fair rules).
     RepeatedCollision {
-        /// The repetition.
+        /// The repeated collision.
         actual: LoggedImpulse,
     },
-    /// A polynomial of a pair that a response or the failsafe has moved fits neither (fair rules). It may be right:
-    /// then the particles' positions are wrong.
+    /// The polynomial of a pair that a response or the failsafe has moved matches neither motion (fair rules). If the
+    /// polynomial is right, the particles' positions are wrong.
     PassPositions {
-        /// The first such polynomial.
+        /// The place of the first such polynomial.
         place: PolynomialPlace,
     },
     /// The mid record and the end record of the step contradict each other (fair rules).
     RecordsDiffer {
-        /// In what.
+        /// The part of the record that differs.
         part: RecordPart,
     },
-    /// A polynomial with more coefficients than any detection has, or with small leading ones, which the course's
+    /// A polynomial has more coefficients than any detection computes, or small leading ones, which the course's
     /// library drops (fair rules).
     ImpossibleLog,
-    /// The trace's polynomials lack coefficients, as if the course's library had dropped them because of a factor, and
-    /// this decision depends on them (fair rules).
+    /// The trace's polynomials lack coefficients that the course's library drops after a scaling, and a decision
+    /// depends on them (fair rules).
     TrimmedDecision {
-        /// The pair's first polynomial.
+        /// The place of the pair's first polynomial.
         place: PolynomialPlace,
         /// Whether the pair collides.
         collides: bool,
     },
-    /// The trace's polynomials lack coefficients, as where the course's library drops them because of a factor, and
-    /// this time of impact is theirs (fair rules).
+    /// The trace's polynomials lack coefficients that the course's library drops after a scaling, and a time of impact
+    /// depends on them (fair rules).
     TrimmedTime {
-        /// The pair's first polynomial.
+        /// The place of the pair's first polynomial.
         place: PolynomialPlace,
-        /// The time of impact without the loss.
+        /// The time of impact with all coefficients.
         #[serde(with = "fosssim_num::written")]
         expected: f64,
         /// The time of impact that the trace's polynomials have.
         #[serde(with = "fosssim_num::written")]
         actual: f64,
     },
-    /// A state from which nothing can be right or wrong any more: without numbers, or of another size altogether than
-    /// anything that the scene leads to (fair rules).
+    /// A state that cannot be judged: it holds NaN, or its size is far beyond every state that the scene leads to (fair
+    /// rules).
     BeyondReach {
         /// The particle.
         particle: usize,
@@ -275,21 +276,21 @@ pub enum FindingDetail {
         #[serde(with = "fosssim_num::written")]
         velocity: [f64; 2],
     },
-    /// The approach polynomial has the other of its two accepted forms than before (fair rules).
+    /// The approach polynomial switches to the other of its two accepted forms (fair rules).
     MixedForms {
-        /// The first such polynomial.
+        /// The place of the first such polynomial.
         place: PolynomialPlace,
     },
-    /// Two bodies are within reach of the penalty force, and it was left out, or applied twice (fair rules).
+    /// The penalty force between two near bodies was left out or applied twice (fair rules).
     PairForce {
-        /// The bodies.
+        /// The two bodies.
         pair: Pair,
         /// Whether it was applied twice.
         is_doubled: bool,
     },
-    /// From the trace's own state, or with its own polynomials, no next state exists (fair rules).
+    /// No next state exists, from the trace's own state or with its own polynomials (fair rules).
     NoResult {
-        /// The reason.
+        /// The numerical error that ended the step.
         error: StepError,
     },
 }
@@ -326,7 +327,7 @@ impl FindingDetail {
         }
     }
 
-    /// Returns the pair that it is about; `None` if it is about no pair, or the trace names no such pair.
+    /// Returns the pair of the finding; `None` if it has none, or if the trace names objects that do not form a pair.
     #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         match (self, self.place()) {
@@ -337,7 +338,7 @@ impl FindingDetail {
         }
     }
 
-    /// Returns the detection pass that it is about.
+    /// Returns the detection pass of the finding, if it has one.
     #[must_use]
     pub const fn pass(&self) -> Option<Pass> {
         match self.place() {
@@ -350,20 +351,20 @@ impl FindingDetail {
 /// The place of a finding in its step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FindingPlace {
-    /// In no place that could be named.
+    /// The whole step.
     Step,
-    /// At a pair of the scene.
+    /// A pair of the scene.
     Pair(Pair),
-    /// At a polynomial.
+    /// A polynomial of the step.
     Polynomial(PolynomialPlace),
-    /// At a particle.
+    /// A particle, by its index.
     Particle(usize),
-    /// At the objects with these numbers, of which the trace alone speaks.
+    /// Two object numbers that only the trace contains.
     Objects(i32, i32),
 }
 
-/// A coefficient as the original compares it: rescaled by sums of moduli, so that one wrong coefficient moves all
-/// others.
+/// A coefficient as the original compares it: rescaled by the sum of absolute values, so that one wrong coefficient
+/// changes all others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct RescaledCoefficient {
     /// The highest power of t whose coefficient is beyond the original's bound.
@@ -377,7 +378,7 @@ pub struct RescaledCoefficient {
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub actual: f64,
-    /// The distance between both.
+    /// The distance between both coefficients.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub residual: f64,
@@ -386,16 +387,16 @@ pub struct RescaledCoefficient {
 /// A part of a step's collision handling.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Part {
-    /// The part before the mid record: the only pass, or the impulse rounds.
+    /// The part before the mid record: the single pass, or the impulse rounds.
     Impulses,
-    /// Impact zones and the rigid failsafe.
+    /// The impact zones and the rigid failsafe.
     Geometric,
 }
 
 /// The part in which two records of a step contradict each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RecordPart {
-    /// Positions or velocities.
+    /// The positions or velocities.
     State,
     /// The impulse lists.
     Impulses,
@@ -403,21 +404,21 @@ pub enum RecordPart {
     Polynomials,
 }
 
-/// Which polynomial of a step.
+/// The place of a polynomial in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PolynomialPlace {
-    /// The detection pass.
+    /// The detection pass of the polynomial.
     pub pass: Pass,
-    /// The pair.
+    /// The pair that the polynomial belongs to.
     pub pair: Pair,
     /// The role of the polynomial.
     pub role: Role,
-    /// The polynomial's number in the frame's list, from 0.
+    /// The index in the frame's list of polynomials, from 0.
     pub index: usize,
 }
 
 fosssim_num::closed_set! {
-    /// The meaning of a detection polynomial that is positive (collisions.md 2).
+    /// The meaning of a detection polynomial if it is positive (collisions.md 2).
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
     #[serde(rename_all = "snake_case")]
     pub enum Role {

@@ -1,4 +1,4 @@
-//! The grade: what one submission got, scene by scene.
+//! The grade of one submission, scene by scene.
 use super::{
     Hints, Rules,
     earlier::EarlierGrade,
@@ -13,37 +13,37 @@ use fosssim_model::assignments::Assignment;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, ops::Deref, time::Duration};
 
-/// The visibility of a group's results, in Gradescope's words.
+/// The visibility of a group's results, in Gradescope's terms.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
-    /// Everybody sees it immediately.
+    /// The results are visible immediately.
     Visible,
-    /// Staff only.
+    /// The results are visible only to staff.
     Hidden,
-    /// Students, after the due date.
+    /// The results are visible to students after the due date.
     AfterDueDate,
-    /// Students, after grades are published.
+    /// The results are visible to students after grades are published.
     AfterPublished,
 }
 
-/// A course's own words on a mistake or a group: reports show them next to ours.
+/// A course's note on a mistake or a group; reports show it next to their own text.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct CourseNote {
-    /// A sentence.
+    /// The text of the note.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
-    /// The address of a lecture or a section; `http` or `https`.
+    /// The address of a lecture or a section, with `http` or `https`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
-    /// Points in the course's rubric; shown, never counted.
+    /// The points in the course's rubric, which are shown but not counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<f64>,
 }
 
 impl CourseNote {
-    /// Writes the note in one line: the report decides how text and an address are written.
+    /// Writes the note in one line; `text` and `link` format the text and the address.
     pub fn line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
         let words = self.text.as_deref().map(|words| text(words.trim_end_matches('.')));
         let points = self.points.map(|points| format!("rubric points: {points}"));
@@ -52,71 +52,69 @@ impl CourseNote {
     }
 }
 
-/// A line of text, with the address as it is.
+/// Writes the note in one line, with the unchanged address.
 impl std::fmt::Display for CourseNote {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str(&self.line(str::to_owned, str::to_owned))
     }
 }
 
-/// The greatest number of submissions with the same program that a grade names: output for a class of equal programs
-/// must not grow by its square.
-const MOST_NAMED: usize = 20;
+/// The maximum number of submissions with the same program that a grade names, so that output for a class does not grow
+/// quadratically.
+const MAX_NAMED: usize = 20;
 
 /// The grade of one submission on one suite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Grade {
-    /// The submission's name: its file or folder name.
+    /// The submission's name, which is its file or folder name.
     pub submission: String,
     /// The suite's name.
     pub suite: String,
-    /// The requested rule books; verdicts and points are by the official one.
+    /// The requested rule books; the official one gives verdicts and points.
     pub rules: Rules,
     /// The worst verdict of the groups that count.
     pub verdict: Verdict,
-    /// Points reached, without extra ones; `None` when the grader failed or was stopped before the last scene; no
-    /// student gets a zero for that.
+    /// The points reached, without extra points; `None` if the grader failed or was stopped before the last scene. A
+    /// failure of the grader never gives zero points.
     pub points: Option<f64>,
-    /// The greatest number of points, without extra ones.
+    /// The maximum number of points, without extra points.
     pub max_points: f64,
-    /// Groups in the suite's order.
+    /// The groups, in the suite's order.
     pub groups: Vec<GroupGrade>,
-    /// Whether reports for students show what the program could have chosen, as its output. They do not if groups are
+    /// Whether reports for students show text that the program controls, such as its output. They do not if groups are
     /// hidden, unless the suite allows it.
     pub shows_output: bool,
-    /// The way the build ended, when the suite builds.
+    /// The end of the build, if the suite builds.
     pub build: Option<Build>,
-    /// The weaknesses of the sandbox, in words; empty when every required layer held.
+    /// Warnings about missing layers of the sandbox; empty if every required layer was active.
     pub warnings: Vec<String>,
-    /// Layers of the sandbox that were active.
+    /// The layers of the sandbox that were active.
     pub layers: Vec<String>,
-    /// Wall time of all runs together, those taken from an earlier grading included.
+    /// The total wall time of all runs, including reused results.
     pub wall: Duration,
-    /// Keys of mistakes that accepted scenes speak against.
+    /// Keys of mistakes that accepted scenes contradict.
     pub refuted: Vec<String>,
-    /// The milestone of which the program seems to be, if that is not the suite's.
+    /// The milestone that the program seems to implement, if it is not the suite's.
     pub looks_like: Option<Assignment>,
-    /// The common properties of the scenes in which the program crashes or runs into a limit, where hints let them
-    /// through.
+    /// The common properties of the scenes in which the program crashes or exceeds a limit, if hints allow them.
     pub located: Option<LocatedFailure>,
     /// The digest of the program; `None` if there is no program that can be run.
     pub program: Option<String>,
-    /// Other submissions of the class whose programs are equal, byte for byte, at most 20; for staff only.
+    /// Other submissions of the class with an identical program (at most 20), for staff only.
     pub same_program: Vec<String>,
-    /// The earlier grade with which this one is compared.
+    /// The earlier grade that this one is compared with.
     #[serde(default)]
     pub before: Option<EarlierGrade>,
     /// The smallest scene for each cause, if requested.
     #[serde(default)]
     pub smallest: Vec<SmallestScene>,
-    /// The course's own words on mistakes, by their keys.
+    /// The course's notes on mistakes, by the mistakes' keys.
     #[serde(default)]
     pub notes: BTreeMap<String, CourseNote>,
 }
 
 impl Grade {
-    /// Returns the verdict, the points and the maximum that follow from groups. Extra groups count only if there are no
-    /// others.
+    /// Returns the verdict, the points and the maximum of the groups. Extra groups count only if there are no others.
     #[must_use]
     pub fn totals(groups: &[GroupGrade]) -> (Verdict, Option<f64>, f64) {
         let has_others = groups.iter().any(|group| !group.extra);
@@ -129,7 +127,7 @@ impl Grade {
         )
     }
 
-    /// Returns the extra points reached and their maximum; `None` if the suite gives none.
+    /// Returns the extra points reached and their maximum; `None` if the suite gives no extra points.
     #[must_use]
     pub fn extra(&self) -> Option<(f64, f64)> {
         let extra = || self.groups.iter().filter(|group| group.extra);
@@ -137,7 +135,7 @@ impl Grade {
         extra().next().and(reached).map(|reached| (reached, extra().map(|group| group.max_points).sum()))
     }
 
-    /// Notes in each grade of a class which other submissions have the same program.
+    /// Records in each grade of a class which other submissions have the same program.
     pub fn note_same_programs(grades: &mut [Self]) {
         let mut owners: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for grade in grades.iter() {
@@ -148,11 +146,11 @@ impl Grade {
         for grade in grades {
             let same = grade.program.as_ref().map(|program| owners[program].iter());
             let others = same.into_iter().flatten().filter(|other| **other != grade.submission);
-            grade.same_program = others.take(MOST_NAMED).cloned().collect();
+            grade.same_program = others.take(MAX_NAMED).cloned().collect();
         }
     }
 
-    /// Returns whether all groups are for students' eyes.
+    /// Returns whether students may see all groups.
     #[must_use]
     pub fn is_visible(&self) -> bool {
         self.groups.iter().all(|group| group.visibility == Visibility::Visible)
@@ -166,31 +164,31 @@ impl Grade {
         published
     }
 
-    /// Returns the course's own words on a mistake.
+    /// Returns the course's note on a mistake.
     #[must_use]
     pub fn note(&self, mistake: &Explanation) -> Option<&CourseNote> {
         self.notes.get(&mistake.key)
     }
 
-    /// Returns all scenes in order.
+    /// Returns all scenes, in the suite's order.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneGrade> {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
-    /// Returns whether the grader failed somewhere, so that the grade must not reach a student.
+    /// Returns whether the grader failed somewhere. Students must not get such a grade.
     #[must_use]
     pub fn is_our_fault(&self) -> bool {
         self.verdict == Verdict::JudgeError
     }
 
-    /// Returns whether scenes were not run, so that there are no points yet.
+    /// Returns whether scenes were not run, so that there are no points.
     #[must_use]
     pub fn is_incomplete(&self) -> bool {
         self.count(Verdict::NotRun) > 0
     }
 
-    /// Returns the fault of the submission itself, and the reason of each of its scenes: no program that can be run is
-    /// in it, its sources do not build, it is of another milestone, or nothing is written yet.
+    /// Returns the fault of the whole submission, if there is one: it has no runnable program, it does not build, it is
+    /// of another milestone, or nothing is written yet.
     #[must_use]
     pub fn unfit(&self) -> Option<SubmissionFault<'_>> {
         if let Some(other) = self.looks_like {
@@ -207,13 +205,13 @@ impl Grade {
         })
     }
 
-    /// Returns the build, where it made no program.
+    /// Returns the build, if it made no program.
     #[must_use]
     pub fn failed_build(&self) -> Option<&Build> {
         self.build.as_ref().filter(|build| !build.end.is_success())
     }
 
-    /// Returns whether two grades are of one suite: of the same scenes, in the same groups, for the same points.
+    /// Returns whether both grades are of the same scenes, in the same groups and for the same points.
     #[must_use]
     pub fn is_of_the_suite_of(&self, other: &Self) -> bool {
         let alike = |(own, other): (&GroupGrade, &GroupGrade)| {
@@ -226,7 +224,7 @@ impl Grade {
             && self.groups.iter().zip(&other.groups).all(alike)
     }
 
-    /// Returns the number of results that were taken from an earlier run.
+    /// Returns the number of results that were reused from an earlier run.
     #[must_use]
     pub fn taken_over(&self) -> usize {
         self.scenes().filter(|scene| scene.cached).count()
@@ -245,22 +243,22 @@ impl Grade {
     }
 }
 
-/// An entry of a class's folder that is not a submission, and the reason: no entry is left out silently.
+/// An entry of a class's folder that is not a submission, with the reason, so that no entry is left out silently.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct PassedOver {
-    /// The entry's name, as the name of a submission.
+    /// The name that the entry would have as a submission.
     pub name: String,
-    /// Why, in words.
+    /// The reason, as text.
     pub why: String,
 }
 
-/// The build step's end.
+/// The end of the build step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Build {
-    /// The way it ended.
+    /// The way the build ended.
     pub end: BuildEnd,
-    /// The compiler's output, capped; raw text that a report has to escape.
+    /// The compiler's output, truncated; raw text that a report has to escape.
     pub output: String,
 }
 
@@ -269,9 +267,9 @@ pub struct Build {
 pub enum SubmissionFault<'a> {
     /// The submission's build failed.
     Build(&'a BuildEnd),
-    /// The program is of this milestone, and the suite of another.
+    /// The program implements this milestone, and the suite tests another one.
     Milestone(Assignment),
-    /// The words of its first scene, and of all others with it.
+    /// A result that all scenes share; the value is that of the first one.
     Scene(&'a SceneResult),
 }
 
@@ -280,57 +278,58 @@ pub enum SubmissionFault<'a> {
 pub struct GroupGrade {
     /// The group's name.
     pub name: String,
-    /// The readers who see the group.
+    /// The visibility of the group's results.
     pub visibility: Visibility,
-    /// The hints that students get for its scenes.
+    /// The hints that students get for the group's scenes.
     pub hints: Hints,
-    /// Points reached, including those for speed; `None` when a scene or its speed has none.
+    /// The points reached, including those for speed; `None` if a scene or the speed has none.
     pub points: Option<f64>,
-    /// Points that can be reached.
+    /// The maximum number of points.
     pub max_points: f64,
-    /// Whether its points are extra: they count neither in the sum nor in the maximum of the grade.
+    /// Whether the points are extra: they count in neither the sum nor the maximum of the grade.
     #[serde(default)]
     pub extra: bool,
-    /// Whether it gives points only where all of its scenes are accepted.
+    /// Whether the group gives points only if all of its scenes are accepted.
     #[serde(default)]
     pub all_or_nothing: bool,
-    /// Points for speed, where the suite gives any.
+    /// The points for speed, if the suite gives any.
     pub speed: Option<SpeedGrade>,
-    /// The course's own words on the group.
+    /// The course's note on the group.
     #[serde(default)]
     pub note: Option<CourseNote>,
-    /// The worst verdict of its scenes.
+    /// The worst verdict of the group's scenes.
     pub verdict: Verdict,
     /// The group's scenes.
     pub scenes: Vec<SceneGrade>,
 }
 
-/// One scene with its points.
+/// One scene and its points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneGrade {
-    /// The result.
+    /// The result of the scene.
     pub result: SceneResult,
-    /// Points reached; `None` when the grader failed or did not run it; no student gets a zero for that.
+    /// The points reached; `None` if the grader failed or did not run the scene. A failure of the grader never gives
+    /// zero points.
     pub points: Option<f64>,
-    /// Points that can be reached.
+    /// The maximum number of points.
     pub max_points: f64,
-    /// Whether the result was taken from an earlier run.
+    /// Whether the result was reused from an earlier run.
     pub cached: bool,
-    /// The likely mistakes here, the likeliest first. They follow from all scenes together if these name one, else from
-    /// this scene alone (made of [`SceneResult::explanations`]). Reports show these.
+    /// The likely mistakes in the scene, the likeliest first. They come from all scenes together if those name a
+    /// mistake, otherwise from this scene alone ([`SceneResult::explanations`]). Reports show them.
     pub settled: Vec<Explanation>,
-    /// The number of explanations, the first of [`settled`](Self::settled), that all scenes together give.
+    /// The number of explanations, at the start of [`settled`](Self::settled), that come from all scenes together.
     pub agreed: usize,
 }
 
 impl GroupGrade {
-    /// Returns the points that can be reached in its scenes.
+    /// Returns the sum of the maximum points of the group's scenes.
     #[must_use]
     pub fn max_points_of_scenes(&self) -> f64 {
         self.max_points - self.speed.as_ref().map_or(0.0, |speed| speed.marking.points)
     }
 
-    /// Leaves of its scenes and its speed what students may know where groups are hidden from them.
+    /// Removes from the group's scenes and speed what students may not see when groups are hidden.
     pub fn withhold(&mut self) {
         self.scenes.iter_mut().for_each(SceneGrade::withhold);
         if let Some(speed) = &mut self.speed {
@@ -340,7 +339,7 @@ impl GroupGrade {
 }
 
 impl SceneGrade {
-    /// Leaves what students may know where groups are hidden from them ([`SceneResult::withhold`]).
+    /// Removes from the result what students may not see when groups are hidden ([`SceneResult::withhold`]).
     pub fn withhold(&mut self) {
         self.result.withhold();
         (self.settled, self.agreed) = (Vec::new(), 0);

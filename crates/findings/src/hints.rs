@@ -1,21 +1,21 @@
-//! The detail that a report shows its reader, and the parts of findings that remain.
+//! The level of detail in a report, and the cut of findings to that level.
 use super::{
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
     finding::Finding,
 };
 use serde::{Deserialize, Serialize};
 
-/// The detail that a report shows its reader.
+/// The level of detail in a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hints {
-    /// The verdict only.
+    /// Only the verdict.
     None,
-    /// The place: kind, step, pair and polynomial of the first difference.
+    /// Also the place of the first difference: kind, step, pair and polynomial.
     Where,
-    /// The likely mistake in a sentence, too.
+    /// Also the likely mistake, as a sentence.
     What,
-    /// Everything: expected and actual values, and the mistake in detail. May give a right formula away.
+    /// Everything: expected and actual values, and the mistake in detail. This may give a right formula away.
     Full,
 }
 
@@ -37,8 +37,8 @@ impl Hints {
         matches!(self, Self::What | Self::Full)
     }
 
-    /// Cuts the facts about a trace down to this level: nothing at [`Hints::None`]; below [`Hints::Full`] only the
-    /// places and kinds of findings; there everything.
+    /// Cuts the facts about a trace down to the level: nothing at [`Hints::None`], only places and kinds of findings at
+    /// the next levels, everything at [`Hints::Full`].
     #[must_use]
     pub fn disclose(self, all: Disclosure) -> Option<Disclosure> {
         match self {
@@ -62,7 +62,7 @@ impl Hints {
         }
     }
 
-    /// Returns the part that may be shown at both levels.
+    /// Returns the part of a finding that both levels show.
     #[must_use]
     pub const fn cut(self, finding: DisclosedFinding) -> Option<DisclosedFinding> {
         match finding {
@@ -71,7 +71,7 @@ impl Hints {
         }
     }
 
-    /// Returns the part of a finding that may be shown: nothing at [`Hints::None`], no values below [`Hints::Full`].
+    /// Returns the part of a finding that the level shows: nothing at [`Hints::None`], no values below [`Hints::Full`].
     #[must_use]
     pub const fn finding(self, finding: &Finding) -> Option<DisclosedFinding> {
         match self {

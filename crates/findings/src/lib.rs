@@ -1,15 +1,15 @@
 //! The judgement of a submission, as values: findings, the outcome of judging a trace by both rule books, explanations,
 //! results of scenes and grades.
 //!
-//! A fact has one type here, from where it arises to where somebody reads it: `judge` and `mistakes` fill these values,
-//! `grading` keeps them, `report` and `server` read them. They serialize themselves, and read back bit for bit. The
-//! data of an assignment (known mistakes, formulas, letters) are named by their keys.
+//! Every fact has one type, which all crates use: `judge` and `mistakes` fill the values, `grading` keeps them,
+//! `report` and `server` read them. Serialized values are read back bit for bit. The data of an assignment (known
+//! mistakes, formulas, letters) are named by their keys.
 //!
-//! Four types say whether something is accepted, because four things can be. [`parity::Overall`] has the original's
-//! words for a trace (`passed`), [`fair::FairVerdict`] those of the fair rules (`rejected`). Reports are published with
-//! these words, so neither can have the other's. [`Ruling`] has the result of either book in common words, with damage
-//! distinguished from wrong answers. [`Verdict`] is about a run, of which the trace is only a part: a program can also
-//! crash, or meet a limit.
+//! Four types state whether something is accepted, because there are four kinds of results. [`parity::Overall`] has the
+//! original's words for a trace (`passed`), and [`fair::FairVerdict`] has those of the fair rules (`rejected`).
+//! Published reports contain both sets of words, so they stay different. [`Ruling`] has the result of either book in
+//! common words, and distinguishes damage from wrong answers. [`Verdict`] is about a whole run, because a program can
+//! also crash or exceed a limit.
 //!
 //! A finding in words:
 //!

@@ -1,14 +1,14 @@
-//! The common properties of scenes in which a program crashes or runs into a limit, as a value.
+//! The common properties of the scenes in which a program crashes or exceeds a limit.
 use fosssim_ended::RunEnd;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A kind of event, or a value of one of its properties, by their names.
+/// A kind of event, or a property of such events with a value, by their names.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Content {
     /// The kind of event.
     pub family: Cow<'static, str>,
-    /// A property and its value.
+    /// The property's name and its value; `None` for all events of the kind.
     pub value: Option<[Cow<'static, str>; 2]>,
 }
 
@@ -16,17 +16,17 @@ fosssim_num::closed_set! {
     /// The ways in which programs fail.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum FailureKind {
-        /// By a signal.
+        /// The program is killed by a signal.
         Crash = "crash",
-        /// By an exit code of their own.
+        /// The program ends with its own exit code.
         Error = "end with an error code",
-        /// By the limit of time.
+        /// The program exceeds the time limit.
         Time = "run out of time",
-        /// By the limit of memory.
+        /// The program exceeds the memory limit.
         Memory = "need more memory than allowed",
-        /// By a limit of their output.
+        /// The program exceeds an output limit.
         Output = "write more than allowed",
-        /// In several of these ways.
+        /// The program fails in several ways.
         Several = "crash or run into a limit",
     }
 }
@@ -36,22 +36,22 @@ fosssim_num::closed_set! {
 pub struct LocatedFailure {
     /// The way in which the program fails.
     pub failing: FailureKind,
-    /// The contents of all these scenes, the most general first; the scenes can't distinguish them.
+    /// The common contents of all failing scenes, the most general first. The scenes cannot distinguish them.
     pub contents: Vec<Content>,
-    /// The number of scenes in which the program fails; all of them have this content.
+    /// The number of scenes in which the program fails; all of them have the contents.
     pub failed: usize,
-    /// The number of scenes with this content.
+    /// The number of scenes with the contents.
     pub with: usize,
-    /// The number of scenes that were run and do not contain it; the program fails in none of these.
+    /// The number of run scenes without the contents; the program fails in none of them.
     pub without: usize,
-    /// The first scene in which it fails.
+    /// The first scene in which the program fails.
     pub first: String,
-    /// The step of the last complete record there; 0 for the first record.
+    /// The step of the last complete record in that scene; 0 for the first record.
     pub step: u32,
 }
 
 impl FailureKind {
-    /// Returns the failure of a program that ended so; `None` if it ended well, or if its end does not show it.
+    /// Returns the kind of failure for an end of a program; `None` if it ended well, or if the kind is unknown.
     #[must_use]
     pub const fn from_end(ended: &RunEnd) -> Option<Self> {
         match ended {

@@ -1,4 +1,4 @@
-//! The verdict on one trace.
+//! The result of judging one trace.
 use super::{fair, parity};
 use fosssim_model::{
     assignments::CollisionType,
@@ -9,24 +9,24 @@ use fosssim_model::{
 /// The reason why grading stopped before its end.
 #[derive(Debug, Clone)]
 pub enum Stop {
-    /// The trace can't be read further; the original reports that and stops.
+    /// The trace cannot be read further. The original reports that and stops.
     Trace {
         /// The frame that could not be read, from 0.
         frame: u64,
-        /// The step to which it belongs; 0 for the initial record.
+        /// The step of that frame; 0 for the initial record.
         step: u32,
         /// The reason why it could not be read.
         cause: Unreadable,
-        /// Byte offset of the damage.
+        /// The byte offset of the damage.
         offset: u64,
-        /// The damage.
+        /// The kind of damage.
         what: Malformation,
     },
-    /// Judging took more work than a trace may cause; or, by the original's rules, a step has no result.
+    /// Judging needed more work than a trace may cause, or a step has no result by the original's rules.
     Step(StepError),
 }
 
-/// Damage that the original's reading passes over in silence.
+/// Damage that the original's reader skips silently.
 pub use fosssim_model::trace::TraceError as Damage;
 
 /// The result of judging one trace.
@@ -36,27 +36,27 @@ pub struct Outcome {
     pub parity: parity::Judgement,
     /// The judgement by the fair rules, if requested.
     pub fair: Option<Box<fair::Judgement>>,
-    /// Steps that were judged.
+    /// The number of judged steps.
     pub steps_judged: u32,
-    /// Steps of the scene.
+    /// The number of steps of the scene.
     pub steps: u32,
     /// The scene's collision handling.
     pub collisions: CollisionType,
     /// The reason why grading stopped early.
     pub stop: Option<Stop>,
-    /// The first damage that the original's reading passes over in silence, see [`Damage`].
+    /// The first damage that the original's reader skips silently.
     pub damage: Option<Damage>,
-    /// Judged steps whose records are damaged, or come after one that is. Their findings count for the original, but
-    /// prove nothing about the program that wrote the trace: they are no wrong steps, and no example is among them.
+    /// The number of judged steps whose records are damaged, or come after a damaged one. Their findings count for the
+    /// original, but prove nothing about the program. They do not count as wrong steps, and no example is from them.
     pub damaged_steps: u32,
-    /// Whether bytes follow the last record; the original never reads them.
+    /// Whether bytes follow the last record, which the original does not read.
     pub trailing_bytes: bool,
-    /// Root searches of the reference.
+    /// The number of root searches of the reference.
     pub searches: SearchCounts,
 }
 
 impl Outcome {
-    /// Creates the account when nothing is judged yet.
+    /// Creates the outcome before the first step is judged.
     #[must_use]
     pub fn empty(steps: u32) -> Self {
         Self {
@@ -73,7 +73,7 @@ impl Outcome {
         }
     }
 
-    /// Draws the verdict of the original's rules.
+    /// Sets the verdict of the original's rules.
     pub fn conclude(&mut self) {
         self.parity.conclude(self.stop.is_some(), self.steps_judged == self.steps);
     }

@@ -10,9 +10,9 @@ use serde::{Deserialize, Serialize};
 pub enum Overall {
     /// All five conditions hold.
     Passed,
-    /// A residual or a message does not pass.
+    /// A residual is too large, or a message was written.
     Failed,
-    /// Grading did not come to its end; there is no verdict.
+    /// Grading did not reach its end, so there is no verdict.
     #[default]
     None,
 }
@@ -20,19 +20,19 @@ pub enum Overall {
 /// The four residuals (oracle-behavior.md 6.3), in scene units.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Residuals {
-    /// Sum of all position residuals.
+    /// The sum of all position residuals.
     #[serde(rename = "accumulated_position_residual", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub accumulated_position: f64,
-    /// Sum of all velocity residuals.
+    /// The sum of all velocity residuals.
     #[serde(rename = "accumulated_velocity_residual", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub accumulated_velocity: f64,
-    /// Largest position residual; NaN never raises it.
+    /// The largest position residual, ignoring NaN.
     #[serde(rename = "maximum_position_residual", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub maximum_position: f64,
-    /// Largest velocity residual; NaN never raises it.
+    /// The largest velocity residual, ignoring NaN.
     #[serde(rename = "maximum_velocity_residual", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub maximum_velocity: f64,
@@ -40,7 +40,7 @@ pub struct Residuals {
 
 impl Residuals {
     /// Returns the residuals with their bounds, in the original's order: accumulated position and velocity, maximum
-    /// position and velocity. A residual passes when it is strictly below its bound; NaN fails.
+    /// position and velocity. A residual passes if it is strictly below its bound; NaN fails.
     #[must_use]
     pub const fn with_bounds(&self) -> [(f64, f64); 4] {
         [
@@ -57,19 +57,19 @@ impl Residuals {
 pub struct Judgement {
     /// The verdict.
     pub overall: Overall,
-    /// The residuals, also of an incomplete run.
+    /// The residuals, which exist for an incomplete run, too.
     pub residuals: Residuals,
-    /// Whether collisions passed; polynomials count as collisions. `None` without a verdict.
+    /// Whether collisions passed, including polynomials; `None` without a verdict.
     pub collisions_passed: Option<bool>,
     /// The findings.
     pub findings: BookFindings,
-    /// The first step without a result, in which the original computes without end or gives up; later steps are not
+    /// The first step without a result, because the original does not terminate or gives up; later steps are not
     /// judged.
     pub endless: Option<StepError>,
 }
 
 impl Judgement {
-    /// Draws the verdict, when nothing ended judging (oracle-behavior.md 6).
+    /// Sets the verdict, unless judging stopped early (oracle-behavior.md 6).
     pub fn conclude(&mut self, is_stopped: bool, is_complete: bool) {
         self.findings.conclude();
         if is_stopped || self.endless.is_some() {
@@ -77,7 +77,7 @@ impl Judgement {
         }
         let passed = self.findings.counts.collisions() == 0;
         self.collisions_passed = Some(passed);
-        // Strict, and NaN fails.
+        // The comparison is strict, and NaN fails.
         let residuals_pass = self.residuals.with_bounds().iter().all(|(residual, bound)| residual < bound);
         self.overall = if passed && residuals_pass && is_complete { Overall::Passed } else { Overall::Failed };
     }

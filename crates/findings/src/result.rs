@@ -1,4 +1,4 @@
-//! Results of scenes, as values: `report::words` makes sentences of them, `grading::score` the points.
+//! Results of scenes, as values; `report::words` makes sentences of them, and `grading::score` points.
 use super::{
     cause::Cause,
     disclosure::Disclosure,
@@ -16,44 +16,44 @@ use std::{path::PathBuf, time::Duration};
 
 pub use fosssim_ended::{RunEnd, StartProblem};
 
-/// The result of one scene: everything but its points, which follow from the suite. It holds all that staff may know;
-/// reports for students are made of what `mistakes::together::told_to_students` leaves of it.
+/// The result of one scene: everything but its points, which follow from the suite. It holds everything that staff may
+/// see; `mistakes::together::told_to_students` makes the reduced version for students.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneResult {
     /// The scene's name, `Group/name`.
     pub scene: String,
     /// The verdict.
     pub verdict: Verdict,
-    /// The reason why that is the verdict.
+    /// The reason for the verdict.
     pub reason: Reason,
-    /// The way the program ended, if it was run.
+    /// The end of the program, if it was run.
     pub ended: Option<RunEnd>,
-    /// The rule of the original that makes the two rule books come to different verdicts about the trace, if they do.
+    /// The rule of the original that makes the two rule books disagree about the trace, if they do.
     pub differs: Option<Cause>,
     /// The part of the trace that a report may show.
     pub disclosure: Option<Disclosure>,
     /// Likely mistakes, the likeliest first.
     pub explanations: Vec<Explanation>,
-    /// Steps without a finding, of all steps.
+    /// The number of steps without a finding.
     pub right_steps: u32,
-    /// Steps of the scene.
+    /// The number of steps of the scene.
     pub steps: u32,
     /// The measurements, which differ from run to run.
     pub measured: Measurements,
-    /// Timed runs, where the suite gives points for speed and all scenes of the group are accepted.
+    /// The timed runs, if the suite gives points for speed and all scenes of the group are accepted.
     pub timing: Option<Timing>,
-    /// The program's standard output, capped; raw text that a report has to escape.
+    /// The program's standard output, truncated; raw text that a report has to escape.
     pub stdout: String,
-    /// The program's standard error, capped; raw text that a report has to escape.
+    /// The program's standard error, truncated; raw text that a report has to escape.
     pub stderr: String,
-    /// The name of the card that was drawn of its trace.
+    /// The name of the card that shows the trace.
     pub card: Option<String>,
-    /// The name of the card for students, if hints let them see less and such a card was requested.
+    /// The name of the students' card, if hints show them less and such a card was requested.
     pub card_for_students: Option<String>,
 }
 
 impl SceneResult {
-    /// Returns a scene without a run, with the reason.
+    /// Creates the result of a scene that was not run.
     #[must_use]
     pub fn without_run(scene: &str, steps: u32, verdict: Verdict, reason: Reason) -> Self {
         Self {
@@ -75,9 +75,9 @@ impl SceneResult {
         }
     }
 
-    /// Leaves the verdict, and nothing else that the program could have chosen: a program that was run on a hidden
-    /// scene could reveal it by an exit code, a signal, the first wrong step, a picture, its time or its memory. What
-    /// is the same in every scene stays, and so do names of likely mistakes, of which a report shows few.
+    /// Removes everything except the verdict that the program could have controlled. A program could reveal a hidden
+    /// scene by an exit code, a signal, the first wrong step, a picture, its time or its memory. Values that are the
+    /// same in every scene stay, and so do the names of likely mistakes.
     pub fn withhold(&mut self) {
         let harmless = match &self.reason {
             Reason::Right | Reason::Wrong(WrongTrace::Nothing) | Reason::NoTrace => true,
@@ -96,16 +96,16 @@ impl SceneResult {
     }
 }
 
-/// The measurements of a run; all other values of a result follow from the program and the scene.
+/// The measurements of a run, which vary; all other values of a result depend only on the program and the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Measurements {
-    /// Processor time of the program.
+    /// The processor time of the program.
     pub cpu: Duration,
-    /// Wall time of the run.
+    /// The wall time of the run.
     pub wall: Duration,
-    /// The time that judging and explaining took beyond that.
+    /// The additional time for judging and explaining.
     pub judging: Duration,
-    /// Peak memory of the program in bytes, when known.
+    /// The peak memory of the program in bytes, if known.
     pub memory: Option<u64>,
 }
 
@@ -120,11 +120,11 @@ pub enum Reason {
     Trace(BadTrace),
     /// The program wrote no trace.
     NoTrace,
-    /// The way in which the program ended ([`SceneResult::ended`]), and its progress.
+    /// The program failed. The end is in [`SceneResult::ended`]; the value is the program's progress.
     Program(ProgramProgress),
     /// The scene was left out.
     LeftOut(NotRunReason),
-    /// Grading was stopped.
+    /// Grading was interrupted.
     Stopped,
     /// The sources do not build.
     DoesNotBuild,
@@ -136,124 +136,124 @@ pub enum Reason {
     Failed(Failure),
 }
 
-/// The fault of a trace, with what hints allow.
+/// The fault of a trace, as far as hints allow.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum WrongTrace {
     /// Hints hide the fault.
     Untold,
-    /// In that nothing is logged: no polynomial and no collision.
+    /// The trace logs no polynomials and no collisions.
     Nothing,
-    /// In its first record alone.
+    /// Only the first record is wrong.
     FirstRecord(FindingKind),
-    /// In steps.
+    /// Some steps are wrong.
     Steps {
         /// The number of wrong steps.
         wrong: u64,
-        /// The first such step.
+        /// The number of the first wrong step.
         first: u32,
-        /// The first fault there.
+        /// The kind of the first fault in that step.
         kind: FindingKind,
     },
-    /// Only in that its records are damaged.
+    /// The only fault is that records are damaged.
     Damaged,
-    /// In no step: small errors add up beyond the tolerance.
+    /// No step is wrong, but small errors add up beyond the tolerance.
     SmallErrors,
-    /// In that a step has no result, where the original computes without end.
+    /// A step has no result, because the original does not terminate.
     NoResult(StepError),
-    /// By the fair rules: in that most of its decisions differ from the reference's, though round-off may flip them.
+    /// Fair rules: most decisions are borderline and differ from the reference's.
     Borderline,
-    /// In nothing so far, but judging it was given up.
+    /// No difference was found before judging stopped.
     Undecided,
 }
 
 /// The reason why a trace can't be read to its end.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum BadTrace {
-    /// A record can't be read.
+    /// A record cannot be read.
     Unreadable {
-        /// The frame, from 0.
+        /// The index of the frame, from 0.
         frame: u64,
         /// The step to which it belongs; 0 for the first record.
         step: u32,
-        /// Which part of the record, or why not.
+        /// The part of the record, or the reason why it cannot be read.
         cause: Unreadable,
-        /// Byte offset of the damage.
+        /// The byte offset of the damage.
         offset: u64,
         /// The damage that the reader reported.
         damage: Malformation,
     },
-    /// The trace holds the states of all steps, and nothing of collisions.
+    /// The trace holds the states of all steps, but no collisions.
     StatesOnly,
-    /// By the fair rules: it is damaged.
+    /// Fair rules: the trace is damaged.
     Damaged,
-    /// By the fair rules: bytes follow its last record.
+    /// Fair rules: bytes follow the last record.
     TrailingBytes,
 }
 
-/// The progress of a program, and the limit that stopped it, if one did.
+/// The progress of a program, and the limit that stopped it, if any.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ProgramProgress {
-    /// The limit.
+    /// The limit that stopped the program.
     pub limit: Option<Limit>,
-    /// Steps whose records were complete.
+    /// The number of steps with complete records.
     pub steps: u32,
 }
 
 /// A limit of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Limit {
-    /// The time on the processor or on the clock; the program's end says which.
+    /// The limit of processor time or wall time; the program's end says which.
     Time(Duration),
-    /// The memory, in bytes.
+    /// The memory limit, in bytes.
     Memory(u64),
 }
 
-/// The reason why a scene is not run any more.
+/// The reason why a scene is not run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotRunReason {
-    /// This number of scenes in a row ran into a limit of time, memory or output; the verdict is the worst of theirs.
+    /// Several scenes in a row exceeded a limit of time, memory or output.
     Limits {
-        /// How many.
+        /// The number of those scenes.
         scenes: u32,
-        /// The worst of their verdicts.
+        /// The worst verdict of those scenes.
         verdict: Verdict,
     },
-    /// The submission has used up its time.
+    /// The submission has used up its total time, which is the value.
     Total(Duration),
-    /// A scene is not accepted, and the grading was to stop there.
+    /// A scene is not accepted, and the grading stops at the first such scene.
     FailFast,
 }
 
-/// The reason why a submission can't be run: its own fault.
+/// The reason why a submission cannot be run, which is its own fault.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UnusableReason {
-    /// The program can't be started.
+    /// The program cannot be started.
     CouldNotStart(StartProblem),
-    /// There is no program of the expected name.
+    /// The folder has no program of the expected name.
     NoProgram {
-        /// That name.
+        /// The expected name.
         sought: String,
-        /// The contents that are there instead.
+        /// The contents of the folder.
         found: FolderContents,
     },
-    /// The program can't be read or copied, for this reason of the operating system or of the copy.
+    /// The program cannot be read or copied; the value is the error message.
     Unreadable(String),
 }
 
-/// The contents of a submission's folder where a program is missing.
+/// The contents of a submission's folder that lacks the program.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FolderContents {
-    /// The folder can't be read, for this reason of the operating system.
+    /// The folder cannot be read; the value is the system's error message.
     Unreadable(String),
     /// The folder is empty.
     Nothing,
     /// The folder holds other files and folders.
     Others {
-        /// The first names in order; folders end in a slash.
+        /// The first names, sorted; names of folders end in a slash.
         names: Vec<String>,
-        /// The number of them besides.
+        /// The number of further names.
         more: usize,
-        /// A file of the right name in another place.
+        /// The path of a file of the right name in another folder, if there is one.
         elsewhere: Option<String>,
     },
 }
@@ -261,15 +261,15 @@ pub enum FolderContents {
 /// A failure of the grader.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
-    /// A fault of the machine, or of the grader's input, in its own words.
+    /// An error of the machine or of the grader's input, as text.
     Machine(String),
-    /// Itself: a panic, with its words and its place in the source.
+    /// A panic of the grader.
     Panic {
-        /// The activity on which it failed; nothing, where that is not known.
+        /// The grader's activity when it failed, if known.
         stage: Option<Activity>,
-        /// The panic.
+        /// The panic message, with its place in the source.
         fault: String,
-        /// The place where the trace is that it failed on.
+        /// The saved trace on which the grader failed.
         trace: Option<SavedTrace>,
     },
 }
@@ -278,11 +278,11 @@ fosssim_num::closed_set! {
     /// The grader's activities.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Activity {
-        /// Comparing the trace with the reference.
+        /// The grader compares the trace with the reference.
         Judging = "judging",
-        /// Looking for the likely mistake.
+        /// The grader looks for the likely mistake.
         Explaining = "explaining",
-        /// Drawing what pages show of the trace.
+        /// The grader draws the cards for pages.
         Drawing = "drawing",
     }
 }
@@ -296,7 +296,7 @@ pub enum SavedTrace {
     Lost {
         /// The folder for the run.
         folder: PathBuf,
-        /// The reason that the operating system gives.
+        /// The system's error message.
         error: String,
     },
 }
@@ -306,20 +306,20 @@ pub enum SavedTrace {
 pub enum BuildEnd {
     /// The build made the program.
     Made,
-    /// The build ended in another way than with exit code 0.
+    /// The build did not end with exit code 0.
     Ended(RunEnd),
-    /// The build ended well and made no program of this name.
+    /// The build ended well, but made no program of this name.
     MadeNo(String),
-    /// The build's product can't be used, for this reason.
+    /// The built program cannot be used; the value is the reason.
     Unusable(String),
-    /// The sources can't be copied, for this reason.
+    /// The sources cannot be copied; the value is the reason.
     Sources(String),
-    /// The sources lack this script, which builds them.
+    /// The sources lack the script that builds them; the value is its name.
     NoScript(String),
 }
 
 impl BuildEnd {
-    /// Returns whether there is a program.
+    /// Returns whether the build made a program.
     #[must_use]
     pub const fn is_success(&self) -> bool {
         matches!(self, Self::Made)

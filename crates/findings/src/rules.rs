@@ -1,6 +1,6 @@
-//! The rule books that are used, the official one, and the result of each in the same words.
+//! The rule books, the choice between them, and the result of each in common words.
 //!
-//! The parity book is always computed, because everything else builds on its replay; the fair one only on demand.
+//! The parity book is always computed, because everything else builds on its replay; the fair one only if requested.
 use super::{
     book_findings::BookFindings,
     fair,
@@ -16,7 +16,7 @@ pub enum Book {
     /// The original's rules (oracle-behavior.md 4 to 6).
     #[default]
     Parity,
-    /// The rules that round-off, scale and the course's own slip can't change (numerics.md 2).
+    /// The rules that are independent of round-off, scale and the course's slip (numerics.md 2).
     Fair,
 }
 
@@ -25,7 +25,7 @@ fosssim_num::closed_set! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
     #[serde(rename_all = "lowercase")]
     pub enum Rules {
-        /// The original's alone.
+        /// Only the original's rules.
         Parity = "parity",
         /// The fair rules, which give the official verdict.
         Fair = "fair",
@@ -45,7 +45,7 @@ impl Rules {
         }
     }
 
-    /// Returns whether the fair rules judge, too.
+    /// Returns whether the fair rules are requested.
     #[must_use]
     pub const fn ask_fair(self) -> bool {
         !matches!(self, Self::Parity)
@@ -53,22 +53,22 @@ impl Rules {
 }
 
 fosssim_num::closed_set! {
-    /// The verdict of one book, in words that both share.
+    /// The verdict of one rule book, in words that both share.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Ruling {
         /// The trace meets all rules.
         Accepted = "accepted",
-        /// No fault was found, and judging stopped before the end.
+        /// No fault was found before judging stopped.
         Undecided = "undecided",
         /// The trace is wrong.
         WrongAnswer = "wrong answer",
-        /// The trace can't be read to its end. By the fair rules it may also be damaged, or go on after its end.
+        /// The trace cannot be read to its end. By the fair rules it may also be damaged, or have bytes after its end.
         BadTrace = "bad trace",
     }
 }
 
 impl Outcome {
-    /// Returns the verdict by a book; the original's if the fair rules did not judge.
+    /// Returns the verdict of a book, or the original's if the fair rules did not judge.
     #[must_use]
     pub fn ruling(&self, book: Book) -> Ruling {
         match (book, &self.fair) {
@@ -90,9 +90,8 @@ impl Outcome {
         }
     }
 
-    /// Returns the number of steps that are right by a book: all of them only if the trace is accepted. A fault of no
-    /// single step, such as the first record or small errors that add up, counts as one step. Faults that the original
-    /// ignores silently are right for it only if it accepts the whole trace.
+    /// Returns the number of right steps by a book. It is the number of all steps only if the trace is accepted: a
+    /// fault outside of the steps, such as a wrong first record or small errors that add up, counts as one step.
     #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
         let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);
@@ -103,7 +102,7 @@ impl Outcome {
         right.saturating_sub(self.damaged_steps).min(self.steps.saturating_sub(1))
     }
 
-    /// Returns why judging by a book stopped early, if it did.
+    /// Returns the reason why judging by a book stopped early, if it did.
     #[must_use]
     pub fn stop_of(&self, book: Book) -> Option<Stop> {
         let is_parity = book == Book::Parity || self.fair.is_none();
@@ -120,7 +119,7 @@ impl Outcome {
         end.map_or(self.steps_judged, |step| step - 1)
     }
 
-    /// Returns the findings of a book; the original's if the fair rules did not judge.
+    /// Returns the findings of a book, or the original's if the fair rules did not judge.
     #[must_use]
     pub fn findings_by(&self, book: Book) -> &BookFindings {
         match (book, &self.fair) {

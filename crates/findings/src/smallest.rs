@@ -5,51 +5,51 @@ use serde::{Deserialize, Serialize};
 /// The smallest scene for a cause.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SmallestScene {
-    /// The name of the scene that it was made from.
+    /// The name of the original scene.
     pub origin: String,
-    /// The program, as a command names it.
+    /// The path of the program, as commands use it.
     pub program: String,
-    /// The scene, as a file.
+    /// The scene file's content.
     pub xml: String,
     /// The number of bodies.
     pub bodies: usize,
     /// The number of steps.
     pub steps: u32,
-    /// The command that finds the scene again.
+    /// The command that reproduces the scene.
     pub again: String,
-    /// The number of runs of the program.
+    /// The number of times that the program was run.
     pub runs: u32,
-    /// Whether no single attempt makes it smaller; else the search was stopped.
+    /// Whether no single change makes the scene smaller; false if the search was stopped early.
     pub is_minimal: bool,
-    /// The way the program ended, where it did not end well.
+    /// The end of the program, if it did not end well.
     pub note: Option<String>,
-    /// The first thing that is wrong, if hints show it.
+    /// The first fault, if hints show it.
     pub first: Option<DisclosedFinding>,
-    /// Likely mistakes, the cause first.
+    /// The likely mistakes, beginning with the cause.
     pub explanations: Vec<Explanation>,
-    /// The values that differ, in words; with full hints only.
+    /// The values that differ, as text; only with full hints.
     pub differs: Option<String>,
-    /// The reference's computation of the first wrong step; with full hints only.
+    /// The reference's computation of the first wrong step; only with full hints.
     pub by_hand: Option<String>,
     /// The scene's card on a page; with full hints only.
     pub card: Option<String>,
 }
 
 impl SmallestScene {
-    /// Returns the measure by which a scene is smaller than another.
+    /// Returns the size by which scenes are compared.
     #[must_use]
     pub const fn size(&self) -> (u32, usize, usize) {
         (self.steps, self.bodies, self.xml.len())
     }
 
-    /// Returns whether none of these has the same scene, or shows the same cause.
+    /// Returns whether `found` holds no scene with the same content or cause.
     #[must_use]
     pub fn is_new(&self, found: &[Self]) -> bool {
         let cause = |one: &Self| one.explanations.first().filter(|cause| cause.is_vote()).map(Explanation::statement);
         found.iter().all(|one| one.xml != self.xml && (cause(one).is_none() || cause(one) != cause(self)))
     }
 
-    /// Cuts the scene down to what hints allow for students, except for its explanations.
+    /// Reduces the scene to the level of hints, except for its explanations.
     pub fn cut(&mut self, hints: Hints) {
         if hints < Hints::Full {
             (self.differs, self.by_hand, self.card) = (None, None, None);

@@ -1,5 +1,5 @@
-//! Points for speed: the processor time of a submission compared with that of the reference program. Both run in turn,
-//! on one machine. It is never the time on the clock, which other programs change.
+//! Points for speed: the processor time of a submission compared with that of the reference program. Both run
+//! alternately on one machine. Wall time is not used, because other programs change it.
 use super::{
     result::SceneResult,
     timing::{TimedRun, Timing},
@@ -8,14 +8,14 @@ use super::{
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// The way in which a group of a suite marks speed.
+/// The rules by which a suite marks a group's speed.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedMarking {
-    /// The greatest number of points, in addition to those for scenes.
+    /// The maximum number of points, in addition to those for scenes.
     pub points: f64,
-    /// The ratio to the reference's time up to which all points are given.
+    /// The largest ratio to the reference's time that gives all points.
     pub full_at: f64,
-    /// The ratio from which on there are none; greater than `full_at`. Between them points fall linearly.
+    /// The smallest ratio that gives no points; greater than `full_at`. Between both, points fall linearly.
     pub none_at: f64,
     /// The number of timed runs of each scene.
     pub runs: u32,
@@ -29,12 +29,12 @@ impl SpeedMarking {
     }
 }
 
-/// The points of a group for speed, and where they come from.
+/// The points of a group for speed, and their origin.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedGrade {
-    /// The rules by which it is marked.
+    /// The rules for marking speed.
     pub marking: SpeedMarking,
-    /// Points reached; `None` when the grader could not measure. No student gets a zero for that.
+    /// The points reached; `None` if the grader could not measure. A failure of the grader never gives zero points.
     pub points: Option<f64>,
     /// The origin of the points.
     pub source: SpeedSource,
@@ -43,38 +43,38 @@ pub struct SpeedGrade {
 /// The origin of points for speed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SpeedSource {
-    /// Not all scenes of the group are accepted: being right counts before being fast.
+    /// Some scenes of the group are not accepted, so there are no points for speed.
     NotAccepted,
     /// All scenes were timed.
     Measured(SpeedRatio),
     /// A timed run of this scene had another verdict than the graded run.
     Failed {
-        /// The scene.
+        /// The name of the scene.
         scene: String,
         /// The verdict of the timed run.
         verdict: Verdict,
     },
-    /// Grading was stopped before, or the grader failed.
+    /// Grading was stopped before the measurement, or the grader failed.
     Unmeasured,
-    /// Points that students do not see: a program could reveal a hidden scene by its time.
+    /// The points are hidden from students, because a program could reveal a hidden scene by its time.
     Withheld,
 }
 
 /// The submission's processor time, divided by the reference program's.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedRatio {
-    /// The ratio of the least times of all runs, which other programs disturb least.
+    /// The ratio of the minimum times of all runs, which other programs disturb least.
     pub ratio: f64,
-    /// The least ratio of a round of runs.
+    /// The smallest ratio of a round of runs.
     pub least: f64,
-    /// The greatest ratio of a round of runs.
+    /// The largest ratio of a round of runs.
     pub most: f64,
     /// The number of rounds.
     pub runs: u32,
 }
 
 impl SpeedGrade {
-    /// Returns the points that the scenes of a group get for speed.
+    /// Returns the points for the speed of a group's scenes.
     #[must_use]
     pub fn from_scenes<'a>(marking: SpeedMarking, scenes: impl IntoIterator<Item = &'a SceneResult>) -> Self {
         let source = source(&scenes.into_iter().collect::<Vec<_>>());
@@ -107,9 +107,9 @@ fn source(scenes: &[&SceneResult]) -> SpeedSource {
     SpeedSource::Measured(ratio(&timed))
 }
 
-/// Returns the ratio of the sums over scenes: of the least times, and round by round.
+/// Returns the ratios of the sums over all scenes: of the minimum times, and of each round.
 fn ratio(scenes: &[&[TimedRun]]) -> SpeedRatio {
-    // A clock that ticks once a microsecond may see nothing at all.
+    // A clock with a resolution of a microsecond may measure zero.
     let seconds = |time: Duration| time.as_secs_f64().max(1e-6);
     let sum = |of: &dyn Fn(&[TimedRun]) -> TimedRun| {
         let (submission, reference) = scenes

@@ -6,15 +6,15 @@ use std::time::Duration;
 /// The timed runs of one scene.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Timing {
-    /// The machine on which it was measured. Times of two machines are never compared.
+    /// The name of the machine that measured. Times of different machines are not compared.
     pub machine: String,
-    /// The runs in their order.
+    /// The runs, in the order of time.
     pub runs: Vec<TimedRun>,
-    /// The verdict of a timed run that did not end as the graded one did; no further run was timed then.
+    /// The verdict of a timed run that differs from the graded run's; it ended the timing.
     pub failed: Option<Verdict>,
 }
 
-/// Processor times of two runs, one after the other.
+/// The processor times of two consecutive runs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct TimedRun {
     /// The submission's time.

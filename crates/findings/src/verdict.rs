@@ -2,14 +2,14 @@
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The verdict words, from best to worst; of several, the worst counts.
+    /// The verdicts, from best to worst; of several, the worst counts.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     pub enum Verdict {
         /// The trace meets all rules.
         Accepted = "accepted", "AC";
         /// The scene was not run, because the grading was cut short.
         NotRun = "not run", "--";
-        /// The trace is complete and has empty logs: the student has not written what the assignment requires.
+        /// The trace is complete and has empty logs: the student has not written the required code.
         Unwritten = "nothing written", "NW";
         /// The trace is complete and wrong.
         WrongAnswer = "wrong answer", "WA";
@@ -25,13 +25,13 @@ fosssim_num::closed_set! {
         TimeLimit = "time limit", "TLE";
         /// The program crashed or ended with an error code.
         RuntimeError = "run-time error", "RTE";
-        /// The submission itself can't be run: no program is in it, or none that this machine can start.
+        /// The submission cannot be run: it has no program, or none that this machine can start.
         Unusable = "unusable submission", "US";
         /// The program's sources do not build.
         CompileError = "compile error", "CE";
         /// The program tried something that the sandbox forbids.
         Violation = "sandbox violation", "SV";
-        /// The grader failed. Never the student's fault, never the student's score.
+        /// The grader failed, which is never the student's fault and never costs points.
         JudgeError = "judge error", "JE";
     }
     /// Returns the short code, for tables and spreadsheets.
@@ -45,13 +45,13 @@ impl Verdict {
         Self::ALL.into_iter().find(|verdict| verdict.code() == code)
     }
 
-    /// Returns whether the trace is wrong, in contrast to how the program ended.
+    /// Returns whether the verdict is about a wrong trace, and not about the program's end.
     #[must_use]
     pub const fn is_wrong_trace(self) -> bool {
         matches!(self, Self::Unwritten | Self::WrongAnswer | Self::BadTrace)
     }
 
-    /// Returns whether the scene's points are due in full.
+    /// Returns whether the scene gets its full points.
     #[must_use]
     pub const fn is_accepted(self) -> bool {
         matches!(self, Self::Accepted)

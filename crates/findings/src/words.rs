@@ -1,6 +1,6 @@
-//! Findings in words: one sentence that says the place, the expected and the actual value.
+//! Findings as sentences, each with the place, the expected and the actual value.
 //!
-//! Vectors have as many digits as distinguish them; other numbers are written so that reading them back gives the same
+//! Vectors have as many digits as distinguish them. Other numbers are written so that reading them back gives the same
 //! value, with an exponent if they would be long otherwise. Reports that show values side by side use the fields of
 //! [`FindingDetail`] instead.
 use super::finding::{Finding, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Role};
@@ -20,24 +20,24 @@ impl Display for Finding {
     }
 }
 
-/// A finding without its step.
+/// A finding that is written without its step.
 struct WithoutStep<'a>(&'a Finding);
 
 impl Finding {
-    /// Returns the finding in words, without its step. A value of the first record "starts" there, values of others
-    /// "end" there.
+    /// Returns the text of the finding without its step. A value of the first record "starts" there; values of other
+    /// records "end" there.
     #[must_use]
     pub fn what(&self) -> impl Display + '_ {
         WithoutStep(self)
     }
 }
 
-/// The reason for a different decision, and where coefficients may have gone. The trace's other polynomials show
-/// whether a factor explains it.
-const LACKING: &str = "the trace's polynomials lack coefficients for that";
+/// The reason for a different decision, and the likely loss of coefficients. The trace's other polynomials show whether
+/// a factor explains it.
+const MISSING_COEFFICIENTS: &str = "the trace's polynomials lack the coefficients for it";
 const OTHER_FORM: &str = "the other of the two accepted forms; a program must use one of them throughout";
-const LEFT_OUT: &str = "are within reach of the penalty force, but no force was applied between them";
-const DOUBLED: &str = "are within reach of the penalty force, but the force between them was applied twice";
+const LEFT_OUT: &str = "are near enough for the penalty force, but no force was applied between them";
+const DOUBLED: &str = "are near enough for the penalty force, but the force between them was applied twice";
 const DROPPING: &str = "the course's library drops leading ones below 1e-12";
 
 impl Display for WithoutStep<'_> {
@@ -95,14 +95,14 @@ impl Display for WithoutStep<'_> {
             }
             FindingDetail::PassPositions { place } => write!(
                 f,
-                "{place}: follows from other positions than the response or the failsafe before it should give"
+                "{place}: follows from wrong positions, not from those after the preceding response or failsafe"
             ),
             FindingDetail::RecordsDiffer { part } => f.write_str(difference_of_records(part, is_first)),
             FindingDetail::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
             FindingDetail::TrimmedDecision { place, collides } => {
                 let outcome = if collides { "collide" } else { "do not collide" };
                 let (pair, pass) = (PairWords(place.pair), PassWords(place.pass));
-                write!(f, "{pair} ({pass}) {outcome}; {LACKING}, and decide otherwise ({DROPPING})")
+                write!(f, "{pair} ({pass}) {outcome}; {MISSING_COEFFICIENTS}, and decide otherwise ({DROPPING})")
             }
             FindingDetail::TrimmedTime { place, expected, actual } => write_trimmed_time(f, place, [expected, actual]),
             FindingDetail::BeyondReach { particle, position, velocity } => write!(
@@ -125,7 +125,7 @@ impl Display for WithoutStep<'_> {
 /// Writes the sentence about a time of impact that follows from lost coefficients, with the expected time first.
 fn write_trimmed_time(f: &mut Formatter<'_>, place: PolynomialPlace, times: [f64; 2]) -> fmt::Result {
     let (pair, pass, [expected, actual]) = (PairWords(place.pair), PassWords(place.pass), times.map(ExactNumber));
-    write!(f, "{pair} ({pass}) collide at time {expected}; {LACKING}, and have time {actual} ({DROPPING})")
+    write!(f, "{pair} ({pass}) collide at time {expected}; {MISSING_COEFFICIENTS}, and have time {actual} ({DROPPING})")
 }
 
 /// Returns the sentence about a part in which a step's two records differ.
@@ -139,14 +139,14 @@ const fn difference_of_records(part: RecordPart, is_first: bool) -> &'static str
     }
 }
 
-/// Writes how many whole detection passes a log has too many (`true`) or too few, where it is that.
+/// Writes by how many whole detection passes a log is too long (`true`) or too short, if the number is whole.
 fn write_passes(f: &mut Formatter<'_>, passes: Option<(usize, bool)>) -> fmt::Result {
     let Some((passes, more)) = passes else { return Ok(()) };
     let plural = if passes == 1 { "pass" } else { "passes" };
     write!(f, ": {passes} detection {plural} too {}", if more { "many" } else { "few" })
 }
 
-/// Two vectors, the wrong one first, with as many digits as distinguish them, and their distance.
+/// Two vectors and their distance, the wrong vector first, with as many digits as distinguish the vectors.
 struct VectorDifference {
     expected: [f64; 2],
     actual: [f64; 2],
@@ -158,7 +158,7 @@ impl Display for VectorDifference {
         let distance = vector::length(Vec2::new(ax - ex, ay - ey));
         let power =
             |number: f64| format!("{number:e}").split_once('e').and_then(|(_, power)| power.parse::<i32>().ok());
-        // Two digits of the distance, and six of each vector at least, whatever the other's size.
+        // Show two digits of the distance, and at least six of each vector, whatever the other's size.
         let short = |vector: [f64; 2]| {
             let size = vector.into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
             let least = power(size).map(|power| 5 - power);
@@ -171,7 +171,7 @@ impl Display for VectorDifference {
     }
 }
 
-/// Returns a value cut to a number of places behind the point; before it, where the number is negative.
+/// Returns a value cut to a number of decimal places; a negative number cuts places before the point.
 fn cut_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
     // More than seventeen digits add nothing.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
@@ -188,12 +188,12 @@ struct ExactNumber(f64);
 
 impl Display for ExactNumber {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        // Without the sign of a zero.
+        // Write zero without its sign.
         if self.0.is_finite() { f.write_str(&exact(self.0 + 0.0)) } else { write!(f, "{}", self.0) }
     }
 }
 
-/// A point or a vector.
+/// A point or a vector, as text.
 struct VectorWords([f64; 2]);
 
 impl Display for VectorWords {
@@ -202,8 +202,8 @@ impl Display for VectorWords {
     }
 }
 
-/// Counts the whole detection passes by which two counts differ, and whether the trace has more; `None` when it is no
-/// whole number of passes.
+/// Returns the number of whole detection passes by which two counts differ, and whether the trace has more; `None` if
+/// the number is not whole.
 #[must_use]
 pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize, bool)> {
     let difference = actual.abs_diff(expected);
@@ -211,8 +211,8 @@ pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize,
         .then(|| (difference / per_pass, actual > expected))
 }
 
-/// Returns whether a text has nothing but visible ASCII characters and blanks. Reports check each of their texts, and
-/// their own crate is compiled without optimization.
+/// Returns whether a text has only visible ASCII characters and blanks. It is in this crate because reports check each
+/// of their texts, and their crate is compiled without optimization.
 #[must_use]
 pub fn is_visible_ascii(text: &str) -> bool {
     text.bytes().all(|byte| (b' '..=b'~').contains(&byte))
@@ -253,13 +253,13 @@ impl Display for WithoutResult {
                 f.write_str("a vortex force has no Hessian, which implicit integrators need")
             }
             StepError::Work { .. } => {
-                f.write_str("up to here, judging took many times the work of the scene's own run, which is the limit")
+                f.write_str("judging needed many times the work of the reference's run, and was stopped at this limit")
             }
         }
     }
 }
 
-/// A pair in words: `particle 3 and edge 1`.
+/// A pair as text, such as `particle 3 and edge 1`.
 #[derive(Debug, Clone, Copy)]
 pub struct PairWords(pub Pair);
 
@@ -277,7 +277,7 @@ fn two(f: &mut Formatter<'_>, kind: PairKind, first: &dyn Display, second: &dyn 
     }
 }
 
-/// A pair as a trace names it, which may be nonsense.
+/// A pair as a trace names it, which may not exist.
 struct LoggedPair<'a>(&'a LoggedImpulse);
 
 impl Display for LoggedPair<'_> {
@@ -290,7 +290,7 @@ impl Display for LoggedPair<'_> {
     }
 }
 
-/// A detection pass in words: `impulse round 2`.
+/// A detection pass as text, such as `impulse round 2`.
 #[derive(Debug, Clone, Copy)]
 pub struct PassWords(pub Pass);
 
@@ -305,7 +305,7 @@ impl Display for PassWords {
     }
 }
 
-/// A power of t: `t^3`, `t`, `constant term`.
+/// A power of t as text: `t^3`, `t` or `constant term`.
 #[derive(Debug, Clone, Copy)]
 pub struct Power(pub usize);
 

@@ -5,7 +5,7 @@ use std::sync::{
     atomic::{AtomicBool, AtomicU64, Ordering},
 };
 
-/// Stops a grading from outside, for example on Ctrl-C: no new run begins, and every run at work is ended.
+/// A switch that stops a grading from outside, for example on Ctrl-C: no new run begins, and every active run is ended.
 #[derive(Debug, Default)]
 pub struct Cancellation {
     cancelled: AtomicBool,
@@ -14,7 +14,7 @@ pub struct Cancellation {
 }
 
 impl Cancellation {
-    /// Stops everything, now and later.
+    /// Stops all present and future runs.
     pub fn cancel(&self) {
         self.cancelled.store(true, Ordering::SeqCst);
         for (_, canceller) in self.lock().iter() {
@@ -28,7 +28,7 @@ impl Cancellation {
         self.cancelled.load(Ordering::SeqCst)
     }
 
-    /// Adds a run for as long as the result lives. A run that begins after the stop is ended immediately.
+    /// Registers a run until the result is dropped. A run that begins after the stop is ended immediately.
     pub(super) fn register(&self, canceller: Canceller) -> impl Drop + '_ {
         let number = self.next.fetch_add(1, Ordering::Relaxed);
         self.lock().push((number, canceller.clone()));

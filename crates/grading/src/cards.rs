@@ -1,6 +1,6 @@
-//! Cards: the part of a report that shows a wrong trace beyond its result. They are drawn while the trace is available,
-//! and kept under the digest of their contents. The journal's result names them, so that the trace itself need not be
-//! kept.
+//! Cards: the parts of a report that show a wrong trace in detail. They are drawn while the trace is available, and
+//! stored under the digest of their contents. The journal's result contains their names, so the trace itself need not
+//! be stored.
 use super::{config::Hints, result::SceneResult};
 use fosssim_evidence::StepRuling;
 use fosssim_files::Place;
@@ -9,28 +9,28 @@ use fosssim_mistakes::{diagnose::Explanation, together::told::cut};
 use fosssim_model::scene::Scene;
 use std::io;
 
-/// Deflating harder gains little: most of a card is packed already.
-const LEVEL: i32 = 3;
+/// The zstd level of cards. A higher level gains little, because most of a card is packed already.
+const COMPRESSION_LEVEL: i32 = 3;
 
-/// The greatest size of a card, in bytes; a larger file is not one of our cards.
-const LARGEST: u64 = 64 << 20;
+/// The maximum size of a card, in bytes; a larger file is not a card.
+const MAX_CARD_BYTES: u64 = 64 << 20;
 
-/// A judged trace that is at hand.
+/// A judged trace that is still available.
 #[derive(Debug, Clone, Copy)]
 pub struct JudgedTrace<'a> {
     /// The scene.
     pub scene: &'a Scene,
-    /// The scene as commands take it.
+    /// The scene's name, as commands accept it.
     pub name: &'a str,
-    /// Likely mistakes, with no more than the reader may know.
+    /// The likely mistakes that the reader may see.
     pub explanations: &'a [Explanation],
-    /// The outcome of judging; it has more than the reader may know.
+    /// The outcome of judging, which holds more than the reader may see.
     pub outcome: &'a Outcome,
-    /// The ruling of the rule books on each step.
+    /// The rulings of the rule books on each step.
     pub rulings: &'a [StepRuling],
-    /// The trace, or its beginning.
+    /// The trace or its beginning.
     pub trace: &'a [u8],
-    /// Whether the trace is longer than that.
+    /// Whether `trace` is only the beginning.
     pub is_cut: bool,
     /// The rule books that judged.
     pub rules: Rules,
@@ -38,17 +38,17 @@ pub struct JudgedTrace<'a> {
     pub hints: Hints,
 }
 
-/// Draws the card of a trace, or nothing if there is nothing to show.
+/// A function that draws the card of a trace; `None` if there is nothing to show.
 pub type Draw<'a> = dyn Fn(&JudgedTrace<'_>) -> Option<String> + Sync + 'a;
 
-/// The place of cards, and the function that draws them.
+/// The folder for cards, and the function that draws them.
 #[derive(Clone, Copy)]
 pub struct Cards<'a> {
-    /// The folder; made when it is needed.
+    /// The folder, which is created when it is needed.
     pub folder: &'a Place,
-    /// Draws.
+    /// The function that draws a card.
     pub draw: &'a Draw<'a>,
-    /// Whether pages for students are made, too.
+    /// Whether cards for students are made, too.
     pub for_students: bool,
 }
 
@@ -56,10 +56,11 @@ pub struct Cards<'a> {
 pub type CardNames = (Option<String>, Option<String>);
 
 impl Cards<'_> {
-    /// Draws the cards of a trace, and keeps them. `students` are the hints for students.
+    /// Draws the cards of a trace and stores them. `students` are the hints for students.
     ///
     /// # Errors
-    /// When one can't be written.
+    ///
+    /// When a card can't be written.
     pub fn keep(&self, judged: &JudgedTrace<'_>, students: Hints) -> io::Result<CardNames> {
         let card = self.keep_one(judged)?;
         if students >= judged.hints {
@@ -86,28 +87,29 @@ impl Cards<'_> {
     }
 }
 
-/// Keeps a card in a folder; returns its name.
+/// Stores a card in a folder; returns its name.
 ///
 /// # Errors
-/// When it can't be written.
+///
+/// When the card can't be written.
 pub fn store(folder: &Place, card: &str) -> io::Result<String> {
     let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
     let path = file(folder, &name);
     if !path.is_file() {
-        // By rename: another job may draw the same card now.
-        path.write(&zstd::encode_all(card.as_bytes(), LEVEL)?)?;
+        // The file is renamed into place, because another job may draw the same card.
+        path.write(&zstd::encode_all(card.as_bytes(), COMPRESSION_LEVEL)?)?;
     }
     Ok(name)
 }
 
-/// Reads a card that has been kept in a folder.
+/// Reads a stored card from a folder.
 #[must_use]
 pub fn read(folder: &Place, name: &str) -> Option<String> {
     let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let (packed, _) = is_name.then(|| file(folder, name).file(LARGEST).ok()).flatten()?;
+    let (packed, _) = is_name.then(|| file(folder, name).file(MAX_CARD_BYTES).ok()).flatten()?;
     let mut text = String::new();
-    io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, LARGEST), &mut text).ok()?;
-    // A file that was changed meanwhile changes no report.
+    io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, MAX_CARD_BYTES), &mut text).ok()?;
+    // A file that was changed since is ignored.
     (blake3::hash(text.as_bytes()).to_hex()[..32] == *name).then_some(text)
 }
 

@@ -1,4 +1,4 @@
-//! Programs for tests: each does what its name says, played by the sandbox's stand-in.
+//! Programs for tests. Each does what its name says, and is played by the sandbox's stand-in.
 use super::{
     batch,
     cancellation::Cancellation,
@@ -23,7 +23,7 @@ const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"fu
                      scenes = [\"asset:SimpleTests/*\"]\n[[group]]\nname = \"second\"\npoints = 5\ncredit = \"all\"\n\
                      scenes = [\"asset:PenaltyTests/*\"]\n";
 
-/// A limit for traces that the right programs of the small plan keep, in bytes.
+/// The limit of trace bytes that correct programs of the small plan do not exceed.
 pub(super) const SMALL_TRACE: usize = 1 << 20;
 
 pub(super) fn small_plan() -> Plan {
@@ -52,7 +52,7 @@ pub(super) fn right_trace(job: &Job) -> Vec<u8> {
     trace(&scene, scene.steps())
 }
 
-/// Notes whether the failsafe moves a zone.
+/// Records whether the failsafe moves a zone.
 struct ZonesMoved(bool);
 
 impl Observer for ZonesMoved {
@@ -61,13 +61,13 @@ impl Observer for ZonesMoved {
     }
 }
 
-/// Runs a program of this cast, which does what its name says.
+/// Runs a program of the cast, whose name says what it does.
 fn act(job: &Job) -> FakeRun {
     match job.program.file_name().and_then(|name| name.to_str()) {
         Some("right") => FakeRun::wrote(right_trace(job)),
         Some("wrong") => {
             let mut trace = right_trace(job);
-            // The first particle starts elsewhere: the first step does not follow from it, all others do.
+            // The first particle starts at another position, so only the first step is wrong.
             let x = f64::from_le_bytes(trace[..8].try_into().expect("eight bytes"));
             trace[..8].copy_from_slice(&(x + 1.0).to_le_bytes());
             FakeRun::wrote(trace)

@@ -1,7 +1,7 @@
-//! From how a program ended and what its trace holds to the verdict on one scene.
+//! Derives the verdict on one scene from the program's end and the trace.
 //!
-//! Pure functions: no process, no file. The worst of the two sides wins: a right trace does not excuse a crash, and a
-//! clean exit does not excuse a wrong trace.
+//! The functions are pure: they use no processes and no files. The worse of both sides counts: a right trace does not
+//! excuse a crash, and a clean exit does not excuse a wrong trace.
 use super::{
     config::{Hints, RunLimits},
     disclosure::Disclosure,
@@ -24,11 +24,11 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-/// The bytes that a report keeps of each of the program's streams.
+/// The maximum number of bytes that a report keeps of each output stream.
 #[cfg(target_os = "linux")]
-const KEPT_OUTPUT: usize = 4096;
+const MAX_OUTPUT_BYTES: usize = 4096;
 
-/// The way in which a program ended, its measurements, and its output.
+/// The end of a program, its measurements, and its output.
 #[derive(Debug, Clone)]
 pub struct ProgramRun {
     ended: RunEnd,
@@ -38,7 +38,7 @@ pub struct ProgramRun {
 }
 
 impl ProgramRun {
-    /// Returns a program that did not run, as if it had ended well after it wrote its trace.
+    /// Returns the values of a program that was not run, as if it had ended well after it wrote its trace.
     #[must_use]
     pub fn not_run() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
@@ -56,7 +56,7 @@ impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
             ..Measurements::default()
         };
         let kept = |stream: &fosssim_sandbox::CapturedOutput, name: &str| {
-            let mut text = beginning(&stream.bytes, KEPT_OUTPUT);
+            let mut text = truncate(&stream.bytes, MAX_OUTPUT_BYTES);
             if stream.truncated {
                 let mebibytes = stream.bytes.len() as f64 / f64::from(1 << 20);
                 text.push_str(&format!("\n[{name} was cut after {mebibytes} MiB]"));
@@ -68,26 +68,26 @@ impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
     }
 }
 
-/// The facts about one run.
+/// The facts about one run of a program.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
     /// The scene.
     pub task: &'a SceneTask,
-    /// The way the program ended.
+    /// The program's end, measurements and output.
     pub program: &'a ProgramRun,
     /// The judged trace.
     pub judged: &'a Outcome,
-    /// Bytes of the trace that arrived.
+    /// The number of trace bytes that arrived.
     pub trace_bytes: u64,
     /// The rule books; the official one gives verdict, findings and right steps.
     pub rules: Rules,
     /// The highest hints of any reader.
     pub hints: Hints,
-    /// The limits that it had.
+    /// The limits of the run.
     pub limits: &'a RunLimits,
 }
 
-/// Counts the bytes of a trace that arrive: from a program, or out of a packed file.
+/// Counts the bytes of a trace while they are read, from a program or a packed file.
 pub(super) struct CountedReader<'a, R> {
     pub(super) inner: R,
     pub(super) bytes: &'a AtomicU64,
@@ -101,16 +101,16 @@ impl<R: Read> Read for CountedReader<'_, R> {
     }
 }
 
-/// The depth of the search for explanations of a wrong trace.
+/// The depth of the search for explanations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Look {
-    /// Only where numbers end, which is quick.
+pub enum SearchDepth {
+    /// Only the first value that is not finite, which is quick.
     NotFinite,
     /// Likely mistakes, too.
     Mistakes,
 }
 
-impl Look {
+impl SearchDepth {
     /// Returns the explanations of a trace.
     #[must_use]
     pub fn explain(self, scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
@@ -121,14 +121,14 @@ impl Look {
     }
 }
 
-/// Returns the result of one scene, with all that any reader may know. `explain` finds the likely mistake. It is not
-/// called if no reader may know it, if the fair rules find no fault, or if the program's end is the worse fault.
+/// Returns the result of one scene, with everything that any reader may see. `explain` finds the likely mistake. It is
+/// not called if no reader may see it, if the fair rules find no fault, or if the program's end is the worse fault.
 #[must_use]
-pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -> SceneResult {
+pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
     let of_program = verdict_of_program(&program.ended, judged);
     let (of_trace, trace_says) = verdict_of_trace(run);
-    // A stopped program leaves an incomplete trace; reporting that too would blame it twice.
+    // A stopped program leaves an incomplete trace; reporting both would blame it twice.
     let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
     let blames_program = of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace);
     let (verdict, reason) = match blames_program || of_program > of_trace {
@@ -137,7 +137,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
     };
     let differs = fair::cause(judged);
     let has_fault = rules == Rules::Fair || differs.is_none();
-    let look = if hints.explains() { Look::Mistakes } else { Look::NotFinite };
+    let look = if hints.explains() { SearchDepth::Mistakes } else { SearchDepth::NotFinite };
     let is_explained = hints > Hints::None && has_fault && verdict.is_wrong_trace();
     let mut result = SceneResult {
         scene: run.task.name.clone(),
@@ -160,18 +160,17 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(Look) -> Vec<Explanation>) -
     result
 }
 
-/// Returns the bytes of a complete trace of this scene in which every list is empty; nothing if the reference's are
-/// empty, too.
+/// Returns the size of a complete trace of the scene with empty lists; `None` if the reference's lists are empty, too.
 fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     let layout = Layout::for_scene(scene);
     let has_pairs = scene.particles.len() > 1 || !(scene.particles.is_empty() || scene.half_planes.is_empty());
-    // A record ends with the numbers of its impulses and of its polynomials (trace-format.md 2).
+    // A record ends with the counts of its impulses and of its polynomials (trace-format.md 2).
     let record = layout.state_bytes() as u64 + 2 * size_of::<i32>() as u64;
     (layout.polynomials && layout.steps > 0 && has_pairs).then(|| layout.records() * record)
 }
 
-/// Returns the verdict by the program's end alone. Bytes behind the last record mean the same however many they are: a
-/// program that is stopped because of them ended when the judge had all records.
+/// Returns the verdict by the program's end alone. The number of bytes after the last record does not matter: a program
+/// that is stopped because of them counts as ended when the judge had all records.
 fn verdict_of_program(ended: &RunEnd, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {
@@ -198,10 +197,10 @@ fn find_progress(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> Progra
     ProgramProgress { limit, steps: judged.steps_judged }
 }
 
-/// Returns the verdict by the trace alone.
+/// Returns the verdict by the trace alone, with its reason.
 fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
-    // States without collision handling may have no next state: the trace is complete all the same.
+    // States without collision handling may have no next state; the trace is still complete.
     let is_complete = !matches!(judged.stop, Some(Stop::Trace { .. }));
     let is_empty = is_complete && bytes_of_nothing(&run.task.scene) == Some(trace_bytes);
     if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {
@@ -221,7 +220,7 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
         (_, Ruling::WrongAnswer | Ruling::Undecided) => {
             (Verdict::WrongAnswer, Reason::Wrong(find_fault(judged, rules)))
         }
-        (_, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(refusal(judged))),
+        (_, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(fair_refusal(judged))),
     }
 }
 
@@ -240,8 +239,8 @@ fn find_fault(judged: &Outcome, rules: Rules) -> WrongTrace {
     }
 }
 
-/// Returns why the fair rules reject a trace that the original reads to its end.
-fn refusal(judged: &Outcome) -> BadTrace {
+/// Returns the reason why the fair rules reject a trace that the original reads to its end.
+fn fair_refusal(judged: &Outcome) -> BadTrace {
     match judged.fair.as_ref().and_then(|fair| fair.refusal) {
         Some(FairRefusal::TrailingBytes) => BadTrace::TrailingBytes,
         _ => BadTrace::Damaged,
@@ -250,7 +249,7 @@ fn refusal(judged: &Outcome) -> BadTrace {
 
 /// Returns the first bytes of the output as text; bytes that are not UTF-8 are replaced.
 #[cfg(target_os = "linux")]
-pub(super) fn beginning(printed: &[u8], most: usize) -> String {
+pub(super) fn truncate(printed: &[u8], most: usize) -> String {
     let mut text = String::from_utf8_lossy(&printed[..printed.len().min(most)]).into_owned();
     if printed.len() > most {
         text.push_str("\n[cut short]");
@@ -278,9 +277,9 @@ mod tests {
         let limits = &RunLimits::default();
         for (hints, expected) in [
             (Hints::None, None),
-            (Hints::Where, Some(Look::NotFinite)),
-            (Hints::What, Some(Look::Mistakes)),
-            (Hints::Full, Some(Look::Mistakes)),
+            (Hints::Where, Some(SearchDepth::NotFinite)),
+            (Hints::What, Some(SearchDepth::Mistakes)),
+            (Hints::Full, Some(SearchDepth::Mistakes)),
         ] {
             let (program, judged, trace_bytes, rules) = (&program, &judged, trace.len() as u64, Rules::Fair);
             let run = Run { task, program, judged, trace_bytes, rules, hints, limits };

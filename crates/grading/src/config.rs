@@ -19,31 +19,31 @@ use toml::Spanned;
 
 pub use super::{
     assignments::template,
-    shape::{Credit, MOST_POINTS},
+    shape::{Credit, POINTS_RANGE},
 };
 
-/// A validated suite: its scenes are patterns until they are looked up (see [`Plan`](super::plan::Plan)).
+/// A validated suite; its scenes are patterns until they are found (see [`Plan`](super::plan::Plan)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suite<Scene = Pattern> {
     /// The suite's name, shown in reports.
     pub name: String,
-    /// The milestone whose programs it grades, if it names one.
+    /// The milestone whose programs the suite grades, if it names one.
     pub milestone: Option<Assignment>,
     /// The command that runs the program; `{program}`, `{scene}` and `{trace}` are replaced.
     pub run: Vec<String>,
     /// The rule books that judge; the official one gives verdicts and points.
     pub rules: Rules,
-    /// The hints for staff: everything, unless the grader's user wants less.
+    /// The hints for staff; full hints unless the user of the grader reduces them.
     pub staff_hints: Hints,
-    /// Whether students see what their programs print even though some groups are not visible to them.
+    /// Whether students see the output of their programs even if some groups are hidden from them.
     pub show_output: bool,
     /// The build step.
     pub build: Option<BuildStep>,
     /// Limits of each run.
     pub limits: RunLimits,
-    /// The condition after which the rest of a submission is not run any more.
+    /// The conditions for skipping the rest of a submission.
     pub patience: Patience,
-    /// The course's own words on mistakes, by their keys.
+    /// The course's notes on mistakes, by the mistakes' keys.
     pub notes: BTreeMap<String, CourseNote>,
     /// The groups.
     pub groups: Vec<Group<Scene>>,
@@ -54,37 +54,37 @@ pub struct Suite<Scene = Pattern> {
 pub struct Group<Scene = Pattern> {
     /// The group's name.
     pub name: String,
-    /// The group's points, credit and visibility.
+    /// The points, the credit and the visibility of the group.
     pub marking: Marking,
-    /// The course's own words on the group.
+    /// The course's note on the group.
     pub note: Option<CourseNote>,
-    /// The group's scenes, in the order of the patterns, each pattern's in alphabetical order.
+    /// The group's scenes, in the order of the patterns and alphabetically within each pattern.
     pub scenes: Vec<Scene>,
 }
 
-/// A pattern of scenes: `asset:Group/*` for embedded ones, else files relative to the suite's own folder.
+/// A pattern of scenes: `asset:Group/*` for embedded ones, otherwise files relative to the suite's folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
     /// The pattern's text.
     pub text: String,
-    /// The place of the pattern, for messages about patterns that match nothing.
+    /// The pattern's position in the file, for messages about patterns that match nothing.
     pub at: Position,
 }
 
 /// The settings of a group that decide its points.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Marking {
-    /// Points of the whole group, shared evenly among its scenes.
+    /// The points of the whole group, which its scenes share evenly.
     pub points: f64,
     /// The rule for partial success.
     pub credit: Credit,
-    /// The readers who see the group.
+    /// The visibility of the group's results.
     pub visibility: Visibility,
-    /// The hints for students about its scenes.
+    /// The hints for students about the group's scenes.
     pub hints: Hints,
-    /// Whether its points are extra: reported next to the others, and not counted in the sum or the maximum.
+    /// Whether the points are extra: shown next to the others, but not counted in the sum or the maximum.
     pub extra: bool,
-    /// Points for speed, once all scenes are accepted.
+    /// The points for speed, given if all scenes are accepted.
     pub speed: Option<SpeedMarking>,
 }
 
@@ -93,32 +93,32 @@ pub struct Marking {
 pub struct BuildStep {
     /// The command, run in a copy of the submission's folder.
     pub command: Vec<String>,
-    /// The program that it makes, relative to the folder.
+    /// The built program's path, relative to the folder.
     pub program: String,
-    /// Wall time.
+    /// The limit of wall time.
     pub wall: Duration,
-    /// Memory in bytes.
+    /// The limit of memory, in bytes.
     pub memory: u64,
 }
 
 /// Limits of one run.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunLimits {
-    /// Processor time.
+    /// The limit of processor time.
     pub cpu: Duration,
-    /// Wall time.
+    /// The limit of wall time.
     pub wall: Duration,
-    /// Address space in bytes.
+    /// The limit of address space, in bytes.
     pub memory: u64,
-    /// Bytes of standard output and of standard error, each.
+    /// The limit of bytes for standard output and for standard error, each.
     pub output: u64,
-    /// Bytes of the trace.
+    /// The limit of the trace's size, in bytes.
     pub trace: u64,
-    /// Bytes in the working folder.
+    /// The limit of bytes in the working folder.
     pub folder: u64,
-    /// Files in the working folder.
+    /// The limit of files in the working folder.
     pub files: u64,
-    /// Whether programs that were built with a sanitizer may run, whose address space can't be limited.
+    /// Whether programs that were built with a sanitizer may run. Their address space cannot be limited.
     pub sanitizers: bool,
 }
 
@@ -137,12 +137,12 @@ impl Default for RunLimits {
     }
 }
 
-/// The number of failures after which a submission is given up.
+/// The limits after which the rest of a submission is skipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patience {
-    /// The number of scenes in a row that may run into a limit of time, memory or output; 0 for any number.
+    /// The number of consecutive scenes that may exceed a limit of time, memory or output; 0 for any number.
     pub time_outs: u32,
-    /// Wall time of all runs of a submission together, and of judging them.
+    /// The wall time of all runs of a submission, including judging.
     pub total: Duration,
 }
 
@@ -152,16 +152,16 @@ impl Default for Patience {
     }
 }
 
-/// A place in the file.
+/// A position in the suite file.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub struct Position {
-    /// Line, from 1.
+    /// The line number, from 1.
     pub line: usize,
-    /// Column in characters, from 1.
+    /// The column number in characters, from 1.
     pub column: usize,
 }
 
-/// Counts lines and columns from the last place, so that many places of a long line take no longer than one.
+/// Counts lines and columns from the last position, so that many positions of a long line take no longer than one.
 struct PositionCounter<'a> {
     text: &'a str,
     offset: usize,
@@ -193,11 +193,11 @@ impl std::fmt::Display for Position {
     }
 }
 
-/// A fault of a suite file.
+/// The error of a suite file with problems.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}", problems.iter().map(|(at, text)| format!("{at}: {text}")).collect::<Vec<_>>().join("\n"))]
 pub struct SuiteError {
-    /// Every problem with its position, in order.
+    /// The problems with their positions, in the order of the file.
     pub problems: Vec<(Position, String)>,
 }
 
@@ -210,7 +210,7 @@ pub fn read(text: &str) -> Result<Suite, SuiteError> {
     if problems.is_empty() { Ok(suite) } else { Err(SuiteError { problems }) }
 }
 
-/// Reads a suite and all its faults, in order; a faulty part is left out or has its default.
+/// Reads a suite and all of its problems, in order; faulty parts are left out or get defaults.
 pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     let (table, mut problems, is_readable) = shape::check_shape(text);
     let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
@@ -268,7 +268,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     (suite, problems)
 }
 
-/// Returns the course's protocol.
+/// Returns the command line of the course's protocol.
 pub(super) fn default_run() -> Vec<String> {
     ["{program}", "-s", "{scene}", "-d", "0", "-o", "{trace}"].map(str::to_owned).into()
 }
@@ -277,7 +277,7 @@ fn read_run(problems: &mut Vec<Problem>, run: Option<Spanned<Vec<String>>>) -> V
     let Some(run) = run else { return default_run() };
     for part in ["{program}", "{scene}", "{trace}"] {
         if !run.get_ref().iter().any(|word| word.contains(part)) {
-            problems.push((run.span(), format!("run has no {part}: the program would not get it")));
+            problems.push((run.span(), format!("run has no {part}, so the program would not get it; add it")));
         }
     }
     if run.get_ref().first().is_some_and(|word| word != "{program}") {
@@ -321,7 +321,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
     let span = build.span();
     let raw = build.into_inner();
     if raw.command.as_ref().is_some_and(Vec::is_empty) {
-        problems.push((span.clone(), "build.command is empty: say what builds the program".to_owned()));
+        problems.push((span.clone(), "build.command is empty: name the command that builds the program".to_owned()));
     }
     let leads_out = |program: &&String| {
         program.is_empty() || program.starts_with('/') || program.split('/').any(|part| part == "..")
@@ -338,7 +338,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
     }
 }
 
-/// Reads a group; `hints` are the hints of a group that sets none.
+/// Reads a group; `hints` apply to a group without its own.
 fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hints) -> Group {
     let name = raw.name.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
     if let Some(empty) = raw.name.filter(|name| name.get_ref().trim().is_empty()) {
@@ -361,8 +361,8 @@ fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw
     Group { name, scenes: scenes.map(pattern).collect(), marking, note }
 }
 
-/// Reads the course's words on a mistake. A key that is similar to a known one is a slip; other keys belong to findings
-/// in general.
+/// Reads the course's note on a mistake. A key that is similar to a known one is rejected as a slip; other keys are
+/// those of general findings.
 fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String, CourseNote)> {
     let key = raw.key?;
     let known = CATALOGUE.iter().map(|row| row.id);
@@ -374,7 +374,7 @@ fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String,
     Some((key.into_inner(), note))
 }
 
-/// Reads the course's words on something; `None` if there are none.
+/// Reads a note of the course; `None` if it is empty.
 fn read_note(
     problems: &mut Vec<Problem>,
     text: Option<String>,
@@ -397,7 +397,7 @@ fn read_speed(problems: &mut Vec<Problem>, raw: Spanned<RawSpeed>) -> SpeedMarki
     let raw = raw.into_inner();
     let (full_at, none_at) = match (raw.full_at, raw.none_at, raw.second) {
         (Some(full_at), Some(none_at), None) => (full_at, none_at),
-        // The course gives all points for a second, and none for a minute.
+        // The course gives full points up to one second, and none from one minute.
         (None, None, Some(second)) => (second, 60.0 * second),
         _ => {
             let text = "speed needs full_at and none_at, or second alone";

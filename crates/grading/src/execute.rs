@@ -2,7 +2,7 @@
 use super::{
     cancellation::Cancellation,
     cards::{Cards, JudgedTrace},
-    conclude::{Look, ProgramRun, Run, conclude},
+    conclude::{ProgramRun, Run, SearchDepth, conclude},
     config::{Hints, RunLimits},
     fault,
     guard::{Fault, catch_panic},
@@ -30,47 +30,48 @@ use std::{
     time::Instant,
 };
 
-/// Name of the scene's copy in the working folder, and of the trace.
+/// The name of the scene's copy in the working folder.
 const SCENE_FILE: &str = "scene.xml";
 const TRACE_FILE: &str = "trace.bin";
 
-/// A fault of ours or of the machine is tried so often before it is reported.
-const ATTEMPTS: u32 = 2;
+/// The number of attempts before an error of the grader or the machine is reported.
+const MAX_ATTEMPTS: u32 = 2;
 
 /// The way in which scenes are run.
 #[derive(Clone, Copy)]
 pub struct Runner<'a> {
-    /// The sandbox.
+    /// The sandbox for the runs.
     pub backend: &'a Backend,
     /// The command line; `{program}`, `{scene}` and `{trace}` are replaced.
     pub run: &'a [String],
     /// Limits of each run.
     pub limits: &'a RunLimits,
-    /// The rule books that judge.
+    /// The rule books for judging.
     pub rules: Rules,
-    /// The hints of the result: those of the reader who sees most, which is staff.
+    /// The hints for staff, who see most; the result contains no more.
     pub hints: Hints,
     /// The hints for students about the scene.
     pub student_hints: Hints,
     /// Whether traces are judged against the recordings instead of the reference simulator.
     pub recorded: bool,
-    /// The source of working folders for its runs.
+    /// The source of working folders for the runs.
     pub folders: &'a Folders,
-    /// Stops everything from outside.
+    /// The switch that stops all runs.
     pub cancellation: &'a Cancellation,
-    /// The folder for traces on which the grader itself failed; made when it is needed.
+    /// The folder for traces on which the grader failed; created when it is needed.
     pub faults: &'a Place,
-    /// The place for the trace if it is not accepted, on request.
+    /// The file for the trace if it is not accepted, if requested.
     pub trace: Option<&'a Place>,
-    /// Draws and keeps cards of traces that are not simply right, on request.
+    /// The drawing and storage of cards for traces that are not simply right, if requested.
     pub cards: Option<Cards<'a>>,
-    /// Adds up the processor time of runs, for `--timings`.
+    /// The sums of the runs' processor times, for `--timings`.
     pub timings: Option<&'a Timings>,
 }
 
 impl Runner<'_> {
-    /// Runs `program` on a scene, in a working folder of its own that is removed afterwards, and judges it. After a
-    /// fault of ours it tries once more, then the fault is the verdict. `on_step` gets the number of every judged step.
+    /// Runs `program` on a scene in a new working folder, which is removed afterwards, and judges the trace. After an
+    /// error of the grader or the machine it tries again; a second error is the verdict. `on_step` receives the number
+    /// of every judged step.
     #[must_use]
     pub fn grade(&self, program: &StagedProgram, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
         let mut attempt = 1;
@@ -80,7 +81,7 @@ impl Runner<'_> {
             }
             match self.attempt(program, task, on_step) {
                 Ok(result) => return result,
-                Err(_) if attempt < ATTEMPTS => attempt += 1,
+                Err(_) if attempt < MAX_ATTEMPTS => attempt += 1,
                 Err(words) => return task.failure_result(Failure::Machine(words)),
             }
         }
@@ -103,11 +104,11 @@ impl Runner<'_> {
             timings.add(RunPart::Program, outcome.cpu);
         }
         watch.end(RunPart::Start);
-        let (trace, trace_bytes) = self.trace_in(&left)?;
-        // Not within the judging, which may panic: its trace is put aside then.
+        let (trace, trace_bytes) = self.open_trace(&left)?;
+        // The trace is kept outside of judging, which may panic; it is saved for developers then.
         let mut kept = KeptTrace::new(MAX_KEPT_BYTES);
         let mut rulings = StepRulings::default();
-        let mut told = ToldSteps(on_step);
+        let mut told = StepReporter(on_step);
         let heard = &mut BothObservers(&mut rulings, &mut told);
         let judged = self.judge_trace(program, task, &mut kept, trace, heard);
         watch.end(RunPart::Judging);
@@ -154,21 +155,22 @@ impl Runner<'_> {
             };
             let drawn = catch_panic(|| cards.keep(&judged, self.student_hints));
             (result.card, result.card_for_students) = match drawn {
-                Ok(names) => names.map_err(|error| format!("a page's data can't be kept: {error}"))?,
+                Ok(names) => names.map_err(|error| format!("the data of a page can't be stored: {error}"))?,
                 Err(fault) => return Ok(failed(Activity::Drawing, &fault)),
             };
         }
         if let Some(place) = self.trace.filter(|_| !result.verdict.is_accepted()) {
-            place.write(kept.bytes()).map_err(|error| format!("its trace can't be kept: {error}"))?;
+            place.write(kept.bytes()).map_err(|error| format!("the trace can't be stored: {error}"))?;
         }
         watch.end(RunPart::Drawing);
         Ok(result)
     }
 
-    /// Runs `program` on a scene as for grading, and hands its trace over unjudged, at most `keep` bytes of it.
+    /// Runs `program` on a scene as for grading, and returns at most `keep` bytes of its trace, unjudged.
     ///
     /// # Errors
-    /// Faults of ours or of the machine, in words.
+    ///
+    /// An error of the grader or the machine, as text.
     pub fn collect(
         &self,
         program: &Path,
@@ -179,14 +181,14 @@ impl Runner<'_> {
         let _registered = self.cancellation.register(running.canceller());
         let (outcome, left) = running.wait_with_folder().map_err(|error| error.to_string())?;
         let mut kept = Vec::new();
-        let (trace, _) = self.trace_in(&left)?;
+        let (trace, _) = self.open_trace(&left)?;
         trace.take(keep as u64).read_to_end(&mut kept).map_err(|error| format!("the trace can't be read: {error}"))?;
         Ok((kept, outcome))
     }
 
-    /// Opens the trace that a program left, with its length: a regular file, read up to the limit. Anything else there
-    /// is no trace.
-    fn trace_in(&self, left: &LeftFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
+    /// Opens the trace that a program left, and returns its length: a regular file, read up to the limit. Any other
+    /// entry counts as no trace.
+    fn open_trace(&self, left: &LeftFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
         match left.regular_file(TRACE_FILE, u64::MAX) {
             Ok((file, length)) => Ok((Box::new(file.take(self.limits.trace)), length.min(self.limits.trace))),
             Err(CollectError::System { source, .. }) if source.kind() != io::ErrorKind::PermissionDenied => {
@@ -196,14 +198,14 @@ impl Runner<'_> {
         }
     }
 
-    /// Starts `program` on a scene, in a working folder of its own that lives as long as the result.
+    /// Starts `program` on a scene, in a new working folder that lives as long as the result.
     fn start(
         &self,
         program: &Path,
         identity: Option<ProgramIdentity>,
         task: &SceneTask,
     ) -> Result<(RunningProgram, TemporaryFolder), String> {
-        let folder = self.folders.take().map_err(|error| format!("no working folder for a run: {error}"))?;
+        let folder = self.folders.take().map_err(|error| format!("cannot make the run's folder: {error}"))?;
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))
             .file(SCENE_FILE, task.xml.as_slice())
@@ -216,7 +218,7 @@ impl Runner<'_> {
         Ok((self.backend.start(&job).map_err(|error| error.to_string())?, folder))
     }
 
-    /// Judges the trace of a program. What the judge did not want is read all the same, to be kept.
+    /// Judges the trace of a program. Reads the rest of the trace too, so that it is kept whole.
     fn judge_trace(
         &self,
         program: &StagedProgram,
@@ -229,7 +231,7 @@ impl Runner<'_> {
             fault::inject(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
-        // The judge has read an error here, if there is one.
+        // If reading fails here, the judge has met the same error.
         let _ = io::copy(&mut kept.reader(trace), &mut io::sink());
         judged
     }
@@ -246,7 +248,7 @@ impl Runner<'_> {
         if !self.recorded {
             return Ok(replay::judge(&task.scene, kept.reader(trace), &options, watch));
         }
-        let no_recording = || format!("there is no recording of {}: judge it without --recorded", task.name);
+        let no_recording = || format!("{} has no recording: grade it without --recorded", task.name);
         let recording = zstd::Decoder::with_buffer(task.recording.ok_or_else(no_recording)?)
             .map_err(|error| format!("a recording can't be unpacked: {error}"))?;
         recorded::judge(&task.scene, kept.reader(trace), recording, watch).map_err(|error| error.to_string())
@@ -280,10 +282,10 @@ impl Runner<'_> {
     }
 }
 
-/// Returns the result of a judged run with its explanations, or what panicked.
+/// Returns the result of a judged run with its explanations, or the panic.
 fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
     let mut explaining = catch_panic(|| fault::inject(Activity::Explaining, program)).err();
-    let explain = |look: Look| {
+    let explain = |look: SearchDepth| {
         catch_panic(|| look.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
             explaining = Some(fault);
             Vec::new()
@@ -293,10 +295,10 @@ fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneR
     explaining.map_or(Ok(result), |fault| Err((Activity::Explaining, fault)))
 }
 
-/// Reports the progress of judging.
-struct ToldSteps<'a>(&'a mut dyn FnMut(u32));
+/// Reports the progress of judging, step by step.
+struct StepReporter<'a>(&'a mut dyn FnMut(u32));
 
-impl Progress for ToldSteps<'_> {
+impl Progress for StepReporter<'_> {
     fn step_judged(&mut self, step: u32, _remarks: &[Remark]) {
         (self.0)(step);
     }

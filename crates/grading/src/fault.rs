@@ -1,5 +1,4 @@
-//! Scenes on which the grader itself failed: each is a judge error, and its trace is put aside for the developer
-//! who mends it.
+//! Scenes on which the grader failed. Each is a judge error, and its trace is saved for the developer who fixes it.
 use super::{
     guard::Fault,
     result::{Activity, Failure, SavedTrace, SceneResult},
@@ -20,7 +19,7 @@ pub(super) fn result(task: &SceneTask, folder: &Place, stage: Activity, fault: &
     task.failure_result(Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) })
 }
 
-/// Writes a trace into the folder under the name of its scene and its own digest.
+/// Writes a trace into the folder, under the scene's name and the trace's digest.
 fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     let scene: String =
         task.name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
@@ -30,12 +29,12 @@ fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     Ok(path.path())
 }
 
-/// Lets tests make the grader fail: a program of this name makes it panic at this stage.
+/// Makes the grader fail in tests: a program of this name causes a panic in this stage.
 #[cfg(test)]
 pub(super) fn inject(stage: Activity, program: &Path) {
     let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();
     let word = format!("{stage:?}").to_lowercase();
-    assert!(name != format!("fault-while-{word}"), "a fault of the grader's own");
+    assert!(name != format!("fault-while-{word}"), "injected grader failure");
 }
 
 #[cfg(not(test))]

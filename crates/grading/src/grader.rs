@@ -1,8 +1,8 @@
 //! Grades one submission: the unit of which everything that grades consists.
 //!
-//! A single submission, a class and an autograder all go through a `SubmissionGrading`, scene by scene: a caller with
-//! several jobs shares the scenes out among them ([`batch`](super::batch)). A result is kept before it is reported; a
-//! scene with a result is not run again. A panic in the work on one scene is a judge error of that scene.
+//! A single submission, a class and an autograder all go through a `SubmissionGrading`, scene by scene. A caller with
+//! several jobs distributes the scenes among them ([`batch`](super::batch)). A result is stored before it is reported;
+//! a scene with a result is not run again. A panic in the work on one scene is a judge error of that scene.
 use super::{
     cancellation::Cancellation,
     cards::Cards,
@@ -40,16 +40,17 @@ use std::{
 pub struct Submission {
     /// The submission's name in reports.
     pub name: String,
-    /// The program or archive, or the folder of sources when the plan builds.
+    /// The path of the program or archive, or of the folder of sources if the plan builds.
     pub path: PathBuf,
-    /// The name of the program or archive in the folder `path`, whose contents are not ours. Links are not followed.
+    /// The name of the program or archive in the folder `path`, if the folder's contents are not trusted. Links are not
+    /// followed.
     pub program: Option<String>,
-    /// The identity of the program's file when submissions were searched.
+    /// The identity of the program's file at the time of the search for submissions.
     pub file: Option<OneFile>,
 }
 
 impl Submission {
-    /// Returns the name of its program's file.
+    /// Returns the name of the program's file.
     fn program_name(&self) -> String {
         program_name(&self.program.as_ref().map_or_else(|| self.path.clone(), |program| self.path.join(program)))
     }
@@ -58,18 +59,18 @@ impl Submission {
 /// The options of a grading.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// Runs at one time.
+    /// The maximum number of parallel runs.
     pub jobs: usize,
-    /// Whether the first scene of a submission that is not accepted ends its grading.
+    /// Whether the first scene that is not accepted ends the grading of a submission.
     pub fail_fast: bool,
     /// Whether traces are judged against the recordings instead of the reference simulator.
     pub recorded: bool,
 }
 
-/// The place for the trace of a submission's scene.
+/// A function that returns the file for the trace of a submission's scene.
 pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> Place + Sync + 'a;
 
-/// The parts that the submissions of one grading share.
+/// The parts that all submissions of a grading share.
 #[derive(Clone, Copy)]
 pub struct Grader<'a> {
     /// The plan: scenes, limits and rules.
@@ -78,32 +79,33 @@ pub struct Grader<'a> {
     pub backend: &'a Backend,
     /// The program's name in archives.
     pub program: &'a str,
-    /// How.
+    /// The options of the grading.
     pub options: Options,
-    /// The folder for traces on which the grader itself failed; made when it is needed.
+    /// The folder for traces on which the grader failed; created when it is needed.
     pub faults: &'a Place,
-    /// The place for the trace of a scene that is not accepted, on request.
+    /// The function that names the files for traces that are not accepted, if requested.
     pub traces: Option<&'a TraceFile<'a>>,
-    /// Draws and keeps cards of traces that are not simply right, on request.
+    /// The drawing and storage of cards for traces that are not simply right, if requested.
     pub cards: Option<Cards<'a>>,
-    /// Describes the smallest scenes, on request.
+    /// The function that describes the smallest scenes, if requested.
     pub smallest: Option<&'a DescribeSmallest<'a>>,
-    /// Completes a grade, on the job that has made it.
+    /// The function that receives a finished grade, on the job that made it.
     pub finish: Option<&'a (dyn Fn(&Grade) + Sync + 'a)>,
-    /// Adds up the processor time of all runs, for `--timings`.
+    /// The sums of all runs' processor times, for `--timings`.
     pub timings: Option<&'a Timings>,
-    /// The program whose speed is the measure: the original, or a program that plays it under its name. Without one no
-    /// speed is measured.
+    /// The program that speed is compared with: the original, or a program that plays it under its name. Without it,
+    /// speed is not measured.
     pub reference: Option<&'a Path>,
 }
 
 impl Grader<'_> {
-    /// Returns the rules that count. Against recordings these are the original's: the fair ones follow the submission.
+    /// Returns the rules that count. Against recordings these are the original's, because the fair ones follow the
+    /// submission's states.
     pub(super) const fn effective_rules(&self) -> Rules {
         if self.options.recorded { Rules::Parity } else { self.plan.rules }
     }
 
-    /// Returns everything besides program and scene that a result depends on.
+    /// Returns everything that a result depends on, except for program and scene.
     fn conditions(&self) -> Vec<String> {
         let walls = self.backend.layers().iter().filter(|report| report.active);
         vec![
@@ -117,25 +119,25 @@ impl Grader<'_> {
     }
 }
 
-/// The values that the submissions of one grading share.
+/// The data that all submissions of a grading share.
 pub(super) struct SharedGrading<'a> {
     cancellation: &'a Cancellation,
     results: Option<&'a dyn Results>,
     folders: Folders,
-    /// The parts of keys besides program and scene.
+    /// The parts of keys that are independent of program and scene.
     words: Vec<String>,
-    /// The results that this very grading has kept.
+    /// The results that this grading has stored.
     kept: Mutex<BTreeSet<Key>>,
-    /// The results at which jobs are at work. Equal programs of two submissions are run once: a job waits for the
-    /// other's result.
+    /// The results that jobs are making. Equal programs of two submissions are run once: a job waits for the other's
+    /// result.
     claimed: Mutex<BTreeSet<Key>>,
-    /// Rings when a job has given a claim back.
+    /// The signal that a job has released a claim.
     released: Condvar,
-    /// The reason why results can't be kept any more.
+    /// The reason why results can no longer be stored.
     pub(super) full: OnceLock<KeepError>,
-    /// The contents of the plan's scenes, once they are needed.
+    /// The contents of the plan's scenes, computed when they are needed.
     contents: OnceLock<Vec<Contents>>,
-    /// The copy of the reference program, once something is timed.
+    /// The copy of the reference program, made for the first timing.
     reference: OnceLock<Arc<Result<StagedProgram, String>>>,
 }
 
@@ -147,7 +149,8 @@ impl<'a> SharedGrading<'a> {
         Self { cancellation, results, folders, words, kept, claimed, released, full, contents, reference }
     }
 
-    /// Returns the contents of the reference's run of each scene. A scene without an end has none.
+    /// Returns the contents of the reference's run of each scene; empty for a scene that cannot be simulated to its
+    /// end.
     pub(super) fn contents(&self, plan: &Plan) -> &[Contents] {
         self.contents.get_or_init(|| plan.scenes().map(|task| ContentIndex::for_scene(&task.scene)).collect())
     }
@@ -158,14 +161,14 @@ impl<'a> SharedGrading<'a> {
     }
 
     pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> Key {
-        // A program may depend on its own name, so the name belongs to what is graded.
+        // A program may depend on its own name, so the name is part of the key.
         let own = [scene.name.as_str(), called, students.describe().0];
         let words: Vec<&str> = self.words.iter().map(String::as_str).chain(own).collect();
         Key::from_program(digest, &scene.xml, &words)
     }
 
-    /// Finds an earlier result, or that of an equal program in this grading. If traces or cards are wanted, a result
-    /// without them does not count.
+    /// Finds an earlier result, or that of an equal program in this grading. A result without requested traces or cards
+    /// does not count.
     fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<FoundResult> {
         let result = self.results?.find(key)?;
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
@@ -174,14 +177,14 @@ impl<'a> SharedGrading<'a> {
         (!lacks_trace && !lacks_card).then_some(FinishedScene { result, cached, claim: None })
     }
 
-    /// Claims the key of a result, once no other job is at work on it; the result, if there is one then.
+    /// Claims the key of a result after no other job works on it, or returns the result if it exists then.
     fn claim<'s>(
         &'s self,
         key: Key,
         find: impl Fn(&Key) -> Option<FoundResult>,
     ) -> Result<KeyClaim<'s>, Box<FoundResult>> {
         let mut claimed = lock(&self.claimed);
-        // If nothing is kept there is no result to wait for.
+        // If results are not stored, there is no result to wait for.
         while self.results.is_some() && claimed.contains(&key) {
             claimed = self.released.wait(claimed).unwrap_or_else(PoisonError::into_inner);
         }
@@ -194,8 +197,8 @@ impl<'a> SharedGrading<'a> {
         }
     }
 
-    /// Keeps a result. When that fails, grading is stopped: what can't be kept would be done in vain. Faults of ours
-    /// and scenes that were not run are tried again instead.
+    /// Stores a result. If that fails, grading is stopped, because further work would be lost. Errors of the grader and
+    /// scenes that were not run are not stored, so they are tried again.
     pub(super) fn keep(&self, key: &Key, submission: &Submission, result: &SceneResult) {
         let Some(results) = self.results else { return };
         if self.full.get().is_some() || matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun) {
@@ -210,7 +213,7 @@ impl<'a> SharedGrading<'a> {
     }
 }
 
-/// The right of one job to make the result of a key. Others that need it wait until this is dropped.
+/// The exclusive right of a job to make the result of a key. Others that need it wait until the claim is dropped.
 struct KeyClaim<'s> {
     shared: &'s SharedGrading<'s>,
     key: Key,
@@ -223,16 +226,16 @@ impl Drop for KeyClaim<'_> {
     }
 }
 
-/// A scene that has its result.
+/// A scene with its result.
 struct FinishedScene<'s> {
     result: SceneResult,
-    /// Taken from an earlier run.
+    /// Whether the result was reused from an earlier run.
     cached: bool,
-    /// The claim under which the result is kept; a result that was found needs none.
+    /// The claim for storing the result; `None` for a result that was found.
     claim: Option<KeyClaim<'s>>,
 }
 
-/// A result that was found, which needs no claim.
+/// A result that was found, without a claim.
 type FoundResult = FinishedScene<'static>;
 
 impl FinishedScene<'_> {
@@ -241,44 +244,44 @@ impl FinishedScene<'_> {
     }
 }
 
-/// The news of a scene.
+/// A progress message about a scene.
 pub(super) enum SceneNews {
-    /// The scene begins.
+    /// The run of the scene begins.
     Begins,
-    /// Steps have been judged up to this one; not every step is reported.
+    /// Judging has reached a step; not every step is reported.
     Step(u32),
-    /// The scene has its result, and whether that was taken from an earlier run.
+    /// The scene has its result; the value is whether it was reused from an earlier run.
     Done(bool),
-    /// The submission has its grade, with its last scene.
+    /// The submission has its grade, after its last scene.
     Graded(Box<Grade>),
 }
 
-/// One submission at work. Any number of jobs may take its scenes: it is staged once, by the first job that has to run
-/// it, and its copy stays until the grade is drawn.
+/// A submission while it is graded. Any number of jobs may process its scenes. The first job that has to run it stages
+/// it, and the copy stays until the grade is complete.
 pub(super) struct SubmissionGrading<'a> {
     pub(super) grader: &'a Grader<'a>,
     pub(super) shared: &'a SharedGrading<'a>,
     pub(super) submission: &'a Submission,
-    /// The digest of the program in its place; `None` if it has to be built or copied first.
+    /// The digest of the program at its original path; `None` if it has to be built or copied first.
     digest: OnceLock<Option<blake3::Hash>>,
     pub(super) staged: Mutex<Option<Arc<Result<StagedProgram, String>>>>,
     known: Mutex<SubmissionProgress>,
 }
 
-/// The results of a submission's scenes so far.
+/// The results of a submission's scenes up to now.
 struct SubmissionProgress {
-    /// Verdict of every scene that is done, and how long its run and judging it took.
+    /// The verdict of every finished scene, with the time of its run and its judging.
     done: Vec<Option<(Verdict, Duration)>>,
-    /// The first scene that is not run any more, and why.
+    /// The first scene that is not run, with the reason.
     end: Option<(usize, NotRunReason)>,
     /// The reported results, each with whether it was found.
     told: Vec<Option<(SceneResult, bool)>>,
-    /// The number of results that are still missing there.
+    /// The number of results that are still missing in `told`.
     missing: usize,
 }
 
 impl<'a> SubmissionGrading<'a> {
-    /// Creates a submission of which nothing is known yet.
+    /// Creates a submission without results.
     pub(super) fn new(grader: &'a Grader<'a>, shared: &'a SharedGrading<'a>, submission: &'a Submission) -> Self {
         let missing = grader.plan.scenes().count();
         let (done, told) = (vec![None; missing], vec![None; missing]);
@@ -292,8 +295,8 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    /// Finds or makes the result of a scene, by its number in the plan, keeps it, and reports it; after the last one,
-    /// also the grade.
+    /// Finds or makes the result of a scene, by its number in the plan, stores it, and reports it. After the last
+    /// scene, it also reports the grade.
     pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
         let done = catch_panic(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             FinishedScene::unkept(scene.failure_result(Failure::Panic {
@@ -332,7 +335,7 @@ impl<'a> SubmissionGrading<'a> {
         let trace = grader.traces.map(|path| path(submission, scene));
         let students = grader.plan.student_hints(&scene.name);
         let find = |key: &Key| shared.find(key, trace.as_ref(), grader.cards, students);
-        // Found or claimed before anything is copied, if the program is known in its place.
+        // The result is found or claimed before anything is copied, if the digest is known without a copy.
         let known = self.digest().map(|digest| shared.key(&digest, scene, &submission.program_name(), students));
         let known = match known.map(|key| shared.claim(key, find)).transpose() {
             Ok(claim) => claim,
@@ -371,7 +374,7 @@ impl<'a> SubmissionGrading<'a> {
     ) -> SceneResult {
         let mut told = Instant::now();
         let mut on_step = |step| {
-            // A display can't show more, and a channel should not hold more.
+            // A display cannot show more, and a channel should not hold more.
             if told.elapsed() > Duration::from_millis(100) {
                 told = Instant::now();
                 tell(SceneNews::Step(step));
@@ -380,7 +383,7 @@ impl<'a> SubmissionGrading<'a> {
         self.runner(scene, trace).grade(staged, scene, &mut on_step)
     }
 
-    /// Returns a runner of programs on a scene, which stores a trace that is not accepted in `trace`.
+    /// Returns a runner for a scene, which saves a trace that is not accepted to `trace`.
     pub(super) fn runner<'b>(&'b self, scene: &SceneTask, trace: Option<&'b Place>) -> Runner<'b> {
         let grader = self.grader;
         Runner {
@@ -400,22 +403,22 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    /// Returns why this scene is not to be run.
+    /// Returns the reason why the scene is skipped, if it is.
     fn left_out(&self, scene: usize) -> Option<NotRunReason> {
         lock(&self.known).end.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
     }
 
-    /// Notes a result, and whether it is the end.
+    /// Records a result, and whether it ends the grading.
     fn note(&self, scene: usize, result: &SceneResult) {
         let mut known = lock(&self.known);
         known.done[scene] = Some((result.verdict, result.measured.wall + result.measured.judging));
         if known.end.is_none_or(|(end, _)| scene < end) {
-            let end = patience::end(&self.grader.plan.patience, self.grader.options.fail_fast, &known.done);
+            let end = patience::find_end(&self.grader.plan.patience, self.grader.options.fail_fast, &known.done);
             known.end = end.or(known.end);
         }
     }
 
-    /// Returns the digest of a program that needs no build and no copy to be known.
+    /// Returns the digest of a program, if it is known without a build or a copy.
     pub(super) fn digest(&self) -> Option<blake3::Hash> {
         *self.digest.get_or_init(|| match &self.submission.program {
             _ if self.builds() => None,
@@ -424,7 +427,7 @@ impl<'a> SubmissionGrading<'a> {
         })
     }
 
-    /// Returns whether it is a folder of sources.
+    /// Returns whether the submission is a source folder that must be built.
     fn builds(&self) -> bool {
         let Submission { path, program, .. } = self.submission;
         self.grader.plan.build.is_some() && program.is_none() && path.is_dir()

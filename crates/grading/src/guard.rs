@@ -1,7 +1,8 @@
-//! Faults of our own: a panic while one scene is judged, explained or reported must not end a class's grading.
+//! Catches panics of the grader: a panic while one scene is judged, explained or reported must not end a class's
+//! grading.
 //!
 //! A panic is caught where the work on one scene begins, with its place in the source, and becomes a judge error of
-//! that scene. Nothing is repaired: the data of the work are dropped.
+//! that scene. The data of the failed work are dropped.
 use std::{
     any::Any,
     cell::{Cell, RefCell},
@@ -9,7 +10,7 @@ use std::{
     sync::Once,
 };
 
-/// A panic in words: the message and where in the source it was.
+/// The text of a panic: the message and its place in the source.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct Fault(String);
@@ -19,22 +20,23 @@ thread_local! {
     static CAUGHT: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Does some work, and returns a panic in it as a fault, which is not printed.
+/// Calls `work`, and returns a panic in it as a fault, which is not printed.
 ///
-/// The caller must drop what the work was changing, as after any error: its state is unknown.
+/// The caller must drop the data that `work` changed, because their state is unknown.
 ///
 /// # Errors
-/// When the work panics.
+///
+/// When `work` panics.
 pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
-    listen();
+    install_hook();
     let outer = GUARDED.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(work));
     GUARDED.set(outer);
-    result.map_err(|payload| Fault(CAUGHT.take().unwrap_or_else(|| message(&*payload))))
+    result.map_err(|payload| Fault(CAUGHT.take().unwrap_or_else(|| panic_message(&*payload))))
 }
 
 /// Installs a panic hook that captures panics of guarded work, with their place, and forwards all others.
-fn listen() {
+fn install_hook() {
     static ONCE: Once = Once::new();
     ONCE.call_once(|| {
         let others = panic::take_hook();
@@ -43,13 +45,13 @@ fn listen() {
                 return others(panic);
             }
             let place = panic.location().map(|place| format!(" at {}:{}", place.file(), place.line()));
-            CAUGHT.set(Some(message(panic.payload()) + &place.unwrap_or_default()));
+            CAUGHT.set(Some(panic_message(panic.payload()) + &place.unwrap_or_default()));
         }));
     });
 }
 
-/// Returns the words of a panic, on one line.
-fn message(payload: &(dyn Any + Send)) -> String {
+/// Returns the message of a panic, on one line.
+fn panic_message(payload: &(dyn Any + Send)) -> String {
     let words = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let words = words.or_else(|| payload.downcast_ref::<String>().cloned());
     words.map_or_else(|| "a panic without a message".to_owned(), |words| words.replace('\n', " "))

@@ -11,14 +11,14 @@ use std::{
 pub struct Key(String);
 
 impl Key {
-    /// Returns the key of a run: digests of program and scene, and words for everything else that matters (rules,
-    /// limits, the command, the way of judging). The judging program is always part of it.
+    /// Returns the key of a run. It consists of digests of program and scene, and of `words` for everything else that
+    /// matters (rules, limits, the command, the way of judging). The judging program is always part of it.
     #[must_use]
     pub fn from_program(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         Self::from_parts(this_build(), program, scene, words)
     }
 
-    /// Returns the key of a run that this build judges.
+    /// Returns the key of a run that the build `judge` judges.
     fn from_parts(judge: &str, program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         let mut hasher = blake3::Hasher::new();
         hasher.update(program.as_bytes());
@@ -31,11 +31,11 @@ impl Key {
     }
 }
 
-/// Returns the digest of this very program: two builds of one version may judge differently. If it can't be read, its
-/// version.
+/// Returns the digest of the running program, because two builds of one version may judge differently; its version if
+/// it can't be read.
 ///
-/// The linker's own digest of all that it wrote (the GNU build ID) replaces the bytes if there is one: to read a
-/// program of this size takes as long as to judge ten small scenes.
+/// The GNU build ID, a digest by the linker, is used instead if there is one: reading a program of this size takes as
+/// long as judging ten small scenes.
 #[must_use]
 pub fn this_build() -> &'static str {
     static BUILD: OnceLock<String> = OnceLock::new();
@@ -54,20 +54,20 @@ pub fn this_build() -> &'static str {
     })
 }
 
-/// Returns the build ID of a 64-bit ELF file, if it has one of a digest's length among its first bytes, where linkers
-/// put it.
+/// Returns the build ID of a 64-bit ELF file, if its first bytes hold one of the length of a digest, as linkers write
+/// it.
 fn build_id(file: &mut File) -> Option<Vec<u8>> {
     const NOTES: u32 = 4;
     const BUILD_ID: u32 = 3;
-    const LOOKED_AT: u64 = 1 << 14;
+    const SCANNED_BYTES: u64 = 1 << 14;
     const OWNER: &[u8] = b"GNU\0";
-    const LEAST: usize = 16;
+    const MIN_BUILD_ID_BYTES: usize = 16;
     let mut start = Vec::new();
-    file.take(LOOKED_AT).read_to_end(&mut start).ok()?;
+    file.take(SCANNED_BYTES).read_to_end(&mut start).ok()?;
     let word = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
     let long =
         |bytes: &[u8], at: usize| usize::try_from(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?)).ok();
-    // ELF, 64 bits, least byte first.
+    // A 64-bit ELF file, least significant byte first.
     if !start.starts_with(b"\x7fELF\x02\x01") {
         return None;
     }
@@ -80,7 +80,7 @@ fn build_id(file: &mut File) -> Option<Vec<u8>> {
             let (owner, length) = (usize::try_from(owner).ok()?, usize::try_from(length).ok()?);
             let body = 12 + owner.next_multiple_of(4);
             let id = notes.get(body..body.checked_add(length)?)?;
-            if kind == BUILD_ID && notes.get(12..12 + owner) == Some(OWNER) && length >= LEAST {
+            if kind == BUILD_ID && notes.get(12..12 + owner) == Some(OWNER) && length >= MIN_BUILD_ID_BYTES {
                 return Some(id.to_vec());
             }
             notes = notes.get(body + length.next_multiple_of(4)..)?;

@@ -1,8 +1,8 @@
 //! Suites and grading by them: verdicts, grades, recordings.
 //!
-//! The only place that knows both traces and programs. Yields a [`Grade`]; it writes no markup, speaks no HTTP and
-//! parses no arguments. Programs are run on Linux alone; suites, and grades by traces that are there already
-//! ([`traces`]), are for every machine.
+//! This is the only crate that uses both traces and programs. It makes a [`Grade`], but no markup, and it does not use
+//! HTTP or parse arguments. Programs run only on Linux; suites, and grades of existing traces ([`traces`]), work on
+//! every machine.
 //!
 //! ```
 //! use fosssim_grading::plan;

@@ -1,7 +1,7 @@
-//! The scenes and recordings that come with the program, embedded, so that they exist wherever it runs.
+//! The scenes and recordings that are embedded in the program.
 //!
-//! They are in a folder per assignment. A scene's name is `Group/name`, and no two assignments share one; the full form
-//! `t2m2/Group/name` is understood as well. Recordings are zstd files; `steps` are the digests of a recording's steps.
+//! They are in a folder per assignment. A scene's name is `Group/name`, and is unique; the full form `t2m2/Group/name`
+//! is understood as well. Recordings are zstd files; `steps` are the digests of a recording's steps.
 use super::assignments::{MadeScene, TIMING, version};
 use fosssim_model::assignments::Assignment;
 use glob::Pattern;
@@ -9,26 +9,25 @@ use include_dir::{Dir, File, include_dir};
 use std::path::Path;
 
 static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
-/// Only what runs programs compares with recordings.
+/// The recordings, which only programs that run submissions need.
 #[cfg(target_os = "linux")]
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
 
-/// A wrong trace to examine: its scene, and the sample's output with the mistake `pe-linear-one-ab`.
-pub const FLAWED: (&str, &[u8]) = (
+/// The example of a wrong trace: its scene, and the sample's output with the mistake `pe-linear-one-ab`.
+pub const FLAWED_TRACE: (&str, &[u8]) = (
     "ContinuousTimeTests/spinning-edge-sweeps-balls",
     include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/traces/flawed.bin")),
 );
 
-/// The assignment of scenes that are made.
-const MADE_OF: Assignment = Assignment::T2M3;
+/// The assignment of generated scenes.
+const GENERATED_ASSIGNMENT: Assignment = Assignment::T2M3;
 
 /// Returns the names of all embedded scenes, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
     stems(&ASSETS, ".xml")
 }
 
-/// Returns the names of all scenes that come with the program: embedded ones, and those that are made on demand, which
-/// have no recordings.
+/// Returns the names of all scenes of the program: embedded ones, and generated ones, which have no recordings.
 pub fn all_names() -> impl Iterator<Item = &'static str> {
     names().chain(TIMING.iter().map(|made| made.name))
 }
@@ -39,9 +38,9 @@ pub fn scene(name: &str) -> Option<&'static [u8]> {
     contents(&ASSETS, &format!("{name}.xml")).or_else(|| find_made(name).map(MadeScene::xml))
 }
 
-/// Returns the scene of this name, or name in full, that is made.
+/// Returns the generated scene with this name or full name.
 fn find_made(name: &str) -> Option<&'static MadeScene> {
-    let short = name.strip_prefix(MADE_OF.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
+    let short = name.strip_prefix(GENERATED_ASSIGNMENT.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
     TIMING.iter().find(|made| made.name == short)
 }
 
@@ -52,7 +51,7 @@ pub fn recording(name: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, &format!("{name}.bin.zst"))
 }
 
-/// Returns no recording: without programs there is no use for one.
+/// Returns no recording, because programs cannot be run here.
 #[must_use]
 #[cfg(not(target_os = "linux"))]
 pub const fn recording(_: &str) -> Option<&'static [u8]> {
@@ -72,18 +71,18 @@ pub fn reference(path: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, path)
 }
 
-/// Returns the assignment in whose folder a scene is.
+/// Returns the assignment whose folder contains a scene.
 #[must_use]
 pub fn assignment(name: &str) -> Option<Assignment> {
     if find_made(name).is_some() {
-        return Some(MADE_OF);
+        return Some(GENERATED_ASSIGNMENT);
     }
     let path = file(&ASSETS, &format!("{name}.xml"))?.path();
     Assignment::from_key(path.components().next()?.as_os_str().to_str()?)
 }
 
-/// Returns whether a pattern includes a scene of this name. A pattern that begins with an assignment's folder, such as
-/// `t2m2/*`, includes scenes of that folder; with a version, such as `t2m2@1/*`, scenes of that version.
+/// Returns whether a pattern matches a scene's name. A pattern that begins with an assignment's folder, such as
+/// `t2m2/*`, matches scenes of that folder; with a version, such as `t2m2@1/*`, it matches scenes of that version.
 #[must_use]
 pub fn takes(pattern: &Pattern, name: &str) -> bool {
     let Some((folder, rest)) = pattern.as_str().split_once('/') else { return pattern.matches(name) };
@@ -110,27 +109,27 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
     file(root, path).map(File::contents)
 }
 
-/// Returns a file of an assignment by its path within the assignment's folder, or by its whole path.
+/// Returns a file of an assignment, by its path within the assignment's folder or by its whole path.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
-    let of = |assignment: Assignment| find_below(inner(root, assignment.key())?, path);
+    let of = |assignment: Assignment| find_below(subfolder(root, assignment.key())?, path);
     Assignment::default_first().into_iter().find_map(of).or_else(|| find_below(root, path))
 }
 
-/// Returns the file of this path below a folder. [`Dir::get_file`] compares the path with that of every entry, part by
-/// part.
+/// Returns the file at a path below a folder. [`Dir::get_file`] is slower: it compares the path with that of every
+/// entry.
 fn find_below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     match path.split_once('/') {
-        Some((first, rest)) => find_below(inner(folder, first)?, rest),
+        Some((first, rest)) => find_below(subfolder(folder, first)?, rest),
         None => folder.files().find(|file| is_called(file.path(), path)),
     }
 }
 
 /// Returns the subfolder `name`.
-fn inner(folder: &'static Dir<'static>, name: &str) -> Option<&'static Dir<'static>> {
+fn subfolder(folder: &'static Dir<'static>, name: &str) -> Option<&'static Dir<'static>> {
     folder.dirs().find(|inner| is_called(inner.path(), name))
 }
 
-/// Returns whether the last part of the path is this name.
+/// Returns whether the last part of the path is `name`.
 fn is_called(path: &Path, name: &str) -> bool {
     let before = path.as_os_str().as_encoded_bytes().strip_suffix(name.as_bytes());
     before.is_some_and(|before| before.is_empty() || before.ends_with(b"/"))

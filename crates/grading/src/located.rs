@@ -1,44 +1,44 @@
-//! The common properties of scenes in which a program crashes or runs into a limit: fault localization by spectra.
+//! The common properties of scenes in which a program crashes or exceeds a limit, by spectrum-based fault localization.
 //!
-//! A scene's spectrum is what the reference's run of it contains ([`coverage`](crate::coverage)): kinds of events, and
-//! values of their properties. A value is reported if every failing scene contains it, if no other is better by
-//! Ochiai's measure, and if chance would not explain that: Fisher's exact test, corrected for the number of values.
-//! Values that the scenes can't distinguish are reported together.
+//! A scene's spectrum is the contents of the reference's run ([`coverage`](crate::coverage)): kinds of events, and
+//! values of their properties. A value is reported under three conditions. Every failing scene contains it, no other
+//! value is better by Ochiai's measure, and chance is unlikely to explain that by Fisher's exact test, corrected for
+//! the number of values. Values that the scenes can't distinguish are reported together.
 use super::coverage::{Coverage, FAMILIES};
 pub use fosssim_findings::located::{Content, FailureKind, LocatedFailure};
 use fosssim_model::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A kind of event, or a value of one of its properties, by their numbers in [`FAMILIES`].
+/// A kind of event, or a value of one of its properties, by index in [`FAMILIES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ContentIndex {
     /// The kind of event.
     pub family: usize,
-    /// A property and its value.
+    /// The property's index and its value's index; `None` for all events of the kind.
     pub value: Option<(usize, usize)>,
 }
 
-/// The contents of scenes: their spectrum.
+/// The contents of a scene, which are its spectrum.
 pub type Contents = BTreeSet<ContentIndex>;
 
-/// One scene that was run: whether its program failed, and how.
+/// A scene that was run, with the failure of its program, if any.
 #[derive(Debug, Clone, Copy)]
 pub struct TriedScene<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// The failure of its program, if it failed.
     pub failing: Option<FailureKind>,
-    /// Steps whose records were complete.
+    /// The number of steps with complete records.
     pub steps: u32,
     /// The contents of the scene.
     pub contents: &'a Contents,
 }
 
-/// The greatest probability that chance explains the result, over all values that are tried.
-const SIGNIFICANT: f64 = 0.01;
+/// The maximum probability that chance explains a reported result, over all tried values.
+const MAX_CHANCE: f64 = 0.01;
 
 impl ContentIndex {
-    /// Returns all contents of a scene; none if it can't be simulated to its end.
+    /// Returns all contents of a scene; empty if it can't be simulated to its end.
     #[must_use]
     pub fn for_scene(scene: &Scene) -> Contents {
         let coverage = Coverage::for_scene(scene).unwrap_or_default();
@@ -47,7 +47,7 @@ impl ContentIndex {
         values.chain(kinds).collect()
     }
 
-    /// Returns the content with its names.
+    /// Returns the content by name.
     fn to_content(self) -> Content {
         let family = &FAMILIES[self.family];
         let value = |(axis, value): (usize, usize)| {
@@ -57,8 +57,8 @@ impl ContentIndex {
         Content { family: family.name.into(), value: self.value.map(value) }
     }
 
-    /// Returns the rank of a content: a later place in a step is narrower (zones, then contacts, then the step as a
-    /// whole), and absent events come last.
+    /// Returns the rank of a content, for sorting. A later place in a step is narrower (zones, then contacts, then the
+    /// whole step), and absent events come last.
     const fn rank(self) -> (bool, usize) {
         let place = match self.family {
             4 => 0,
@@ -70,7 +70,7 @@ impl ContentIndex {
     }
 }
 
-/// Returns the contents that the failing scenes have in common; `None` if the evidence is weak.
+/// Returns the contents that all failing scenes have in common; `None` if the evidence is weak.
 #[must_use]
 pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     let failed: Vec<&TriedScene<'_>> = tried.iter().filter(|one| one.failing.is_some()).collect();
@@ -82,8 +82,8 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         let scenes = tried.iter().filter(|one| one.contents.contains(&content)).count();
         with.entry(scenes).or_default().push(content);
     }
-    // As all that fail contain it, Ochiai's measure is the root of failed / with: the fewer contain it, the better it
-    // is.
+    // Every failing scene contains them, so Ochiai's measure is the root of failed / with: fewer scenes with the
+    // content are better.
     let (with, mut contents) = with.into_iter().next()?;
     let looked_at: BTreeSet<Vec<bool>> = tried
         .iter()
@@ -94,11 +94,11 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         .collect();
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let by_chance = chance(failed.len(), with, tried.len()) * looked_at.len() as f64;
-    if by_chance >= SIGNIFICANT || 2 * failed.len() < with {
+    if by_chance >= MAX_CHANCE || 2 * failed.len() < with {
         return None;
     }
     contents.sort_by_key(|content| content.rank());
-    // The values that all events of a kind happen to have are no other place than the kind.
+    // Values that all events of a kind have are left out, because the kind says the same.
     let kinds: Vec<usize> =
         contents.iter().filter(|content| content.value.is_none()).map(|content| content.family).collect();
     contents.retain(|content| content.value.is_none() || !kinds.contains(&content.family));
@@ -117,7 +117,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     })
 }
 
-/// Returns the probability that this number of scenes, drawn at random from `all`, are all among these `with`.
+/// Returns the probability that `failed` scenes, drawn at random from `all`, are all among `with` given ones.
 fn chance(failed: usize, with: usize, all: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let share = |one: usize| (with - one) as f64 / (all - one) as f64;

@@ -1,5 +1,5 @@
-//! Finds the milestone of a program by the scenes that it accepts: a starter library ends with an exit code at an
-//! integrator or a collision type that it does not know, whatever its student wrote.
+//! Infers the milestone of a program from the scenes that it accepts. A starter library ends with an exit code if it
+//! does not know an integrator or a collision type, whatever its student wrote.
 use super::{config::RunLimits, execute::Runner, task::SceneTask};
 use fosssim_model::{
     assignments::{Assignment, Integrator},
@@ -8,23 +8,22 @@ use fosssim_model::{
 use fosssim_sandbox::RunEnd;
 use std::{path::Path, time::Duration};
 
-/// The time on the processor and on the clock for two steps of two bodies, of which a program needs some milliseconds.
-const LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
+/// The limits of processor time and wall time for two steps of two bodies, which take a program some milliseconds.
+const TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
-/// Returns the milestone whose library accepts exactly the scenes that this program accepts; `None` if there is none,
-/// or if the program writes no trace at all. The program is run six times, on two bodies that do not meet.
+/// Returns the milestone whose library accepts exactly the scenes that this program accepts; `None` if no milestone
+/// fits, or if the program never writes a trace. The program is run six times, on two bodies that do not meet.
 ///
-/// # Errors
-/// Faults of ours or of the machine, in words.
+/// # Errors An error of the grader or the machine, as text.
 pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignment>, String> {
-    let [cpu, wall] = LIMITS;
+    let [cpu, wall] = TIME_LIMITS;
     let limits = RunLimits { cpu: runner.limits.cpu.min(cpu), wall: runner.limits.wall.min(wall), ..*runner.limits };
     let runner = Runner { limits: &limits, ..*runner };
     let mut is_traced = false;
     let mut takes = |integrator: Integrator, collision: &str| -> Result<bool, String> {
-        let (trace, outcome) = runner.collect(program, &task(integrator, collision)?, 1)?;
+        let (trace, outcome) = runner.collect(program, &probe_task(integrator, collision)?, 1)?;
         is_traced |= !trace.is_empty();
-        // A program that crashes has accepted the scene.
+        // A program that crashes counts as accepting the scene.
         Ok(!matches!(outcome.ended, RunEnd::Exited(1..)))
     };
     let mut integrators = Vec::new();
@@ -51,8 +50,8 @@ pub fn lacks(found: Assignment, expected: Assignment) -> bool {
         || expected.collisions.iter().any(|one| !found.collisions.contains(one))
 }
 
-/// Makes a scene of two steps with this element for collisions.
-fn task(integrator: Integrator, collision: &str) -> Result<SceneTask, String> {
+/// Creates a scene of two steps with the given integrator and collision element.
+fn probe_task(integrator: Integrator, collision: &str) -> Result<SceneTask, String> {
     let xml = format!(
         "<scene><duration time=\"0.02\"/><integrator type=\"{}\" dt=\"0.01\"/>{collision}\
          <particle m=\"1\" px=\"0\" py=\"0\" vx=\"1\" vy=\"0\" fixed=\"0\" radius=\"0.1\"/>\

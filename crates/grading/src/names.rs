@@ -1,26 +1,26 @@
-//! Names of files as text in which nothing is hidden: two entries never look the same, and none changes the text around
+//! File names as text in which nothing is hidden: different names look different, and no name changes the text around
 //! it.
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
 use unicode_normalization::UnicodeNormalization;
 use unicode_properties::{GeneralCategory, UnicodeGeneralCategory};
 
-/// The greatest number of marks on one letter; further ones only cover the text around.
-const MARKS: usize = 4;
+/// The maximum number of marks on one letter; further ones only cover the text around.
+const MAX_MARKS: usize = 4;
 
 /// Returns a file's name as text, in the usual form of letters with marks (NFC). Invisible or ambiguous characters
-/// become escapes: bytes that are no text (`\xff`), control and format characters (`\r`, `\u{200b}`), blanks other than
-/// single ones between letters, and the backslash itself. Names with different bytes therefore look different, except
-/// for letters with marks that are written in two ways ([`exact`]).
+/// become escapes: bytes that are not text (`\xff`), control and format characters (`\r`, `\u{200b}`), blanks other
+/// than single ones between letters, and the backslash itself. Names with different bytes therefore look different,
+/// except for letters with marks that are written in two ways ([`exact`]).
 #[must_use]
 pub fn printable(name: &OsStr) -> String {
     each_chunk(name, |valid| escape(&valid.nfc().collect::<String>(), |_| false))
 }
 
-/// Returns the name as [`printable`] does, with marks that belong to the letter before them as escapes: another text
-/// for every name.
+/// Returns the name as [`printable`] does, with combining marks as escapes, so that different names have different
+/// texts.
 #[must_use]
 pub fn exact(name: &OsStr) -> String {
-    // A letter that is not in its usual form has another form that is shorter or longer, or is another letter.
+    // A letter that is not in its normalized form changes its length or its identity.
     each_chunk(name, |valid| escape(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))
 }
 
@@ -42,7 +42,7 @@ fn escape(text: &str, besides: impl Fn(char) -> bool) -> String {
     while let Some(c) = rest.next() {
         marks = if is_mark(c) { marks + 1 } else { 0 };
         let blank = c == ' ' && (matches!(before, None | Some(' ')) || rest.peek().is_none());
-        let stray = is_mark(c) && (before.is_none() || marks > MARKS);
+        let stray = is_mark(c) && (before.is_none() || marks > MAX_MARKS);
         match c {
             '\\' => shown.push_str("\\\\"),
             '\n' | '\r' | '\t' => shown.extend(c.escape_debug()),
@@ -58,12 +58,12 @@ fn is_mark(c: char) -> bool {
     matches!(c.general_category(), GeneralCategory::NonspacingMark | GeneralCategory::EnclosingMark)
 }
 
-/// Returns whether a letter of Hangul joins the one before it.
+/// Returns whether a letter of Hangul joins the preceding one.
 const fn is_part_of_a_syllable(c: char) -> bool {
     matches!(c, '\u{1161}'..='\u{11ff}')
 }
 
-/// Returns whether a character shows nothing, or something else on every machine.
+/// Returns whether a character is invisible, or is displayed differently on each machine.
 fn is_hidden(c: char) -> bool {
     use GeneralCategory::{
         Control, Format, LineSeparator, ParagraphSeparator, PrivateUse, SpaceSeparator, Surrogate, Unassigned,
@@ -73,7 +73,7 @@ fn is_hidden(c: char) -> bool {
         matches!(category, Control | Format | LineSeparator | ParagraphSeparator | PrivateUse | Surrogate | Unassigned);
     is_nothing
         || (category == SpaceSeparator && c != ' ')
-        // Letters, marks and symbols that are as good as invisible: fillers, selectors of variants, the empty Braille
+        // Letters, marks and symbols that are practically invisible: fillers, variation selectors, the empty Braille
         // cell.
         || matches!(
             c,
@@ -178,6 +178,6 @@ mod tests {
     #[test]
     fn a_heap_of_marks_covers_nothing() {
         let heap = printable(OsStr::new(&format!("a{}", "\u{316}".repeat(100))));
-        assert_eq!(heap.chars().filter(|c| is_mark(*c)).count(), MARKS);
+        assert_eq!(heap.chars().filter(|c| is_mark(*c)).count(), MAX_MARKS);
     }
 }

@@ -1,34 +1,37 @@
-//! Finds the owner of a file that has several names. Backups and tools that save space make such files, which costs no
-//! points; only a submission that was seen to have another's file has none of its own.
+//! Finds the owner of a file that has several names. Backups and tools that save space make such files, which is
+//! allowed. A submission is rejected only if the search found that it has another's file.
 use fosssim_files::Identity;
 use std::{fs::File, io, os::unix::fs::MetadataExt};
 
-/// Which file a program is, and which other submissions are the same file: a file may have several names.
+/// The identity of a program's file, and whether it is shared with other submissions. A file may have several names.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OneFile {
-    /// The file.
+    /// The identity of the file.
     pub identity: Identity,
     /// Whether another submission has the same file.
     pub is_shared: bool,
-    /// Whether it is another's: the owner of that one's folder owns the file, and the owner of this one's does not.
+    /// Whether the file is another submission's: the owner of that one's folder owns the file, and the owner of this
+    /// one's does not.
     pub is_anothers: bool,
 }
 
-/// The message for two submissions with one file whose owner is unknown. It has no names: students read it, too.
-pub(super) const SHARED: &str =
-    "the program is one file with another submission's (a hard link); the machine can't tell whose it is";
+/// The message about two submissions with one file whose owner is unknown. It contains no names, because students read
+/// it, too.
+pub(super) const SHARED_FILE: &str =
+    "the program is the same file as another submission's (a hard link), and its owner is unknown";
 
-/// The message for a program that is another submission's.
-pub(super) const OF_ANOTHER: &str = "it is another submission's file under a second name (a hard link)";
+/// The message about a program that is another submission's.
+pub(super) const FILE_OF_ANOTHER: &str = "it is a hard link to another submission's file";
 
-/// Returns whether an open file is another submission's, by the notes from the search for submissions.
+/// Returns whether an open file is another submission's, by the data from the search for submissions.
 pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bool> {
     let metadata = file.metadata()?;
     match noted {
         _ if metadata.nlink() == 1 => Ok(false),
         Some(noted) if noted.identity == Identity::from_metadata(&metadata) => Ok(noted.is_anothers),
-        // The owner was not searched: the machine's fault or a trick, and no reason for a zero.
-        _ => Err(io::Error::other("the file was exchanged while submissions were graded; grade again")),
+        // The owner was not searched, because the machine failed or somebody exchanged the file. That must not cost
+        // points.
+        _ => Err(io::Error::other("the file was replaced while submissions were graded; grade again")),
     }
 }
 

@@ -1,7 +1,8 @@
-//! Decides when the rest of a submission is not run any more: a class must not wait for one program that never ends.
+//! Decides when the rest of a submission is skipped: a class must not wait for one program that never ends.
 //!
-//! Pure functions of the results so far, in the suite's order. Further results can only move the end forward, so a
-//! decision while scenes still run holds, and in the end the same scenes are left out whatever the number of jobs.
+//! The functions are pure, and depend only on the results so far, in the suite's order. Further results can only move
+//! the end forward. A decision while scenes still run is therefore final, and the same scenes are skipped whatever the
+//! number of jobs.
 use super::{
     config::Patience,
     result::{NotRunReason, Reason, SceneResult},
@@ -10,8 +11,8 @@ use super::{
 };
 use std::time::Duration;
 
-/// Returns the result of a scene that is left out. All but the last reason are the submission's own doing, so that such
-/// a scene counts as those that were the end.
+/// Returns the result of a skipped scene. All reasons but the last are the submission's own fault, so such a scene
+/// counts like the scenes that caused the end.
 pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {
         NotRunReason::Limits { verdict, .. } => verdict,
@@ -21,9 +22,9 @@ pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     SceneResult::without_run(&task.name, task.scene.steps(), verdict, Reason::LeftOut(why))
 }
 
-/// Returns the first scene that is not run, and why. `known` has the verdict of every scene that is done, and how long
-/// it took.
-pub(super) fn end(
+/// Returns the first scene that is skipped, with the reason. `known` has the verdict and the duration of every finished
+/// scene.
+pub(super) fn find_end(
     patience: &Patience,
     fail_fast: bool,
     known: &[Option<(Verdict, Duration)>],
@@ -53,8 +54,8 @@ pub(super) fn end(
     None
 }
 
-/// Returns whether a program with this verdict was stopped at a limit. An endless loop reaches the first of several:
-/// time, memory, or the size of its output.
+/// Returns whether a program with this verdict was stopped at a limit. An endless loop reaches one of several limits
+/// first: time, memory, or the size of its output.
 const fn is_limit(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::TimeLimit | Verdict::MemoryLimit | Verdict::OutputLimit)
 }
@@ -72,7 +73,7 @@ mod tests {
 
     #[test]
     fn scenes_in_a_row_that_run_into_a_limit_are_the_end() {
-        let end = |known: &[_]| end(&PATIENCE, false, known);
+        let end = |known: &[_]| find_end(&PATIENCE, false, known);
         let limits = |verdict| NotRunReason::Limits { scenes: 3, verdict };
         assert_eq!(end(&[LATE, LATE, LATE, None, FINE]), Some((3, limits(Verdict::TimeLimit))));
         assert_eq!(end(&[LARGE, LATE, LONG, FINE]), Some((3, limits(Verdict::TimeLimit))), "whichever they are");
@@ -86,23 +87,23 @@ mod tests {
         // A scene without a verdict yet is no link of the chain, and the end can only move forward.
         assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, limits(Verdict::TimeLimit))));
         assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, limits(Verdict::TimeLimit))));
-        assert_eq!(super::end(&Patience { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
+        assert_eq!(super::find_end(&Patience { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
     }
 
     #[test]
     fn the_time_of_all_scenes_together_is_limited() {
-        assert_eq!(end(&PATIENCE, false, &[FINE; 5]), None);
-        assert_eq!(end(&PATIENCE, false, &[FINE; 8]), Some((5, NotRunReason::Total(PATIENCE.total))));
+        assert_eq!(find_end(&PATIENCE, false, &[FINE; 5]), None);
+        assert_eq!(find_end(&PATIENCE, false, &[FINE; 8]), Some((5, NotRunReason::Total(PATIENCE.total))));
         assert_eq!(
-            end(&PATIENCE, false, &[FINE, None, FINE, FINE, FINE, FINE, None]),
+            find_end(&PATIENCE, false, &[FINE, None, FINE, FINE, FINE, FINE, None]),
             Some((6, NotRunReason::Total(PATIENCE.total)))
         );
     }
 
     #[test]
     fn the_first_scene_that_is_not_accepted_is_the_end_when_asked_for() {
-        assert_eq!(end(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]), Some((3, NotRunReason::FailFast)));
-        assert_eq!(end(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, NotRunReason::FailFast)));
-        assert_eq!(end(&PATIENCE, false, &[FINE, WRONG, WRONG]), None);
+        assert_eq!(find_end(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]), Some((3, NotRunReason::FailFast)));
+        assert_eq!(find_end(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, NotRunReason::FailFast)));
+        assert_eq!(find_end(&PATIENCE, false, &[FINE, WRONG, WRONG]), None);
     }
 }

@@ -1,5 +1,5 @@
-//! A suite with its scenes looked up: the scenes that a grading really runs.
-pub use super::assignments::{default_name, meant, names as built_in_names};
+//! A suite whose scenes have been found, as a grading runs them.
+pub use super::assignments::{default_name, names as built_in_names, suggest};
 use super::{
     assignments,
     config::{self, Group, Hints, Marking, Pattern, Position, Suite, SuiteError},
@@ -12,22 +12,22 @@ use std::collections::BTreeMap;
 #[cfg(target_os = "linux")]
 mod on_disk;
 #[cfg(target_os = "linux")]
-pub use on_disk::{FindError, LARGEST_SUITE, MOST_SCENE_BYTES, MOST_SCENES, find, load};
+pub use on_disk::{FindError, MAX_SCENE_BYTES, MAX_SCENES, MAX_SUITE_BYTES, find, load};
 
-/// A suite ready to run: its scenes have been looked up.
+/// A suite whose scenes have been found.
 pub type Plan = Suite<SceneTask>;
 
 /// A group with its scenes.
 pub type PlannedGroup = Group<SceneTask>;
 
 impl Plan {
-    /// Returns all scenes in order.
+    /// Returns all scenes, in the suite's order.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneTask> {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
     /// Returns the part of the plan with the scenes that `takes` selects by name. Each keeps its points; empty groups
-    /// are left out, and the name says that this is a part.
+    /// are left out, and the name says that it is a part.
     #[must_use]
     pub fn part(mut self, takes: impl Fn(&str) -> bool) -> Self {
         let all = self.scenes().count();
@@ -36,7 +36,7 @@ impl Plan {
             group.scenes.retain(|task| takes(&task.name));
             #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
             if group.scenes.len() < before {
-                // Speed is marked once all scenes are accepted.
+                // Speed is marked only if all scenes are accepted.
                 group.marking.speed = None;
                 group.marking.points *= group.scenes.len() as f64 / before as f64;
             }
@@ -56,7 +56,7 @@ impl Plan {
         group.map_or(Hints::None, |group| group.marking.hints)
     }
 
-    /// Limits the hints of all readers.
+    /// Limits the hints of all readers to a level.
     pub fn tell_at_most(&mut self, hints: Hints) {
         self.staff_hints = hints;
         self.tell_students(hints);
@@ -67,18 +67,19 @@ impl Plan {
         self.groups.iter_mut().for_each(|group| group.marking.hints = hints);
     }
 
-    /// Returns the milestone whose programs it grades: the named one, else the first that can run most of its scenes.
+    /// Returns the milestone whose programs the suite grades: the named one, otherwise the first that can run most of
+    /// its scenes.
     #[must_use]
     pub fn assignment(&self) -> Assignment {
         let can_run = |assignment: &Assignment| {
             self.scenes().filter(|task| task.scene.unknown_to(*assignment).next().is_none()).count()
         };
-        // Of several with the same number the last one is the maximum.
+        // `max_by_key` returns the last of several maxima.
         let by_scenes = || Assignment::ALL.into_iter().rev().max_by_key(can_run);
         self.milestone.or_else(by_scenes).unwrap_or(Assignment::DEFAULT)
     }
 
-    /// Returns the greatest number of points, without extra ones.
+    /// Returns the maximum number of points, without extra points.
     #[must_use]
     pub fn max_points(&self) -> f64 {
         let of_speed = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);
@@ -87,17 +88,17 @@ impl Plan {
     }
 }
 
-/// Returns the text of a built-in suite: of `t2m2@1`, for example, or of the newest version of `t2m2`.
+/// Returns the text of a built-in suite, such as `t2m2@1`, or the newest version of `t2m2`.
 #[must_use]
 pub fn built_in(name: &str) -> Option<&'static str> {
     assignments::version(name).map(|(_, version)| version.suite)
 }
 
-/// The scenes that a pattern takes: names and XML.
+/// The names and the XML of the scenes that a pattern matches.
 pub type MatchingScenes = Vec<(String, Vec<u8>)>;
 
-/// Looks up the scenes of a suite; `files` looks up patterns that do not name scenes of this program. Patterns that
-/// match nothing, and scenes that can't be read or are not sound, are reported at the pattern's position.
+/// Finds the scenes of a suite; `files` finds those of patterns that name files. Patterns that match nothing, and
+/// scenes that can't be read or are invalid, are reported at the pattern's position.
 fn resolve(
     suite: Suite,
     files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>,
@@ -136,7 +137,7 @@ fn resolve(
                 }
                 match scene::read(&name, &xml) {
                     Ok(loaded) => {
-                        // A file of an embedded scene's name has a recording only if it is that scene.
+                        // A file with an embedded scene's name has a recording only if its content is that scene's.
                         let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
                         let recording = known.then(|| library::recording(&name)).flatten();
                         let beyond = milestone.filter(|_| !known).into_iter();
@@ -154,13 +155,14 @@ fn resolve(
     Suite { name, milestone, run, rules, staff_hints, show_output, build, limits, patience, notes, groups }
 }
 
-/// Reads, validates and looks up a suite.
+/// Reads and validates a suite, and finds its scenes.
 ///
 /// # Errors
-/// As [`config::read`]; also patterns that match nothing, and scenes that can't be read or are not sound.
+///
+/// The errors of [`config::read`], patterns that match nothing, and scenes that can't be read or are invalid.
 pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_all(text);
-    // Patterns are looked up even after other faults: all faults are reported together.
+    // Scenes are searched even after other errors, so that all errors are reported together.
     let plan = resolve(suite, files, &mut problems);
     if problems.is_empty() {
         return Ok(plan);

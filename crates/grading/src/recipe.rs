@@ -1,10 +1,10 @@
-//! The way from a submission to a program that can be run: a program, an archive with one, or sources to build.
+//! The steps from a submission to a program that can be run: a program, an archive with one, or sources to build.
 use super::{
     cancellation::Cancellation,
     config::BuildStep,
-    one_file::{OF_ANOTHER, OneFile, is_anothers},
+    one_file::{FILE_OF_ANOTHER, OneFile, is_anothers},
     result::UnusableReason,
-    staging::{CopyError, LARGEST_FOLDER, StagedProgram, at, build, copy_program, open_in, unreadable},
+    staging::{CopyError, MAX_FOLDER_BYTES, StagedProgram, at, build, classify_error, copy_program, open_in},
     temporary::TemporaryFolder,
     upload,
 };
@@ -21,16 +21,16 @@ use std::{
     path::Path,
 };
 
-/// The way from submissions to programs.
+/// The way in which submissions become programs.
 #[derive(Clone, Copy)]
 pub struct Recipe<'a> {
     /// The program's name in folders and archives.
     pub program: &'a str,
     /// The build of sources, if the suite has one.
     pub build: Option<&'a BuildStep>,
-    /// The place where they are built.
+    /// The sandbox in which sources are built.
     pub backend: &'a Backend,
-    /// Stops a build.
+    /// The switch that stops a build.
     pub cancellation: &'a Cancellation,
 }
 
@@ -48,7 +48,7 @@ impl Recipe<'_> {
             }
             Err(CollectError::NotRegular { .. }) => UnusableReason::CouldNotStart(StartProblem::NotAFile),
             Err(CollectError::Missing { .. }) => UnusableReason::CouldNotStart(StartProblem::NotFound),
-            Err(CollectError::System { source, .. }) => match unreadable(path, source) {
+            Err(CollectError::System { source, .. }) => match classify_error(path, source) {
                 CopyError::Submission(why) => UnusableReason::Unreadable(why),
                 CopyError::Ours(why) => return Err(why),
             },
@@ -57,9 +57,9 @@ impl Recipe<'_> {
         Ok(StagedProgram::unusable(path, why))
     }
 
-    /// Stages as [`Recipe::file`] does, for a file at `name` in a folder whose contents are not ours: a link that leads
-    /// elsewhere, perhaps to another submission, is rejected, and so is a file that is `noted` to be another's. Without
-    /// such a file, an archive in the folder is the submission.
+    /// Stages as [`Recipe::file`] does, for a file at `name` in a folder whose contents are not trusted. A link that
+    /// leads elsewhere is rejected, and so is a file that is `noted` as another's. Without such a file, an archive in
+    /// the folder is the submission.
     ///
     /// # Errors
     /// As for [`Recipe::file`].
@@ -67,7 +67,7 @@ impl Recipe<'_> {
         let path = folder.join(name);
         let why = match open_in(folder, name) {
             Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => {
-                UnusableReason::Unreadable(OF_ANOTHER.to_owned())
+                UnusableReason::Unreadable(FILE_OF_ANOTHER.to_owned())
             }
             Ok(file) => return self.stage_opened(file, &path),
             Err(CollectError::Missing { .. }) => match only_archive(folder, false)? {
@@ -75,7 +75,7 @@ impl Recipe<'_> {
                 None => upload::explain_missing_program(name, folder),
             },
             Err(CollectError::System { source, .. })
-                if matches!(unreadable(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
+                if matches!(classify_error(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
             {
                 return Err(at(&path)(source));
             }
@@ -86,8 +86,7 @@ impl Recipe<'_> {
 
     /// Stages the build of the sources in a folder, or in the only archive that it holds.
     ///
-    /// # Errors
-    /// Faults of ours or of the machine.
+    /// # Errors An error of the grader or the machine.
     pub fn folder(&self, path: &Path) -> Result<StagedProgram, String> {
         match (self.build, only_archive(path, true)?) {
             (None, _) => self.file(path),
@@ -100,12 +99,12 @@ impl Recipe<'_> {
     fn stage_opened(&self, mut file: File, path: &Path) -> Result<StagedProgram, String> {
         match kind_of(&mut file) {
             Ok(FileKind::Archive(_)) => self.stage_unpacked(file, path),
-            // The copy shows why the file can't be read.
+            // The copy reports why the file can't be read.
             _ => copy_program(file, path, self.backend),
         }
     }
 
-    /// Unpacks an archive, and stages its contents: sources for a build, or else the program.
+    /// Unpacks an archive, and stages its contents: sources for a build, otherwise the program.
     fn stage_unpacked(&self, archive: File, path: &Path) -> Result<StagedProgram, String> {
         let folder = TemporaryFolder::make("upload").map_err(at(&std::env::temp_dir()))?;
         let inside = folder.path().join("submission");
@@ -128,7 +127,7 @@ impl Recipe<'_> {
     }
 }
 
-/// Returns the kind of an open file by its first bytes, which are read again later.
+/// Returns the kind of an open file by its first bytes, and rewinds the file.
 fn kind_of(file: &mut File) -> io::Result<FileKind> {
     let mut start = Vec::new();
     file.take(fosssim_intake::START as u64).read_to_end(&mut start)?;
@@ -139,17 +138,17 @@ fn kind_of(file: &mut File) -> io::Result<FileKind> {
 /// Opens the archive in a folder, if it has exactly one: learning platforms make a folder around each upload.
 /// `is_alone` requires that the folder holds only the archive.
 fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
-    /// A folder with more entries is none of a platform's.
-    const MOST: usize = 100;
+    /// The maximum number of entries of a learning platform's folder.
+    const MAX_PLATFORM_ENTRIES: usize = 100;
     let Ok(opened) = OpenFolder::open(folder) else { return Ok(None) };
     let mut names = opened.names().map_err(at(folder))?;
     names.retain(|name| !fosssim_intake::is_litter(name));
-    if names.len() > MOST || is_alone && names.len() > 1 {
+    if names.len() > MAX_PLATFORM_ENTRIES || is_alone && names.len() > 1 {
         return Ok(None);
     }
     let archive = |name: &OsString| {
-        // The owner of a file with several names is unknown.
-        let (mut file, _) = opened.regular_file(name.to_str()?, LARGEST_FOLDER).ok()?;
+        // A file with several names has no known owner.
+        let (mut file, _) = opened.regular_file(name.to_str()?, MAX_FOLDER_BYTES).ok()?;
         matches!(kind_of(&mut file), Ok(FileKind::Archive(_))).then_some(file)
     };
     let mut archives = names.iter().filter_map(archive);

@@ -1,8 +1,8 @@
 //! Recordings: the reference traces of scenes, with a manifest and digests per step that diff well.
 //!
-//! Knows no files: it takes scenes and gives bytes, and compares them with earlier recordings. Layout of the folder
-//! `references`: that of the folder of scenes, with `<name>.bin.zst` (the trace) and `<name>.steps` (a digest per step)
-//! for `<name>.xml`, and `manifest.txt` (name, steps, bytes, SHA-256).
+//! The module works without files: it makes bytes from scenes, and compares them with earlier recordings. The folder
+//! `references` has the layout of the folder of scenes, with `<name>.bin.zst` (the trace) and `<name>.steps` (a digest
+//! per step) for `<name>.xml`, and `manifest.txt` (name, steps, bytes, SHA-256).
 use fosssim_model::{
     scene::{self, Problems, Scene},
     sim::{RootSearch, Simulation, StepError},
@@ -11,19 +11,19 @@ use fosssim_model::{
 use similar::TextDiff;
 use std::io::{self, Read};
 
-/// The compression level of zstd; recordings are made seldom and shipped often.
-const COMPRESSION: i32 = 19;
+/// The compression level of zstd. It is high, because recordings are made rarely and shipped often.
+const COMPRESSION_LEVEL: i32 = 19;
 
 /// The reference trace of one scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Recording {
     /// The scene's name, `Group/name`.
     pub name: String,
-    /// Steps of the scene.
+    /// The number of steps of the scene.
     pub steps: u32,
     /// The trace.
     pub trace: Vec<u8>,
-    /// The text of its `.steps` file: a digest per step, sizes and the SHA-256 of the whole.
+    /// The text of the `.steps` file: a digest per step, sizes, and the SHA-256 of the whole.
     pub digests: String,
     sha256: String,
 }
@@ -37,8 +37,8 @@ pub enum CannotRecord {
     /// A step has no result.
     #[error("the simulation stops: {0}")]
     Step(#[from] StepError),
-    /// The trace could not be gathered.
-    #[error("the trace could not be gathered: {0}")]
+    /// The trace could not be collected.
+    #[error("the trace could not be collected: {0}")]
     Io(#[from] io::Error),
 }
 
@@ -49,7 +49,7 @@ impl Recording {
     /// When the scene has errors, or a step has no result.
     pub fn for_scene(name: &str, xml: &[u8]) -> Result<Self, CannotRecord> {
         let scene = scene::read(name, xml)?.scene;
-        let trace = trace(&scene)?;
+        let trace = simulate_trace(&scene)?;
         let digests = Digests::from_stream(&trace[..], Layout::for_scene(&scene));
         Ok(Self {
             name: name.to_owned(),
@@ -60,12 +60,12 @@ impl Recording {
         })
     }
 
-    /// Returns the contents of its `.bin.zst` file.
+    /// Returns the contents of the recording's `.bin.zst` file.
     ///
     /// # Errors
     /// When zstd fails.
     pub fn pack(&self) -> io::Result<Vec<u8>> {
-        zstd::encode_all(&self.trace[..], COMPRESSION)
+        zstd::encode_all(&self.trace[..], COMPRESSION_LEVEL)
     }
 
     /// Returns the recording's line of the manifest.
@@ -73,7 +73,7 @@ impl Recording {
         format!("{} {} steps {} bytes sha256 {}\n", self.name, self.steps, self.trace.len(), self.sha256)
     }
 
-    /// Returns the difference from the recorded files, as a text for people; `None` when everything is the same.
+    /// Returns a text that describes the difference from the recorded files; `None` if there is none.
     #[must_use]
     pub fn difference(&self, packed: Option<&[u8]>, steps: Option<&[u8]>) -> Option<String> {
         let Some(packed) = packed else { return Some(format!("{}: there is no recording\n", self.name)) };
@@ -82,7 +82,7 @@ impl Recording {
             Err(error) => text += &format!("{}: the recording can't be unpacked: {error}\n", self.name),
             Ok(recorded) if recorded != self.trace => {
                 let at = recorded.iter().zip(&self.trace).take_while(|(old, new)| old == new).count();
-                text += &format!("{}: the traces differ from byte {at} on\n", self.name);
+                text += &format!("{}: the traces differ, beginning at byte {at}\n", self.name);
             }
             Ok(_) => {}
         }
@@ -92,14 +92,14 @@ impl Recording {
     }
 }
 
-/// Returns the manifest of recordings in their order.
+/// Returns the manifest of recordings, in the given order.
 #[must_use]
 pub fn manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> String {
     recordings.into_iter().map(Recording::line).collect()
 }
 
-/// Returns a unified diff from the recording to the present simulation; empty if they are equal. Git may have given the
-/// recorded lines the ends of another system.
+/// Returns a unified diff from the recording to the present simulation; empty if they are equal. Git may have changed
+/// the line ends of the recorded text.
 #[must_use]
 pub fn diff(name: &str, recorded: &str, now: &str) -> String {
     let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));
@@ -108,7 +108,7 @@ pub fn diff(name: &str, recorded: &str, now: &str) -> String {
 }
 
 /// Returns the trace of a scene.
-pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
+pub(super) fn simulate_trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
     for _ in 0..scene.steps() {
@@ -117,7 +117,7 @@ pub(super) fn trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
     Ok(recorder.finish()?.0)
 }
 
-/// Returns the trace of a recording; more than the expected bytes are cut to one more, which is enough to differ.
+/// Returns the trace of a recording, cut after one byte more than expected, which is enough to differ.
 fn unpack(packed: &[u8], expected: usize) -> io::Result<Vec<u8>> {
     let mut trace = Vec::with_capacity(expected);
     zstd::stream::read::Decoder::new(packed)?.take(expected as u64 + 1).read_to_end(&mut trace)?;

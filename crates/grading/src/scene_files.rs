@@ -4,15 +4,15 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// A file of such a folder.
+/// A file in a folder of scenes.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SceneFile {
     /// The scene's name, `Group/name`.
     pub name: String,
-    /// The scene's path in the folder, without the extension: also the path of its recording in the folder of
+    /// The scene's path in the folder, without the extension; also the path of its recording in the folder of
     /// recordings.
     pub stem: String,
-    /// The file.
+    /// The path of the file.
     pub path: PathBuf,
 }
 

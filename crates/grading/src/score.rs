@@ -1,7 +1,7 @@
-//! Makes a grade of the results of a submission's scenes: verdicts, points, and the mistakes that several scenes show
+//! Makes a grade from the results of a submission's scenes: verdicts, points, and the mistakes that several scenes show
 //! together.
 use super::{
-    config::{Credit, MOST_POINTS, Marking},
+    config::{Credit, Marking, POINTS_RANGE},
     grade::{Grade, GroupGrade, SceneGrade},
     library,
     plan::{Plan, PlannedGroup},
@@ -13,15 +13,15 @@ use fosssim_mistakes::diagnose::{self, Explanation};
 use fosssim_model::scene::Scene;
 use std::time::Duration;
 
-/// Shares a group's points evenly among its scenes and adds up the points reached. The results come with whether they
-/// were taken from an earlier run.
+/// Shares a group's points evenly among its scenes and adds up the points reached. Each result comes with whether it
+/// was reused from an earlier run.
 ///
 /// With [`Credit::Steps`] a scene with a complete trace and a wrong answer gets the share of its steps without a
 /// finding, never all; any other verdict but accepted gets nothing. With [`Credit::All`] every scene has to be
-/// accepted. Scenes on which the grader failed, or which it did not come to run, have no points, nor has their group.
+/// accepted. Scenes on which the grader failed, or which it did not run, have no points; neither has their group.
 #[must_use]
-pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
-    let each = worth(marking.points, results.len());
+pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
+    let each = scene_points(marking.points, results.len());
     let all_accepted = results.iter().all(|(result, _)| result.verdict.is_accepted());
     let scenes: Vec<SceneGrade> = results
         .into_iter()
@@ -31,7 +31,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
             SceneGrade { result, points, max_points: each, cached, settled, agreed: 0 }
         })
         .collect();
-    let points = sum(marking.points, all_accepted, &scenes);
+    let points = group_points(marking.points, all_accepted, &scenes);
     let speed = marking.speed.map(|speed| SpeedGrade::from_scenes(speed, scenes.iter().map(|scene| &scene.result)));
     GroupGrade {
         name: name.to_owned(),
@@ -39,7 +39,7 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
         hints: marking.hints,
         extra: marking.extra,
         all_or_nothing: marking.credit == Credit::All,
-        points: with_speed(points, speed.as_ref()),
+        points: add_speed_points(points, speed.as_ref()),
         max_points: marking.points + marking.speed.map_or(0.0, |speed| speed.points),
         speed,
         note: None,
@@ -48,14 +48,14 @@ pub fn group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) ->
     }
 }
 
-/// Returns the grade of the results of all scenes, in the plan's order, as if nothing had been run: no build, no
-/// sandbox, no time. `is_timed` decides whether speed counts.
+/// Returns the grade of the results of all scenes, in the plan's order, without build, sandbox and times. `is_timed`
+/// decides whether speed counts.
 pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
     let mut results = as_written(results).into_iter();
     let of_group = |planned: &PlannedGroup| {
         let marking = Marking { speed: planned.marking.speed.filter(|_| is_timed), ..planned.marking };
         let results = results.by_ref().take(planned.scenes.len()).collect();
-        GroupGrade { note: planned.note.clone(), ..group(&planned.name, marking, results) }
+        GroupGrade { note: planned.note.clone(), ..grade_group(&planned.name, marking, results) }
     };
     let groups: Vec<GroupGrade> = plan.groups.iter().map(of_group).collect();
     let (verdict, points, max_points) = Grade::totals(&groups);
@@ -66,7 +66,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         verdict,
         points,
         max_points,
-        // No program was run that could reveal a hidden scene.
+        // No program was run, so no output can reveal a hidden scene.
         shows_output: true,
         refuted: find_refuted(plan, &groups),
         groups,
@@ -84,8 +84,8 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
     }
 }
 
-/// Returns the results as those of one submission: if one of its traces shows anything, an empty trace is wrong like
-/// others, and does not mean that nothing is written.
+/// Returns the results as those of one submission: if any trace has entries, an empty trace counts as wrong, not as
+/// unwritten.
 fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
     let shows = |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
     if results.iter().any(shows) {
@@ -97,31 +97,31 @@ fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)>
 }
 
 /// Returns the points of the scenes and of their speed.
-fn with_speed(scenes: Option<f64>, speed: Option<&SpeedGrade>) -> Option<f64> {
+fn add_speed_points(scenes: Option<f64>, speed: Option<&SpeedGrade>) -> Option<f64> {
     speed.map_or(scenes, |speed| Some(scenes? + speed.points?))
 }
 
-/// Returns the worth of one scene in a group of this number of scenes.
+/// Returns the points of one scene, in a group of `scenes` scenes.
 #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-fn worth(points: f64, scenes: usize) -> f64 {
+fn scene_points(points: f64, scenes: usize) -> f64 {
     if scenes == 0 { 0.0 } else { points / scenes as f64 }
 }
 
-/// Returns the points of a group. The full score is exact: sums of rounded shares would make 99.99999 of 100.
-fn sum(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
+/// Returns the points of a group. The full score is exact, because a sum of rounded shares could be 99.99999 of 100.
+fn group_points(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
     match all_accepted && !scenes.is_empty() {
         true => Some(points),
         false => scenes.iter().map(|scene| scene.points).sum(),
     }
 }
 
-/// Returns the share of its points that a scene gets.
+/// Returns the share of a scene's points that its result gets.
 fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64> {
     Some(match (credit, result.verdict) {
         (_, Verdict::NotRun | Verdict::JudgeError) => return None,
         (Credit::All, _) => f64::from(u8::from(all_accepted)),
         (_, Verdict::Accepted) => 1.0,
-        // A trace can be wrong with all its steps right: in its first record, or by small errors that add up.
+        // A wrong trace can have only right steps, if its first record is wrong or small errors add up.
         (Credit::Steps, Verdict::WrongAnswer) => {
             let right = result.right_steps.min(result.steps.saturating_sub(1));
             f64::from(right) / f64::from(result.steps.max(1))
@@ -130,14 +130,14 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
     })
 }
 
-/// Returns a contradiction in a grade: points, or a verdict, that do not follow from the verdicts of its scenes. A
-/// grade from elsewhere is checked before its points are believed.
+/// Returns a contradiction in a grade, whose points or verdict do not follow from its scenes. A grade from another
+/// program is checked before its points are used.
 #[must_use]
-pub fn contradiction(grade: &Grade) -> Option<&'static str> {
+pub fn find_contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
-    if !grade.groups.iter().all(|group| MOST_POINTS.contains(&group.max_points)) || grade.max_points != max_points {
-        Some("the reachable points are not those of a suite")
-    } else if grade.points != points || !grade.groups.iter().all(follows) {
+    if !grade.groups.iter().all(|group| POINTS_RANGE.contains(&group.max_points)) || grade.max_points != max_points {
+        Some("the maximum points are not those of a suite")
+    } else if grade.points != points || !grade.groups.iter().all(is_consistent) {
         Some("the points do not follow from the verdicts")
     } else if grade.verdict != verdict {
         Some("the verdict is not the worst of the scenes' verdicts")
@@ -146,11 +146,11 @@ pub fn contradiction(grade: &Grade) -> Option<&'static str> {
     }
 }
 
-/// Returns whether a group's points and verdict are what some credit makes of its scenes' verdicts.
-fn follows(group: &GroupGrade) -> bool {
+/// Returns whether a group's points and verdict follow from its scenes' verdicts by some kind of credit.
+fn is_consistent(group: &GroupGrade) -> bool {
     let all_accepted = group.scenes.iter().all(|scene| scene.verdict.is_accepted());
     let max_points = group.max_points_of_scenes();
-    let each = worth(max_points, group.scenes.len());
+    let each = scene_points(max_points, group.scenes.len());
     let has_its_share = |credit, scene: &SceneGrade| {
         scene.max_points == each && scene.points == share(credit, &scene.result, all_accepted).map(|share| each * share)
     };
@@ -159,12 +159,12 @@ fn follows(group: &GroupGrade) -> bool {
         && group.speed.as_ref().is_none_or(|speed| {
             *speed == SpeedGrade::from_scenes(speed.marking, group.scenes.iter().map(|scene| &scene.result))
         })
-        && group.points == with_speed(sum(max_points, all_accepted, &group.scenes), group.speed.as_ref())
+        && group.points == add_speed_points(group_points(max_points, all_accepted, &group.scenes), group.speed.as_ref())
         && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
 /// The number of accepted scenes that are checked for evidence against a likely mistake.
-const WITNESSES: usize = 12;
+const MAX_WITNESSES: usize = 12;
 
 /// Returns the likely mistakes that accepted scenes contradict; the smallest of these scenes are tried.
 fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
@@ -181,8 +181,8 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .map(|(_, task)| &task.scene)
         .collect();
     right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
-    right.truncate(WITNESSES);
-    // Bundled scenes are in their milestone's folder; for others, their contents decide.
+    right.truncate(MAX_WITNESSES);
+    // Bundled scenes are in their milestone's folder; the milestone of others follows from their contents.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
     let whose = bundled.or_else(|| diagnose::milestone(plan.scenes().map(|task| &task.scene)));
     diagnose::refuted_keys(whose, &wrong, &right)
@@ -214,7 +214,7 @@ mod tests {
             extra: false,
             speed: None,
         };
-        group("g", marking, scenes).points.expect("points")
+        grade_group("g", marking, scenes).points.expect("points")
     }
 
     #[test]
@@ -238,9 +238,9 @@ mod tests {
             extra: false,
             speed: None,
         };
-        let graded = group("g", marking, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
+        let graded = grade_group("g", marking, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
         assert_eq!(graded.verdict, Verdict::RuntimeError);
-        let empty = group("g", marking, Vec::new());
+        let empty = grade_group("g", marking, Vec::new());
         assert_eq!((empty.points, empty.verdict), (Some(0.0), Verdict::NotRun));
     }
 
@@ -263,7 +263,7 @@ mod tests {
                     extra: false,
                     speed: None,
                 };
-                let graded = group("g", marking, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);
+                let graded = grade_group("g", marking, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);
                 assert_eq!((graded.points, graded.scenes[1].points), (None, None));
                 assert!(graded.scenes[0].points.is_some());
             }

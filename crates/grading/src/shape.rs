@@ -1,6 +1,6 @@
-//! The shape of a suite file: its keys, and the kind of value of each.
+//! The shape of a suite file: its keys, and the type of each value.
 //!
-//! Finds all faults together, and removes wrong parts, so that the others can still be checked.
+//! The check finds all faults together, and removes wrong parts, so that the others can still be checked.
 use super::near::closest;
 use fosssim_findings::{Hints, Visibility};
 use fosssim_judge::Rules;
@@ -12,21 +12,21 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-/// A problem and where it is, in bytes.
+/// A problem and its byte range in the file.
 pub(super) type Problem = (Range<usize>, String);
 
-/// The points that a group may have.
-pub const MOST_POINTS: Range<f64> = 0.0..1e6;
+/// The range of a group's points.
+pub const POINTS_RANGE: Range<f64> = 0.0..1e6;
 
-/// The rule for partial success.
+/// The rule for partial credit.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Credit {
-    /// The group's points times the share of accepted scenes.
+    /// The group's points are multiplied by the share of accepted scenes.
     Scenes,
-    /// Within each scene, the share of steps without a finding.
+    /// Each scene counts by its share of steps without a finding.
     Steps,
-    /// All or nothing.
+    /// All scenes have to be accepted.
     All,
 }
 
@@ -34,12 +34,12 @@ pub enum Credit {
 enum ValueKind {
     Text,
     Texts,
-    /// A number in this range; if it is out of range, the message names its table first.
+    /// A number in a range; the message about a number out of range begins with the table's name.
     Number(&'static str, Range<f64>),
-    /// A whole number that is not negative.
+    /// A whole number of at least 0.
     Whole,
     Flag,
-    /// One word of these.
+    /// A word of a list.
     Choice(&'static [&'static str]),
     Table(&'static [Key]),
     Tables(&'static [Key]),
@@ -50,7 +50,7 @@ struct Key(&'static str, ValueKind, bool);
 
 const HINTS: &[&str] = &["none", "where", "what", "full"];
 
-/// The keys of the milestones, in the order of the course.
+/// The names of the milestones, in the order of the course.
 const MILESTONES: [&str; Assignment::ALL.len()] = {
     let mut keys = [""; Assignment::ALL.len()];
     let mut index = 0;
@@ -61,8 +61,7 @@ const MILESTONES: [&str; Assignment::ALL.len()] = {
     keys
 };
 
-/// Declares the tables of the file: each with its keys, and the values that are read from them once their shape has
-/// been checked.
+/// Declares the tables of the file: the keys of each, and the struct that is read after the shape has been checked.
 macro_rules! tables {
     ($($raw:ident $keys:ident { $($key:ident: $value:ty = $kind:expr, $is_required:literal;)+ })+) => {
         $(
@@ -96,7 +95,7 @@ tables! {
     RawGroup GROUP {
         name: Spanned<String> = ValueKind::Text, true;
         scenes: Spanned<Vec<Spanned<String>>> = ValueKind::Texts, true;
-        points: f64 = ValueKind::Number("", MOST_POINTS), false;
+        points: f64 = ValueKind::Number("", POINTS_RANGE), false;
         extra: bool = ValueKind::Flag, false;
         credit: Credit = ValueKind::Choice(&["scenes", "steps", "all"]), false;
         visibility: Visibility = ValueKind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false;
@@ -109,10 +108,10 @@ tables! {
         key: Spanned<String> = ValueKind::Text, true;
         text: String = ValueKind::Text, false;
         link: Spanned<String> = ValueKind::Text, false;
-        points: f64 = ValueKind::Number("mistake.", MOST_POINTS), false;
+        points: f64 = ValueKind::Number("mistake.", POINTS_RANGE), false;
     }
     RawSpeed SPEED {
-        points: f64 = ValueKind::Number("speed.", MOST_POINTS), true;
+        points: f64 = ValueKind::Number("speed.", POINTS_RANGE), true;
         full_at: f64 = ValueKind::Number("speed.", 0.001..1e6), false;
         none_at: f64 = ValueKind::Number("speed.", 0.001..1e6), false;
         second: f64 = ValueKind::Number("speed.", 0.001..1e4), false;
@@ -133,7 +132,7 @@ tables! {
     }
 }
 
-/// The tables to which a misplaced key may belong.
+/// The tables in which a misplaced key may belong.
 const PLACES: [(&str, &[Key]); 6] = [
     ("[limits]", LIMITS),
     ("[build]", BUILD),
@@ -143,25 +142,25 @@ const PLACES: [(&str, &[Key]); 6] = [
     ("the top of the file", SUITE),
 ];
 
-/// Returns the table without its faulty parts, all faults, and whether every line could be read.
+/// Returns the table without its faulty parts, all problems, and whether every line could be parsed.
 pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bool) {
     let (mut table, errors) = DeTable::parse_recoverable(text);
     let mut problems: Vec<Problem> =
         errors.iter().map(|error| (error.span().unwrap_or(0..0), error.message().trim().replace('\n', " "))).collect();
     let is_readable = problems.is_empty();
     if is_readable {
-        clean(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
+        remove_unknown(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
     } else {
-        // Nobody knows the meaning of a broken line.
+        // The meaning of a broken line is unknown.
         table.get_mut().clear();
     }
     (table, problems, is_readable)
 }
 
-/// Takes out of a table what does not belong there.
-fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
+/// Removes unknown keys and values of the wrong type from a table, and reports them.
+fn remove_unknown(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
     for Key(name, _, required) in keys {
-        // A misspelt key is reported at its place.
+        // A misspelled key is reported at its position.
         let meant = |key: &Spanned<Cow<'_, str>>| {
             key.get_ref() == name || closest(key.get_ref(), keys.iter().map(|Key(name, ..)| *name)) == Some(name)
         };
@@ -171,7 +170,7 @@ fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, p
     }
     let entries = std::mem::take(table).into_iter().filter_map(|(key, mut value)| {
         let fits = match keys.iter().find(|Key(name, ..)| key.get_ref() == name) {
-            Some(Key(name, kind, _)) => fits(name, kind, &mut value, problems),
+            Some(Key(name, kind, _)) => has_type(name, kind, &mut value, problems),
             None => {
                 problems.push((key.span(), describe_unknown(key.get_ref(), keys, place)));
                 false
@@ -182,18 +181,18 @@ fn clean(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, p
     *table = entries.collect();
 }
 
-/// Returns whether a value is of its kind.
-fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
+/// Returns whether a value is of the given type.
+fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems: &mut Vec<Problem>) -> bool {
     let at = value.span();
     let is = value.get_ref().type_str();
     let mut wrong = |wanted: &str| {
-        problems.push((at.clone(), format!("{name} must be {wanted}, not {}", article(is))));
+        problems.push((at.clone(), format!("{name} must be {wanted}, not {}", with_article(is))));
         false
     };
     match (kind, value.get_mut()) {
         (ValueKind::Text, DeValue::String(_)) | (ValueKind::Flag, DeValue::Boolean(_)) => true,
         (ValueKind::Number(table, range), given @ (DeValue::Float(_) | DeValue::Integer(_))) => {
-            let number = number(given).filter(|number| !range.contains(number));
+            let number = read_number(given).filter(|number| !range.contains(number));
             if let Some(number) = number {
                 let Range { start, end } = range;
                 problems.push((at, format!("{table}{name} is {number}: it must be between {start} and {end}")));
@@ -204,27 +203,27 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
         (ValueKind::Choice(words), DeValue::String(word)) => {
             let known = words.contains(&word.as_ref());
             if !known {
-                problems.push((at, not_among(name, word, words)));
+                problems.push((at, describe_choices(name, word, words)));
             }
             known
         }
         (ValueKind::Texts, DeValue::Array(list)) => {
             let before = problems.len();
             for item in list.iter().filter(|item| !item.get_ref().is_str()) {
-                let is = article(item.get_ref().type_str());
+                let is = with_article(item.get_ref().type_str());
                 problems.push((item.span(), format!("each of {name} must be a text in quotes, not {is}")));
             }
             problems.len() == before
         }
         (ValueKind::Table(keys), DeValue::Table(table)) => {
-            clean(table, keys, &format!("[{name}]"), at, problems);
+            remove_unknown(table, keys, &format!("[{name}]"), at, problems);
             true
         }
         (ValueKind::Tables(keys), DeValue::Array(list)) if list.iter().all(|item| item.get_ref().is_table()) => {
             for item in list.iter_mut() {
                 let at = item.span();
                 if let DeValue::Table(table) = item.get_mut() {
-                    clean(table, keys, &format!("this [[{name}]]"), at, problems);
+                    remove_unknown(table, keys, &format!("this [[{name}]]"), at, problems);
                 }
             }
             true
@@ -240,8 +239,8 @@ fn fits(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, problems
     }
 }
 
-/// Returns a number's value, rounded if it is long; none for a hexadecimal number, which no reader accepts.
-fn number(value: &DeValue<'_>) -> Option<f64> {
+/// Returns a number's value, rounded if it is long; `None` for a hexadecimal number, which no reader accepts.
+fn read_number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(number) => number.as_str().parse().ok(),
         DeValue::Integer(number) if number.radix() == 10 => number.as_str().parse().ok(),
@@ -251,18 +250,18 @@ fn number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// Returns `an integer`, `a string`.
-fn article(kind: &str) -> String {
+/// Returns the type with its article, such as `an integer`.
+fn with_article(kind: &str) -> String {
     format!("{} {kind}", if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
-/// Returns the message for a word that is not in the list.
-fn not_among(name: &str, word: &str, words: &[&str]) -> String {
+/// Returns the message for a word that is not in a list.
+fn describe_choices(name: &str, word: &str, words: &[&str]) -> String {
     let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
-    format!("{name} \"{word}\" is not known: there are {}{}", list_words(words, "and"), hint.unwrap_or_default())
+    format!("{name} \"{word}\" is unknown; choose {}{}", list_words(words, "and"), hint.unwrap_or_default())
 }
 
-/// Returns `"a", "b" and "c"`.
+/// Returns a list as text, such as `"a", "b" and "c"`.
 fn list_words(words: &[&str], last: &str) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     match &quoted[..] {
@@ -271,7 +270,7 @@ fn list_words(words: &[&str], last: &str) -> String {
     }
 }
 
-/// Returns the message for a key that does not belong here.
+/// Returns the message for an unknown key in a table.
 fn describe_unknown(key: &str, keys: &[Key], place: &str) -> String {
     let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
     let here = keys.iter().map(|Key(name, ..)| *name);

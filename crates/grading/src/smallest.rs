@@ -12,24 +12,24 @@ use fosssim_sandbox::{RunEnd, TimeOf, processor_time};
 use fosssim_shrink::{Observation, SmallScene, WrongReason, beginnings, reduce};
 use std::{path::Path, time::Duration};
 
-/// Scenes that are tried for one cause, the smallest first.
-const MOST_SCENES: usize = 4;
-/// Scenes with more bodies are not made smaller: their traces are too long to be kept whole.
-pub const MOST_BODIES: usize = 400;
-/// Causes without a name of which a scene is made.
-const MOST_UNNAMED: usize = 2;
+/// The maximum number of scenes that are tried for one cause, the smallest first.
+const MAX_SCENES: usize = 4;
+/// The maximum number of bodies of a scene that is reduced; traces of larger scenes are too long to be kept whole.
+pub const MAX_BODIES: usize = 400;
+/// The maximum number of causes without a name for which a scene is made.
+const MAX_UNNAMED_CAUSES: usize = 2;
 
 /// The limits where the smallest scenes are only the end of a report.
-pub const QUICK: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2), step: None };
+pub const QUICK_LIMITS: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2), step: None };
 
-/// The time on the processor and on the clock of a run.
-const PATIENCE: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
+/// The limits of processor time and wall time of a run.
+const RUN_TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
-/// Returns limits with no more time than a program needs on a small scene. A trace that is complete at its end is read
-/// all the same.
+/// Returns limits with no more time than a program needs on a small scene. A trace that is complete at the time limit
+/// is still read.
 #[must_use]
 pub fn impatient(limits: &RunLimits) -> RunLimits {
-    RunLimits { cpu: limits.cpu.min(PATIENCE[0]), wall: limits.wall.min(PATIENCE[1]), ..*limits }
+    RunLimits { cpu: limits.cpu.min(RUN_TIME_LIMITS[0]), wall: limits.wall.min(RUN_TIME_LIMITS[1]), ..*limits }
 }
 
 /// Describes a smallest scene for staff.
@@ -38,9 +38,9 @@ pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene) -> SmallestScene + Sync + '
 /// The most that may be spent on one cause, and where it begins.
 #[derive(Debug, Clone, Copy)]
 pub struct ShrinkLimits {
-    /// Runs of the program.
+    /// The maximum number of runs of the program.
     pub runs: u32,
-    /// The processor time of these runs, and of this process meanwhile.
+    /// The maximum processor time of these runs and of this thread.
     pub time: Duration,
     /// The wrong step with which the search begins; by default the first ones.
     pub step: Option<u32>,
@@ -52,11 +52,11 @@ pub type Cause<'a> = (Option<WrongReason>, Vec<&'a SceneTask>);
 /// The smallest scene for a cause.
 #[derive(Debug, Clone)]
 pub struct ShrunkScene {
-    /// The reason why the program is wrong on the scene.
+    /// The cause of the wrong result.
     pub reason: WrongReason,
-    /// The scene that it is made of.
+    /// The name of the original scene.
     pub origin: String,
-    /// The scene.
+    /// The reduced scene.
     pub small: SmallScene,
     /// The program's run on the scene.
     pub seen: Observation,
@@ -69,14 +69,13 @@ pub struct ShrunkScene {
 pub struct WrongScene<'a> {
     /// The scene.
     pub task: &'a SceneTask,
-    /// The explanations of its trace.
+    /// The explanations of the program's trace.
     pub explanations: &'a [Explanation],
-    /// The way the program ended.
+    /// The end of the program.
     pub ended: &'a RunEnd,
 }
 
-/// Returns the causes of wrong scenes: the likely mistakes, the ways in which the program does not end well, and a few
-/// of the scenes that nothing explains.
+/// Returns the causes of wrong scenes: the likely mistakes, the kinds of failing ends, and a few unexplained scenes.
 #[must_use]
 pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
     let likely =
@@ -97,29 +96,29 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause
             all.push((Some(reason), scenes));
         }
     }
-    all.extend(left.iter().take(MOST_UNNAMED).map(|one| (None, vec![one.task])));
+    all.extend(left.iter().take(MAX_UNNAMED_CAUSES).map(|one| (None, vec![one.task])));
     all
 }
 
 /// Runs a program on ever smaller scenes.
 pub struct Shrinker<'a> {
-    /// The way in which the program is run.
+    /// The runner of the program.
     pub runner: Runner<'a>,
-    /// The program.
+    /// The path of the program.
     pub program: &'a Path,
-    /// The milestone whose programs' scenes are made.
+    /// The milestone that decides the form of the scenes.
     pub assignment: Assignment,
-    /// The most that may be spent on one cause.
+    /// The limits of the work for one cause.
     pub limits: ShrinkLimits,
 }
 
 impl Shrinker<'_> {
-    /// Returns the smallest scene for a cause; `None` if neither a step nor some steps show it again.
+    /// Returns the smallest scene for a cause; `None` if no part of a scene reproduces it.
     ///
     /// # Errors
     /// Faults of ours or of the machine, in words.
     pub fn smallest(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
-        tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
+        tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let mut spent = Duration::ZERO;
         // Other threads may grade; their time does not count.
@@ -128,7 +127,7 @@ impl Shrinker<'_> {
             let own = processor_time(TimeOf::Thread).saturating_sub(begun);
             spent + own >= self.limits.time || self.runner.cancellation.is_cancelled()
         };
-        for task in tasks.into_iter().take(MOST_SCENES) {
+        for task in tasks.into_iter().take(MAX_SCENES) {
             let seen = self.observe(&task.scene, &mut spent)?;
             let Some(reason) = reason.clone().or_else(|| WrongReason::first(&task.scene, &seen)) else {
                 continue;
@@ -165,7 +164,7 @@ impl Shrinker<'_> {
     }
 }
 
-/// Returns the steps of a run that are wrong; of a program that did not end well, the one behind its last record.
+/// Returns the wrong steps of a run; if the program did not end well, the step after its last record.
 fn wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());

@@ -1,8 +1,8 @@
 //! Times a submission and the reference program, if a suite gives points for speed.
 //!
-//! Both run in turn in the same sandbox, on the same scene and machine, and both traces are judged: a program that is
-//! fast because it leaves something out in its timed runs has no points. The reference is this very program in its role
-//! as the course's original.
+//! Both run alternately in the same sandbox, on the same scene and machine. Both traces are judged, so that a program
+//! gets no points if it leaves something out in its timed runs. The reference is the running program itself, in its
+//! role as the course's original.
 use super::{
     config,
     execute::Runner,
@@ -20,8 +20,8 @@ use fosssim_findings::{
 use std::{fs, time::Instant};
 
 impl SubmissionGrading<'_> {
-    /// Times the scenes of groups that mark speed, if all of the group's are accepted. Times that this machine measured
-    /// earlier for the same program stay. Timed runs have as much time as the graded ones; when it is used up, each
+    /// Times the scenes of each group that marks speed, if all of the group's scenes are accepted. Earlier times of the
+    /// same program on this machine stay. Timed runs have as much time as the graded ones. When it is used up, each
     /// further scene is timed once.
     pub(super) fn time_scenes(&self, results: &mut [(SceneResult, bool)]) {
         let mut rest = results;
@@ -40,7 +40,7 @@ impl SubmissionGrading<'_> {
                 result.timing = self.time_scene(scene, marking, begin + self.grader.plan.patience.total);
                 *cached = false;
                 self.keep_timed(scene, result);
-                // No further time is left.
+                // The time is used up.
                 if result.timing.as_ref().is_none_or(|timing| timing.failed.is_some()) {
                     break;
                 }
@@ -48,7 +48,7 @@ impl SubmissionGrading<'_> {
         }
     }
 
-    /// Keeps a result once more, with its times.
+    /// Stores a result again, with its times.
     fn keep_timed(&self, scene: &SceneTask, result: &SceneResult) {
         if let (Some(_), Ok(staged)) = (&result.timing, &*self.staged_program()) {
             let students = self.grader.plan.student_hints(&scene.name);
@@ -57,12 +57,12 @@ impl SubmissionGrading<'_> {
         }
     }
 
-    /// Returns the timed runs of a scene, of which the first alone begins after `end`; nothing if the grader failed or
-    /// was stopped.
+    /// Returns the timed runs of a scene; after `end`, only one run is made. `None` if the grader failed or was
+    /// stopped.
     fn time_scene(&self, scene: &SceneTask, marking: SpeedMarking, end: Instant) -> Option<Timing> {
         let (staged, reference) = (self.staged_program(), self.shared.reference(self.grader.reference?));
         let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
-        let mut timing = Timing { machine: machine(), runs: Vec::new(), failed: None };
+        let mut timing = Timing { machine: machine_name(), runs: Vec::new(), failed: None };
         let run = |program: &StagedProgram, words: &[String]| {
             let runner = Runner {
                 run: words,
@@ -81,7 +81,7 @@ impl SubmissionGrading<'_> {
             }
             let submission = || run(staged, &self.grader.plan.run);
             let other = || run(reference, &config::default_run());
-            // Neither always has the caches that the other has left.
+            // Alternate the order, so that neither always profits from warm caches.
             let ((verdict, submission), (sound, reference)) = match round % 2 {
                 0 => (submission(), other()),
                 _ => {
@@ -103,13 +103,13 @@ impl SubmissionGrading<'_> {
     }
 }
 
-/// Returns whether these times were measured here, often enough.
+/// Returns whether the times were measured on this machine, with enough runs.
 fn is_of_here(timing: &Timing, marking: SpeedMarking) -> bool {
-    timing.machine == machine() && (timing.failed.is_some() || timing.runs.len() >= marking.runs as usize)
+    timing.machine == machine_name() && (timing.failed.is_some() || timing.runs.len() >= marking.runs as usize)
 }
 
-/// Returns this machine's name and its processor.
-fn machine() -> String {
+/// Returns the names of this machine and its processor.
+fn machine_name() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let processor = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
     let model = processor.lines().find_map(|line| line.strip_prefix("model name")).unwrap_or_default();

@@ -1,13 +1,13 @@
-//! Copies a submission to a place in which it can run: no other process reads or changes the copy, which is digested
+//! Copies a submission to a folder in which it can run. No other process can read or change the copy, which is digested
 //! while it is written.
 //!
-//! Each file that is copied is opened once, beneath the submission's folder and without following links or waiting, and
-//! judged by the open file: a user who may write in that folder can exchange a name, not the open file. If a file can't
-//! be copied because of its kind or its permissions, that is the submission's fault and not the grader's. Sources are
-//! built in a copy of their folder, in the sandbox, so that a build changes nothing of the submission.
+//! Each file is opened once, below the submission's folder, without following links or blocking, and all checks use the
+//! open file. A user who may write in that folder can exchange a name, but not the open file. If a file can't be copied
+//! because of its kind or its permissions, that is the submission's fault and not the grader's. Sources are built in a
+//! copy of their folder, in the sandbox, so that a build changes nothing of the submission.
 use super::{
     cancellation::Cancellation,
-    conclude::beginning,
+    conclude::truncate,
     config::BuildStep,
     grade::Build,
     one_file::{OneFile, is_anothers},
@@ -28,44 +28,44 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The greatest size, number of files and depth of a submission's folder; more is no homework.
-pub(super) const LARGEST_FOLDER: u64 = 1 << 30;
-const MOST_FILES: u64 = 20_000;
-/// The greatest size of a build's folder, sources included.
-const LARGEST_BUILD: u64 = 2 << 30;
-const DEEPEST: u32 = 64;
-/// The bytes that a report keeps of the compiler's output.
-const KEPT_OUTPUT: usize = 64 << 10;
-/// Bytes that are copied at one go.
-const AT_ONE_GO: usize = 1 << 16;
+/// The maximum size of a submission's folder, in bytes.
+pub(super) const MAX_FOLDER_BYTES: u64 = 1 << 30;
+const MAX_FILES: u64 = 20_000;
+/// The maximum size of a build's folder, including sources, in bytes.
+const MAX_BUILD_BYTES: u64 = 2 << 30;
+const MAX_DEPTH: u32 = 64;
+/// The maximum number of bytes of compiler output that a report keeps.
+const MAX_OUTPUT_BYTES: usize = 64 << 10;
+/// The size of a copied block, in bytes.
+const BLOCK_BYTES: usize = 1 << 16;
 
-/// A program to run, with its digest. The copy is removed with it.
+/// A program to run, with its digest. Dropping the value removes the copy.
 #[derive(Debug)]
 pub struct StagedProgram {
-    /// The place where it is.
+    /// The path of the program.
     pub program: PathBuf,
-    /// The digest of its bytes; of its path when there is nothing that can be run.
+    /// The digest of the program's bytes; of its path if there is no runnable program.
     pub digest: blake3::Hash,
-    /// The result of its build.
+    /// The result of the build, if there was one.
     pub build: Option<Build>,
-    /// The reason why the submission itself can't be run: its own fault.
+    /// The reason why the submission cannot be run, which is its own fault.
     pub refused: Option<UnusableReason>,
-    /// Which file the copy is.
+    /// The identity of the copied file.
     pub(super) identity: Option<ProgramIdentity>,
     _folder: Option<TemporaryFolder>,
 }
 
-/// Reports the file or folder that the operating system rejects, and why: our fault or the machine's.
+/// Creates a message with a path and the error of the operating system.
 pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> String {
     move |error| format!("{}: {error}", path.display())
 }
 
-/// The reason why a submission's files are not copied.
+/// The reason why a submission's files were not copied.
 #[derive(Debug)]
 pub(super) enum CopyError {
-    /// The submission's own fault, in words.
+    /// The submission's own fault, as text.
     Submission(String),
-    /// Ours or the machine's, in words.
+    /// An error of the grader or the machine, as text.
     Ours(String),
 }
 
@@ -75,10 +75,10 @@ impl From<String> for CopyError {
     }
 }
 
-/// Returns the meaning of a failure to open or read part of a submission: closed or vanished files are the submission's
-/// doing.
-pub(super) fn unreadable(name: &Path, error: io::Error) -> CopyError {
-    // A path may be as long as the submission likes, and a disk that fails is the machine's.
+/// Returns the kind of an error when a part of a submission is opened or read: inaccessible or vanished files are the
+/// submission's own fault.
+pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
+    // The length of a path is the submission's choice, and a failing disk is the machine's fault.
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
     match closed || error.kind() == io::ErrorKind::InvalidFilename {
         true => CopyError::Submission(format!("{} can't be read: {error}", name.to_string_lossy().escape_debug())),
@@ -86,14 +86,15 @@ pub(super) fn unreadable(name: &Path, error: io::Error) -> CopyError {
     }
 }
 
-/// Copies the program that is the measure of speed. Its copy is called as the course's original, whose role it takes by
-/// that name.
+/// Copies the program that speed is compared with. The copy has the name of the course's original, by which it takes
+/// that role.
 ///
 /// # Errors
-/// When it can't be read or copied.
+///
+/// When the program can't be read or copied.
 pub fn reference(path: &Path) -> Result<StagedProgram, String> {
     let (file, _) = collect::open_file(path, true).map_err(|error| at(path)(io::Error::other(error)))?;
-    copied_as(OsStr::new("FOSSSimOracle"), file, path, &mut { LARGEST_FOLDER }).map_err(|error| match error {
+    copy_as(OsStr::new("FOSSSimOracle"), file, path, &mut { MAX_FOLDER_BYTES }).map_err(|error| match error {
         CopyError::Submission(why) => at(path)(io::Error::other(why)),
         CopyError::Ours(why) => why,
     })
@@ -101,18 +102,17 @@ pub fn reference(path: &Path) -> Result<StagedProgram, String> {
 
 pub(super) fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
     let opened = OpenFolder::open(folder).map_err(|source| CollectError::System { name: name.to_owned(), source })?;
-    opened.file(OsStr::new(name), LARGEST_FOLDER).map(|(file, _)| file)
+    opened.file(OsStr::new(name), MAX_FOLDER_BYTES).map(|(file, _)| file)
 }
 
-/// Returns the digest of a file in its place, without a copy; `None` for files that [`Recipe::file`] rejects, and for
-/// links.
+/// Returns the digest of a file without copying it; `None` for files that [`Recipe::file`] rejects, and for links.
 #[must_use]
 pub fn digest(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
-    if length <= LARGEST_FOLDER { digest_of(file) } else { None }
+    if length <= MAX_FOLDER_BYTES { digest_of(file) } else { None }
 }
 
-/// Returns the digest as [`digest`] does, for what [`Recipe::file_in`] takes.
+/// Returns the digest of the file that [`Recipe::file_in`] would stage, without copying it.
 #[must_use]
 pub fn digest_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Option<blake3::Hash> {
     let file = open_in(folder, name).ok()?;
@@ -121,11 +121,11 @@ pub fn digest_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Option<b
 
 fn digest_of(file: File) -> Option<blake3::Hash> {
     let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(file.take(LARGEST_FOLDER)).is_ok().then(|| hasher.finalize())
+    hasher.update_reader(file.take(MAX_FOLDER_BYTES)).is_ok().then(|| hasher.finalize())
 }
 
 impl StagedProgram {
-    /// Returns nothing that could be run.
+    /// Creates a staged submission without a runnable program.
     fn nothing(path: &Path) -> Self {
         let digest = blake3::hash(path.as_os_str().as_encoded_bytes());
         Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
@@ -135,23 +135,23 @@ impl StagedProgram {
         Self { refused: Some(why), ..Self::nothing(path) }
     }
 
-    /// Returns the digest of the program's bytes; `None` if nothing can be run.
+    /// Returns the digest of the program's bytes; `None` without a runnable program.
     pub(super) fn program_digest(&self) -> Option<blake3::Hash> {
         let is_built = self.build.as_ref().is_none_or(|build| build.end.is_success());
         (is_built && self.refused.is_none()).then_some(self.digest)
     }
 }
 
-/// Copies an open program, unless it is the grader itself or can't be started.
+/// Copies an open program, unless it is the grader or cannot be started.
 pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result<StagedProgram, String> {
     let metadata = file.metadata().map_err(at(path))?;
-    let mut room = LARGEST_FOLDER;
+    let mut room = MAX_FOLDER_BYTES;
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
-    // Under this name a changed copy of the grader, too, would write right traces.
+    // A changed copy of the grader with this name would also write right traces.
     let is_oracle = name.as_encoded_bytes().starts_with(b"FOSSSimOracle");
-    let why = match copied_as(name, file, path, &mut room) {
+    let why = match copy_as(name, file, path, &mut room) {
         Ok(staged)
-            if !is_oracle && !is_own(LARGEST_FOLDER - room, &staged.digest, (metadata.dev(), metadata.ino())) =>
+            if !is_oracle && !is_own(MAX_FOLDER_BYTES - room, &staged.digest, (metadata.dev(), metadata.ino())) =>
         {
             match backend.start_problem(&staged.program) {
                 None => return Ok(staged),
@@ -165,18 +165,18 @@ pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result
     Ok(StagedProgram::unusable(path, why))
 }
 
-/// Copies an open program under this name into a folder of its own.
-fn copied_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<StagedProgram, CopyError> {
+/// Copies an open program into a new folder, under the name `name`.
+fn copy_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<StagedProgram, CopyError> {
     let folder = TemporaryFolder::make("program").map_err(at(&std::env::temp_dir()))?;
     let copy = folder.path().join(name);
-    // A program is executable, whether the way here kept the bit or not.
+    // A program is executable, even if the upload lost the permission.
     let digest = copy_file(file, path, &copy, room, true)?;
     let identity = ProgramIdentity::from_path(&copy);
     Ok(StagedProgram { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
 }
 
-/// Builds the sources in `folder`, in a copy, and stages the resulting program. A build that fails is no error:
-/// [`StagedProgram::build`] holds it.
+/// Builds the sources in `folder`, in a copy, and stages the resulting program. A failed build is not an error;
+/// [`StagedProgram::build`] describes it.
 pub(super) fn build(
     sources: &Path,
     step: &BuildStep,
@@ -197,11 +197,11 @@ pub(super) fn build(
     let command = step.command.first().map_or("", String::as_str);
     let tool = match find_tool(command, &copy) {
         Some(tool) => tool,
-        // A script of the submission's own that is missing is the submission's fault.
+        // A missing script of the submission is the submission's fault.
         None if command.contains('/') => return Ok(failed(BuildEnd::NoScript(command.to_owned()), String::new())),
         None => {
             return Err(format!(
-                "build command {command} is not on this machine; install it, or change [build] in the suite"
+                "build command {command} is not installed on this machine; install it, or change [build] in the suite"
             ));
         }
     };
@@ -210,7 +210,7 @@ pub(super) fn build(
         wall: step.wall,
         memory: step.memory,
         output_bytes: 4 << 20,
-        folder_bytes: LARGEST_BUILD,
+        folder_bytes: MAX_BUILD_BYTES,
         folder_files: 100_000,
         processes: 128,
         open_files: 1024,
@@ -225,12 +225,12 @@ pub(super) fn build(
     let _registered = cancellation.register(running.canceller());
     let (outcome, made) = running.wait_with_folder().map_err(|error| error.to_string())?;
     let printed = [&outcome.stdout.bytes[..], &outcome.stderr.bytes].concat();
-    let output = beginning(&printed, KEPT_OUTPUT);
+    let output = truncate(&printed, MAX_OUTPUT_BYTES);
     if outcome.ended != RunEnd::Exited(0) {
         return Ok(failed(BuildEnd::Ended(outcome.ended), output));
     }
-    // The build could have left a link to anything where the program should be.
-    match made.regular_file(&step.program, LARGEST_FOLDER) {
+    // The build may have left a link in the program's place.
+    match made.regular_file(&step.program, MAX_FOLDER_BYTES) {
         Ok((file, _)) => {
             let build = Some(Build { end: BuildEnd::Made, output });
             Ok(StagedProgram { build, ..copy_program(file, &copy.join(&step.program), backend)? })
@@ -240,8 +240,8 @@ pub(super) fn build(
     }
 }
 
-/// Copies an open regular file and digests it on the way. Holes stay holes. `room` is how many bytes it may have; it is
-/// made smaller by them. The copy is executable if the file is, begins as a program or `is_program`.
+/// Copies an open regular file and digests its bytes. Holes stay holes. `room` is the remaining byte budget, which is
+/// reduced by the file's size. The copy is executable if the file is, if it begins like a program, or if `is_program`.
 fn copy_file(
     mut source: File,
     from: &Path,
@@ -249,22 +249,22 @@ fn copy_file(
     room: &mut u64,
     is_program: bool,
 ) -> Result<blake3::Hash, CopyError> {
-    const ANYBODY_EXECUTES: u32 = 0o111;
+    const EXECUTE_BITS: u32 = 0o111;
     let mode = source.metadata().map_err(at(from))?.permissions().mode();
-    let mut executable = is_program || mode & ANYBODY_EXECUTES != 0;
+    let mut executable = is_program || mode & EXECUTE_BITS != 0;
     let mut target = File::options().write(true).create_new(true).mode(0o600).open(to).map_err(at(to))?;
     let mut hasher = blake3::Hasher::new();
-    let mut buffer = vec![0; AT_ONE_GO];
+    let mut buffer = vec![0; BLOCK_BYTES];
     let mut length = 0;
     loop {
         let read = match source.read(&mut buffer) {
             Ok(0) => break,
             Ok(read) => &buffer[..read],
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
-            Err(error) => return Err(unreadable(from, error)),
+            Err(error) => return Err(classify_error(from, error)),
         };
-        // The file may have grown since its length was read.
-        *room = room.checked_sub(read.len() as u64).ok_or_else(too_large)?;
+        // The file may have grown after its length was read.
+        *room = room.checked_sub(read.len() as u64).ok_or_else(too_large_error)?;
         hasher.update(read);
         executable |= length == 0 && FileKind::from_start(read) == FileKind::Program;
         length += read.len() as u64;
@@ -280,28 +280,28 @@ fn copy_file(
     Ok(hasher.finalize())
 }
 
-fn too_large() -> CopyError {
+fn too_large_error() -> CopyError {
     CopyError::Submission(format!(
-        "it holds more than {MOST_FILES} files or {LARGEST_FOLDER} bytes: that is not a submission"
+        "it holds more than {MAX_FILES} files or {MAX_FOLDER_BYTES} bytes: that is not a submission"
     ))
 }
 
-/// The numbers of bytes and files of a submission that may still be copied.
+/// The remaining budget of bytes and files for a submission's copy.
 struct CopyBudget {
     bytes: u64,
     files: u64,
 }
 
-/// Copies a submission's folder to a new folder that only we may enter.
+/// Copies a submission's folder to a new folder that only the grader may enter.
 fn copy_sources(from: &Path, to: &Path) -> Result<(), CopyError> {
-    let mut budget = CopyBudget { bytes: LARGEST_FOLDER, files: MOST_FILES };
-    let source = OpenFolder::open(from).map_err(|error| unreadable(from, error))?;
+    let mut budget = CopyBudget { bytes: MAX_FOLDER_BYTES, files: MAX_FILES };
+    let source = OpenFolder::open(from).map_err(|error| classify_error(from, error))?;
     fs::DirBuilder::new().mode(0o700).create(to).map_err(at(to))?;
     let target = OpenFolder::open(to).map_err(at(to))?;
     copy_folder(&source, Path::new(""), &target, 1, &mut budget)
 }
 
-/// Copies files and folders; links and everything else stay behind. `name` is the folder's own, for messages.
+/// Copies files and folders; links and other entries are skipped. `name` is the folder's name in messages.
 fn copy_folder(
     from: &OpenFolder,
     name: &Path,
@@ -309,24 +309,24 @@ fn copy_folder(
     depth: u32,
     budget: &mut CopyBudget,
 ) -> Result<(), CopyError> {
-    if depth > DEEPEST {
+    if depth > MAX_DEPTH {
         let top = name.components().next().map(|part| part.as_os_str().to_string_lossy().escape_debug().to_string());
         return Err(CopyError::Submission(format!(
-            "its folders are nested more than {DEEPEST} deep, in {}",
+            "its folders are nested more than {MAX_DEPTH} deep, in {}",
             top.unwrap_or_default()
         )));
     }
-    for entry in from.names().map_err(|error| unreadable(name, error))? {
+    for entry in from.names().map_err(|error| classify_error(name, error))? {
         if fosssim_intake::is_litter(&entry) {
             continue;
         }
-        budget.files = budget.files.checked_sub(1).ok_or_else(too_large)?;
+        budget.files = budget.files.checked_sub(1).ok_or_else(too_large_error)?;
         let (inner, target) = (name.join(&entry), to.path().join(&entry));
         match from.entry(OsStr::new(&entry)) {
             Ok(FolderEntry::File(file)) => {
                 let length = file.metadata().map_err(at(&inner))?.len();
                 if length > budget.bytes {
-                    return Err(too_large());
+                    return Err(too_large_error());
                 }
                 copy_file(file, &inner, &target, &mut budget.bytes, false)?;
             }
@@ -336,7 +336,7 @@ fn copy_folder(
                 copy_folder(&folder, &inner, &target, depth + 1, budget)?;
             }
             Ok(FolderEntry::Other) => {}
-            Err(error) => return Err(unreadable(&inner, error)),
+            Err(error) => return Err(classify_error(&inner, error)),
         }
     }
     Ok(())
@@ -352,7 +352,7 @@ fn find_tool(command: &str, sources: &Path) -> Option<PathBuf> {
     candidates.into_iter().find(|path| path.is_file())
 }
 
-/// Makes a folder with a pipe, a socket and a link; the socket lives as long as its listener.
+/// Creates a folder with a pipe, a socket and a link; the socket exists as long as its listener.
 #[cfg(test)]
 pub(crate) fn make_odd_entries(folder: &Path) -> std::os::unix::net::UnixListener {
     std::fs::create_dir(folder).unwrap();

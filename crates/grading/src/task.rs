@@ -11,29 +11,29 @@ use fosssim_model::scene::Scene;
 pub struct SceneTask {
     /// The scene's name, `Group/name`.
     pub name: String,
-    /// The scene's XML, as the program gets it.
+    /// The scene's XML, as passed to the program.
     pub xml: Vec<u8>,
-    /// The scene itself.
+    /// The parsed scene.
     pub scene: Scene,
     /// The scene's recorded trace, compressed with zstd, if there is one.
     pub recording: Option<&'static [u8]>,
 }
 
 impl SceneTask {
-    /// Returns the scene as commands take it: `asset:Group/name` if it comes with the program.
+    /// Returns the scene's name as commands accept it: `asset:Group/name` if it is embedded.
     #[must_use]
     pub fn address(&self) -> String {
         let is_embedded = library::scene(&self.name).is_some_and(|embedded| embedded == self.xml);
         format!("{}{}", if is_embedded { "asset:" } else { "" }, self.name)
     }
 
-    /// Returns the task's result where no run was judged.
+    /// Returns the result of a scene without a judged run.
     #[must_use]
     pub fn without_run(&self, verdict: Verdict, why: Reason) -> SceneResult {
         SceneResult::without_run(&self.name, self.scene.steps(), verdict, why)
     }
 
-    /// Returns the task's result where the grader or the machine failed.
+    /// Returns the result of a scene on which the grader or the machine failed.
     #[must_use]
     pub fn failure_result(&self, failure: Failure) -> SceneResult {
         self.without_run(Verdict::JudgeError, Reason::Failed(failure))

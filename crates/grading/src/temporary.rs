@@ -1,7 +1,7 @@
-//! The grader's temporary folders, which no other user reads, and what killed graders have left.
+//! The grader's temporary folders, which no other user can read, and the leftovers of killed graders.
 //!
-//! All of a grader's folders are in one, in which a locked file shows that the grader lives. Graders in other
-//! containers see the lock, too, while our process number may be another process's there.
+//! All folders of a grader are in one, in which a locked file shows that the grader is alive. Graders in other
+//! containers see the lock, too, while process numbers are different there.
 use fosssim_sandbox::collect;
 use std::{
     fs::{self, File, Permissions},
@@ -12,11 +12,12 @@ use std::{
     time::Duration,
 };
 
-/// The beginning of graders' folders' names.
-const PREFIX: &str = "fosssim-grader-";
-/// The file in it that its grader holds locked.
-const LOCK: &str = "lock";
-/// A temporary folder of this grader's, closed to others. It is removed with all that programs left in it.
+/// The prefix of the names of graders' folders.
+const FOLDER_PREFIX: &str = "fosssim-grader-";
+/// The name of the file that a grader keeps locked.
+const LOCK_FILE: &str = "lock";
+/// A temporary folder of this grader that others cannot read. Dropping it removes the folder with everything that
+/// programs left in it.
 #[derive(Debug)]
 pub(super) struct TemporaryFolder {
     path: PathBuf,
@@ -25,14 +26,14 @@ pub(super) struct TemporaryFolder {
 }
 
 impl TemporaryFolder {
-    /// Makes a folder; its name begins with its purpose.
+    /// Creates a folder whose name begins with `purpose`.
     pub(super) fn make(purpose: &str) -> io::Result<Self> {
         let grader = Grader::this()?;
         let made = make_closed(&format!("{purpose}-"), &grader.path)?;
         let path = made.keep();
         if purpose == "build" && is_root() {
-            // Build tools name files by their whole path, and run as another user. The entries here are closed by
-            // themselves.
+            // Build tools name files by their whole path, and run as another user. The entries have restrictive
+            // permissions themselves.
             fs::set_permissions(&path, Permissions::from_mode(0o711))?;
         }
         Ok(Self { path, _grader: grader })
@@ -45,30 +46,30 @@ impl TemporaryFolder {
 
 impl Drop for TemporaryFolder {
     fn drop(&mut self) {
-        // A folder that can't be removed now is swept away another day.
+        // A folder that can't be removed now is removed by a later sweep.
         drop(collect::remove_folder(&self.path));
     }
 }
 
-/// Working folders that no program has touched, for further runs: a new folder costs some file systems as much as a
-/// small run.
+/// Working folders that no program has changed, for further runs. Creating a folder takes as long as a small run on
+/// some file systems.
 #[derive(Debug, Default)]
 pub struct Folders(Mutex<Vec<TemporaryFolder>>);
 
 impl Folders {
-    /// Returns a folder with only the files that the grader left in one that was [kept](Self::keep).
+    /// Returns a [kept](Self::keep) folder, which has only files of the grader, or a new one.
     pub(super) fn take(&self) -> io::Result<TemporaryFolder> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         kept.map_or_else(|| TemporaryFolder::make("run"), Ok)
     }
 
-    /// Keeps a folder in which only the grader has changed anything.
+    /// Keeps a folder that only the grader has changed.
     pub(super) fn keep(&self, folder: TemporaryFolder) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(folder);
     }
 }
 
-/// The folder of all temporary folders of this process, for as long as there are any.
+/// The folder of all temporary folders of this process, which exists while there are any.
 #[derive(Debug)]
 struct Grader {
     path: PathBuf,
@@ -76,7 +77,7 @@ struct Grader {
 }
 
 impl Grader {
-    /// Returns the existing folder, or a new one.
+    /// Returns this process's folder, and creates it if it does not exist.
     fn this() -> io::Result<Arc<Self>> {
         static THIS: Mutex<Weak<Grader>> = Mutex::new(Weak::new());
         let mut this = THIS.lock().unwrap_or_else(PoisonError::into_inner);
@@ -89,14 +90,14 @@ impl Grader {
     }
 
     fn make(place: &Path) -> io::Result<Self> {
-        const TRIES: u32 = 10;
-        let mut problem = io::Error::other("somebody removes every folder that is made there");
-        for _ in 0..TRIES {
-            let path = make_closed(PREFIX, place)?.keep();
-            let lock = path.join(LOCK);
+        const MAX_TRIES: u32 = 10;
+        let mut problem = io::Error::other("another process removes every new folder there");
+        for _ in 0..MAX_TRIES {
+            let path = make_closed(FOLDER_PREFIX, place)?.keep();
+            let lock = path.join(LOCK_FILE);
             let made = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
                 file.try_lock().map_err(io::Error::from)?;
-                // A sweeper that was faster may have removed it.
+                // Another grader's sweep may have removed the folder before it was locked.
                 let (held, there) = (file.metadata()?, fs::metadata(&lock)?);
                 if (held.dev(), held.ino()) == (there.dev(), there.ino()) {
                     Ok(file)
@@ -107,7 +108,7 @@ impl Grader {
             match made {
                 Ok(lock) => {
                     if is_root() {
-                        // Programs run as other users, who have to get to their own folders and may see no names here.
+                        // Programs run as other users, who have to reach their own folders but may not list names here.
                         fs::set_permissions(&path, Permissions::from_mode(0o711))?;
                     }
                     return Ok(Self { path, _lock: lock });
@@ -126,7 +127,7 @@ impl Drop for Grader {
     }
 }
 
-/// Returns a new folder for its owner only.
+/// Creates a new folder that only its owner can read.
 fn make_closed(prefix: &str, place: &Path) -> io::Result<tempfile::TempDir> {
     tempfile::Builder::new().prefix(prefix).permissions(Permissions::from_mode(0o700)).tempdir_in(place)
 }
@@ -135,7 +136,7 @@ fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0)
 }
 
-/// Removes the temporary folders of graders that were killed. A living grader holds its lock, wherever it is.
+/// Removes the temporary folders of killed graders. A living grader holds its lock, even in another container.
 pub fn sweep() {
     sweep_in(&std::env::temp_dir());
 }
@@ -144,27 +145,27 @@ fn sweep_in(place: &Path) {
     let Ok(own) = fs::metadata("/proc/self") else { return };
     for entry in fs::read_dir(place).into_iter().flatten().flatten() {
         let path = entry.path();
-        let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
-        // The entry itself and not a link's target. Other users' folders are left to them.
+        let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(FOLDER_PREFIX));
+        // Check the entry itself, not a link's target. Other users' folders are left to their owners.
         if !ours || !entry.metadata().is_ok_and(|data| data.is_dir() && data.uid() == own.uid()) {
             continue;
         }
-        match collect::open_file(&path.join(LOCK), false) {
-            Ok((lock, _)) if lock.try_lock().is_ok() => clear(&path),
-            // Its grader was killed before it made the lock, or is about to make it and then takes another folder. One
-            // that is not empty stays.
+        match collect::open_file(&path.join(LOCK_FILE), false) {
+            Ok((lock, _)) if lock.try_lock().is_ok() => remove_folder_of(&path),
+            // The grader was killed before it made the lock, or is about to make it and will use another folder. A
+            // folder that is not empty stays.
             Err(collect::CollectError::Missing { .. }) => drop(fs::remove_dir(&path)),
             _ => {}
         }
     }
 }
 
-/// Removes a grader's folder, its lock last: a folder without a lock would count as being made. A supervisor that has
-/// only just noticed the end of its grader may still be at work in it for a moment.
-fn clear(path: &Path) {
-    const TRIES: u32 = 20;
+/// Removes a grader's folder, and its lock last: a folder without a lock would count as new. A supervisor may still use
+/// the folder for a moment after the end of its grader.
+fn remove_folder_of(path: &Path) {
+    const MAX_TRIES: u32 = 20;
     const PAUSE: Duration = Duration::from_millis(50);
-    for _ in 0..TRIES {
+    for _ in 0..MAX_TRIES {
         let folders = fs::read_dir(path).into_iter().flatten().flatten().filter(|entry| entry.path().is_dir());
         let removed = folders.map(|entry| collect::remove_folder(&entry.path())).filter(Result::is_err).count() == 0;
         if removed && collect::remove_folder(path).is_ok() {
@@ -216,7 +217,7 @@ mod tests {
             });
             for _ in 0..ROUNDS {
                 let grader = Grader::make(place.path()).unwrap();
-                assert!(grader.path.join(LOCK).exists());
+                assert!(grader.path.join(LOCK_FILE).exists());
             }
             done.store(true, std::sync::atomic::Ordering::Relaxed);
         });

@@ -9,23 +9,23 @@ use std::{
 /// A part of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RunPart {
-    /// The grader starts the program in its sandbox, and waits for it.
+    /// Starting the program in its sandbox, and waiting for it.
     Start,
-    /// The program itself.
+    /// Running the program.
     Program,
-    /// The grader judges the trace.
+    /// Judging the trace.
     Judging,
-    /// The working folder is emptied.
+    /// Emptying the working folder.
     CleanUp,
-    /// The grader searches for the mistake.
+    /// Searching for the mistake.
     Explaining,
-    /// The grader draws what pages show.
+    /// Drawing cards for pages.
     Drawing,
 }
 
 impl RunPart {
     /// The parts that the grader's own process does, with their names.
-    pub const OWN: [(Self, &str); 5] = [
+    pub const OWN_PARTS: [(Self, &str); 5] = [
         (Self::Start, "starting runs"),
         (Self::Judging, "judging"),
         (Self::Explaining, "explaining"),
@@ -34,7 +34,7 @@ impl RunPart {
     ];
 }
 
-/// The processor time of all runs so far, and how many there were, by their parts.
+/// The processor time and the number of all runs, by part.
 #[derive(Debug, Default)]
 pub struct Timings(Mutex<BTreeMap<RunPart, (Duration, u32)>>);
 
@@ -45,7 +45,7 @@ impl Timings {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&part).copied().unwrap_or_default()
     }
 
-    /// Adds a run's part.
+    /// Adds the time of a run's part.
     pub(super) fn add(&self, part: RunPart, time: Duration) {
         let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (total, runs) = parts.entry(part).or_default();
@@ -53,19 +53,19 @@ impl Timings {
     }
 }
 
-/// Measures the parts of one run on its thread; without `--timings` it reads no clock.
+/// Measures the parts of one run on its thread; it reads no clock without `--timings`.
 pub(super) struct Stopwatch<'a> {
     timings: Option<&'a Timings>,
     last: Duration,
 }
 
 impl<'a> Stopwatch<'a> {
-    /// Begins a run.
+    /// Starts the measurement of a run.
     pub(super) fn new(timings: Option<&'a Timings>) -> Self {
         Self { timings, last: timings.map_or(Duration::ZERO, |_| processor_time(TimeOf::Thread)) }
     }
 
-    /// Adds the time since the last part to this one.
+    /// Adds the time since the end of the last part to `part`.
     pub(super) fn end(&mut self, part: RunPart) {
         if let Some(timings) = self.timings {
             let now = processor_time(TimeOf::Thread);

@@ -1,4 +1,4 @@
-//! Grades by existing traces. No program is run: its time, and whether it ended well, are unknown.
+//! Grades existing traces. No program is run, so its time and its end are unknown.
 use super::{
     conclude::{CountedReader, ProgramRun, Run, conclude},
     grade::Grade,
@@ -15,8 +15,8 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-/// Returns the result of one scene by a trace, as if a program had ended well after it wrote it, and what judging has
-/// seen.
+/// Returns the result of one scene for a trace, as if a program had written it and ended well, and the outcome of
+/// judging.
 pub fn judge_trace<'a, R: Read + Send>(
     plan: &Plan,
     task: &'a SceneTask,
@@ -45,7 +45,7 @@ pub fn judge_trace<'a, R: Read + Send>(
 #[must_use]
 pub fn grade(plan: &Plan, submission: String, results: Vec<SceneResult>, warnings: Vec<String>) -> Grade {
     let results = results.into_iter().map(|result| (result, false)).collect();
-    // Nobody knows how long it took to write the traces.
+    // The time that it took to write the traces is unknown.
     let mut grade = Grade { warnings, ..score::grade(plan, submission, false, results) };
     settle(&mut grade);
     grade

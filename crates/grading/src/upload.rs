@@ -6,13 +6,13 @@ use super::{
 use fosssim_sandbox::collect::{FolderEntry, OpenFolder};
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
-/// The greatest number of entries that are named.
-const NAMED: usize = 6;
-/// The greatest number and depth of entries searched for a program in another place.
-const LOOKED_AT: u32 = 2000;
-const DEEPEST: u32 = 3;
+/// The maximum number of entries that a message names.
+const MAX_NAMED: usize = 6;
+/// The maximum number of entries that are searched for a program in another place, and their maximum depth.
+const MAX_SCANNED_ENTRIES: u32 = 2000;
+const MAX_DEPTH: u32 = 3;
 
-/// Returns why there is no program to run: the expected name, and what there is instead.
+/// Returns the reason why there is no program: the expected name, and the contents of the folder.
 pub(super) fn explain_missing_program(program: &str, folder: &Path) -> UnusableReason {
     let found = match OpenFolder::open(folder) {
         Ok(opened) => list_contents(program, &opened),
@@ -30,19 +30,19 @@ fn list_contents(program: &str, folder: &OpenFolder) -> FolderContents {
     }
     let wanted = Path::new(program).file_name().unwrap_or_default();
     FolderContents::Others {
-        names: names.iter().take(NAMED).map(|name| entry(folder, name)).collect(),
-        more: names.len().saturating_sub(NAMED),
-        elsewhere: deeper(folder, wanted, Path::new(""), DEEPEST, &mut LOOKED_AT.clone())
+        names: names.iter().take(MAX_NAMED).map(|name| format_entry(folder, name)).collect(),
+        more: names.len().saturating_sub(MAX_NAMED),
+        elsewhere: deeper(folder, wanted, Path::new(""), MAX_DEPTH, &mut MAX_SCANNED_ENTRIES.clone())
             .map(|path| names::printable(path.as_os_str())),
     }
 }
 
-fn entry(folder: &OpenFolder, name: &OsStr) -> String {
+fn format_entry(folder: &OpenFolder, name: &OsStr) -> String {
     let slash = if matches!(folder.entry(name), Ok(FolderEntry::Folder(_))) { "/" } else { "" };
     names::printable(name) + slash
 }
 
-/// Returns the path of a file of this name beneath a folder, the shallowest of each folder first.
+/// Returns the path of a file with a name below a folder; files in a folder come before those in its subfolders.
 fn deeper(folder: &OpenFolder, wanted: &OsStr, at: &Path, depth: u32, budget: &mut u32) -> Option<std::path::PathBuf> {
     let mut names = folder.names().ok()?;
     names.sort();

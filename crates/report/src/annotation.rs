@@ -1,23 +1,23 @@
-//! Annotations of GitHub Actions: workflow commands that show a title and words next to a job.
+//! Annotations of GitHub Actions: workflow commands that show a title and a text next to a job.
 use crate::foreign::one_line;
 
-/// Returns one annotation: `error` or `warning`, its title and its words.
+/// Returns one annotation: the level `error` or `warning`, its title and its text.
 pub(crate) fn annotation(level: &str, title: &str, words: &str) -> String {
-    annotation_of(level, title, [words])
+    join_annotation(level, title, [words])
 }
 
-/// Returns one annotation with words in several lines.
-pub(crate) fn annotation_of<'a>(level: &str, title: &str, lines: impl IntoIterator<Item = &'a str>) -> String {
-    let lines: Vec<String> = lines.into_iter().map(data).collect();
-    format!("::{level} title={}::{}\n", property(title), lines.join("%0A"))
+/// Returns one annotation with a text of several lines.
+pub(crate) fn join_annotation<'a>(level: &str, title: &str, lines: impl IntoIterator<Item = &'a str>) -> String {
+    let lines: Vec<String> = lines.into_iter().map(escape_data).collect();
+    format!("::{level} title={}::{}\n", escape_property(title), lines.join("%0A"))
 }
 
-/// Returns the text behind `::` in a workflow command.
-fn data(text: &str) -> String {
+/// Returns the text after `::` in a workflow command.
+fn escape_data(text: &str) -> String {
     one_line(text).replace('%', "%25")
 }
 
 /// Returns a property's value in a workflow command.
-fn property(text: &str) -> String {
-    data(text).replace(':', "%3A").replace(',', "%2C")
+fn escape_property(text: &str) -> String {
+    escape_data(text).replace(':', "%3A").replace(',', "%2C")
 }

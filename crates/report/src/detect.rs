@@ -1,11 +1,11 @@
-//! The report on one detection call: polynomials, zeros, intervals, decision; as text and JSON
+//! The report on one detection call, as text and JSON: polynomials, zeros, intervals and decision
 //! (`schemas/detect.schema.json`).
 mod overlap;
 
 pub use overlap::Overlap;
 
 use super::{
-    number::{exact, tidy},
+    number::{exact, format_tidy},
     style::{Look, Style},
     table::{Align, Cell, Table},
     view::{Number, document, numbers, view},
@@ -26,9 +26,9 @@ pub const DETECT_SCHEMA: u32 = 1;
 /// The place in a scene's run at which a pair was examined.
 #[derive(Debug, Clone, Copy)]
 pub struct Place<'a> {
-    /// The scene as typed.
+    /// The scene's name, as typed.
     pub scene: &'a str,
-    /// The trace as typed; `None` for the reference's own run.
+    /// The trace's name, as typed; `None` for the reference's own run.
     pub trace: Option<&'a str>,
     /// The step, from 1.
     pub step: u32,
@@ -38,19 +38,19 @@ pub struct Place<'a> {
     pub pass: Option<Pass>,
     /// The number of passes that the reference makes in this step.
     pub passes: usize,
-    /// The trace's log of this call.
+    /// The trace's log of the detection call.
     pub logged: &'a CallLog,
 }
 
-/// The way in which numbers are written: exactly, or as they are computed by hand.
+/// A function that formats numbers: exactly, or as in a calculation by hand.
 pub(crate) type ShownNumber = fn(f64) -> String;
 
-/// A detection call to be shown.
+/// The content of a report on a detection call.
 #[derive(Debug, Clone, Copy)]
 pub struct Detect<'a> {
-    /// The computation.
+    /// The reference's study of the pair.
     pub study: &'a Study,
-    /// The place from which the pair comes; `None` if its numbers were typed.
+    /// The place that the pair is from; `None` if its numbers were typed.
     pub place: Option<Place<'a>>,
 }
 
@@ -68,7 +68,7 @@ impl Detect<'_> {
         title(place.pair, place.step, place.trace, place.scene)
     }
 
-    /// Returns the decision in one sentence, whose numbers are written like this.
+    /// Returns the decision as a sentence; `number` formats its numbers.
     #[must_use]
     pub fn decision(&self, number: impl Fn(f64) -> String) -> String {
         let answer = &self.study.answer;
@@ -104,7 +104,7 @@ impl Detect<'_> {
         text + &motion(&study.motion, exact, style) + &self.computation(exact, style)
     }
 
-    /// Renders the polynomials, those of the trace, and the decision, with numbers as this function writes them.
+    /// Renders the reference's and the trace's polynomials and the decision; `number` formats numbers.
     pub(crate) fn computation(&self, number: ShownNumber, style: Style) -> String {
         let study = self.study;
         let mut text = format!(
@@ -128,9 +128,9 @@ impl Detect<'_> {
                 CallLog::These(logged) => {
                     for (number, (curve, own)) in study.curves.iter().zip(logged).enumerate() {
                         let expected = curve.logged.coefficients();
-                        // Their lengths may differ by the coefficients that the course's library drops.
+                        // The lengths may differ by the coefficients that the course's library drops.
                         text += &if expected.len() != own.len() && study.is_right(number, own) {
-                            let mark = "right except for a factor and small leading coefficients, which is allowed";
+                            let mark = "right except for a factor and small leading coefficients, which are allowed";
                             format!(
                                 "  {}: {}\n    {}\n",
                                 curve.role,
@@ -143,7 +143,7 @@ impl Detect<'_> {
                     }
                 }
                 CallLog::Nothing => {
-                    text += &format!("  {}\n", style.paint(Look::Bad, "nothing for this pair in this pass"))
+                    text += &format!("  {}\n", style.paint(Look::Bad, "nothing is logged for this pair in this pass"))
                 }
                 CallLog::Unknown => {
                     text += "  the trace logged another number of polynomials, so this pair's are not known\n";
@@ -151,16 +151,16 @@ impl Detect<'_> {
             }
         }
         text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
-        text += &format!("  all positive: {}\n", intervals(&study.answer.positive, number));
+        text += &format!("  all positive: {}\n", format_intervals(&study.answer.positive, number));
         let look = if study.answer.decision.collides() { Look::Notice } else { Look::Good };
-        text += &format!("  {}\n", style.paint(look, &self.decision(|time| tidy(time, number))));
+        text += &format!("  {}\n", style.paint(look, &self.decision(|time| format_tidy(time, number))));
         text += match study.certain {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
             None => "  borderline: a correct program with other round-off may decide otherwise\n",
         };
         if let Some(right) = &study.right_approach {
-            text += &with_right(&study.answer, &right.answer, number);
+            text += &compare_approach(&study.answer, &right.answer, number);
         }
         text
     }
@@ -194,8 +194,8 @@ fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
     format!("{}{rest} in step {step} of {run}, scene {scene}", first.to_uppercase())
 }
 
-/// Returns a polynomial of the trace, and next to the right one, power by power, where they differ by more than a
-/// factor.
+/// Returns a polynomial of the trace. If it differs from the right one by more than a factor, both are listed power by
+/// power.
 fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     if own.is_empty() && !expected.is_empty() {
         return format!("  {role}: {}\n", style.paint(Look::Bad, "missing"));
@@ -229,20 +229,20 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
     text
 }
 
-/// Returns the difference that the right approach polynomial makes.
-fn with_right(course: &Answer, right: &Answer, number: ShownNumber) -> String {
+/// Returns the text about the effect of the right approach polynomial.
+fn compare_approach(course: &Answer, right: &Answer, number: ShownNumber) -> String {
     let says = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
             "the same collision at the same time".to_owned()
         }
-        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", tidy(time, number)),
+        (_, Decision::Hit { time, .. }) => format!("a collision at time {}", format_tidy(time, number)),
         (Decision::Miss { .. }, Decision::Miss { .. }) => "no collision either".to_owned(),
         (Decision::Hit { .. }, Decision::Miss { .. }) => "no collision".to_owned(),
     };
     format!("  with the approach polynomial that has no slip: {says}\n")
 }
 
-/// Returns the objects and how they move.
+/// Returns the objects and their motion.
 pub(crate) fn motion(motion: &PairMotion, number: ShownNumber, style: Style) -> String {
     let vector = |x: f64, y: f64| format!("({}, {})", number(x), number(y));
     let mut table = Table::new([Align::Left, Align::Left, Align::Left, Align::Left]);
@@ -271,19 +271,18 @@ pub(crate) fn motion(motion: &PairMotion, number: ShownNumber, style: Style) -> 
     table.render(style)
 }
 
-/// Returns a polynomial with its zeros and where it is positive.
+/// Returns a polynomial with its zeros and the intervals in which it is positive.
 fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style) -> String {
     let mut text = format!("  {name}\n    {}\n", polynomial(curve.logged.coefficients(), number));
     let all = curve.untrimmed.coefficients();
     let dropped = &all[..all.len() - curve.logged.coefficients().len()];
     if dropped.iter().any(|&coefficient| coefficient != 0.0) {
-        let words =
-            format!("logged without its leading coefficients below 1e-12; with them: {}", polynomial(all, number));
+        let words = format!("logged without leading coefficients below 1e-12; with them: {}", polynomial(all, number));
         text += &format!("    {}\n", style.paint(Look::Faint, &words));
     }
     let real = curve.real_zeros();
     let complex = curve.zeros.len() - real.len();
-    let mut zeros = real.iter().map(|&zero| tidy(zero, number)).collect::<Vec<_>>().join(", ");
+    let mut zeros = real.iter().map(|&zero| format_tidy(zero, number)).collect::<Vec<_>>().join(", ");
     if curve.logged.coefficients().is_empty() {
         zeros = "every time".to_owned();
     } else if zeros.is_empty() {
@@ -292,25 +291,25 @@ fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style
     if complex > 0 {
         zeros += &format!(" ({complex} complex)");
     }
-    text += &format!("    zeros: {zeros}\n    positive: {}\n", intervals(&curve.positive, number));
+    text += &format!("    zeros: {zeros}\n    positive: {}\n", format_intervals(&curve.positive, number));
     text
 }
 
-/// Returns `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `at 0.5 (intervals touch)`.
-fn intervals(list: &[Interval], number: ShownNumber) -> String {
+/// Returns intervals as text: `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `at 0.5 (intervals touch)`.
+fn format_intervals(list: &[Interval], number: ShownNumber) -> String {
     if list.is_empty() {
         return "nowhere".to_owned();
     }
     let words = |interval: &Interval| match interval {
-        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", tidy(*lo, number)),
+        Interval { lo, hi } if lo == hi => format!("at {} (intervals touch)", format_tidy(*lo, number)),
         Interval { lo: f64::NEG_INFINITY, hi: f64::INFINITY } => "always".to_owned(),
-        Interval { lo, hi } => format!("({}, {})", tidy(*lo, number), tidy(*hi, number)),
+        Interval { lo, hi } => format!("({}, {})", format_tidy(*lo, number), format_tidy(*hi, number)),
     };
     list.iter().map(words).collect::<Vec<_>>().join(" and ")
 }
 
-/// Returns `-0.25 t^2 + t - 0.1875`; an empty list of coefficients is the zero polynomial. Only a leading zero, which a
-/// log should not have, is written.
+/// Returns a polynomial as text, such as `-0.25 t^2 + t - 0.1875`; an empty list is the zero polynomial. A zero
+/// coefficient is written only if it is the leading one, which a log should not have.
 pub(crate) fn polynomial(coefficients: &[f64], number: ShownNumber) -> String {
     if coefficients.is_empty() {
         return "0 (no coefficient)".to_owned();
@@ -346,18 +345,18 @@ pub(crate) struct DetectView<'a> {
     place: Option<PlaceView<'a>>,
     /// The kind of the pair.
     kind: PairKind,
-    /// The motion of its bodies.
+    /// The motion of the pair's bodies.
     motion: MotionView,
-    /// The polynomials in the order of the trace; none if the scene's collision handling is simple.
+    /// The polynomials in the order of the trace; empty if the scene's collision handling is simple.
     polynomials: Vec<CurveView>,
     /// The reference's decision.
     answer: AnswerView,
-    /// Whether the pair collides whatever rounding does to a correct program; null if round-off may flip it.
+    /// Whether the pair collides in every correct program; null if round-off may flip the decision.
     certain: Option<bool>,
-    /// The mathematically right approach polynomial of a particle and an edge, and its result; null if the course's is
+    /// The mathematically right particle-edge approach polynomial, and its result; null if the course's polynomial is
     /// the same.
     right_approach: Option<RightApproachView>,
-    /// Overlap and approach at the end of the step, where the scene's collision handling is simple; else null.
+    /// Overlap and approach at the end of the step, if the scene's collision handling is simple; otherwise null.
     overlap: Option<overlap::OverlapView>,
 }
 
@@ -365,11 +364,11 @@ view! {
     /// A place in a scene's run.
     #[schemars(deny_unknown_fields)]
     struct PlaceView<'a> from place: Place<'a> {
-        /// The scene as typed.
+        /// The scene's name, as typed.
         scene: &'a str = place.scene,
-        /// The trace as typed; null for the reference's own run.
+        /// The trace's name, as typed; null for the reference's own run.
         trace: Option<&'a str> = place.trace,
-        /// From 1.
+        /// The step number, from 1.
         step: u32 = place.step,
         /// The pair.
         pair: Pair = place.pair,
@@ -377,9 +376,9 @@ view! {
         pass: Option<Pass> = place.pass,
         /// The number of passes that the reference makes in this step.
         passes: usize = place.passes,
-        /// The lists that the trace logged for this call, in the order of `polynomials`: empty if it logged nothing for
-        /// it, with an empty list for one that is missing. Null for the reference's run, and if it logged another
-        /// number of polynomials, in which those of this call can't be found.
+        /// The lists that the trace logged for the detection call, in the order of `polynomials`: empty if it logged
+        /// none, with an empty list for each missing one. Null for the reference's run, and if the trace logged a
+        /// different number of polynomials, so that those of the call can't be found.
         logged: Option<Vec<Vec<Number>>> = match place.logged {
             CallLog::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
             CallLog::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
@@ -392,22 +391,22 @@ view! {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct MotionView {
-    /// The centers of both particles; the particle's center and the edge's ends; or the particle's center.
+    /// The centers of both particles; the particle's center and the edge's endpoints; or the particle's center.
     points: Vec<PointView>,
-    /// The radii of the bodies that have a radius, in their order.
+    /// The radii of the bodies that have one, in the order of the bodies.
     radii: Vec<Number>,
-    /// The half-plane's place, if the pair has one.
+    /// The half-plane, if the pair has one.
     #[serde(skip_serializing_if = "Option::is_none")]
     half_plane: Option<HalfPlaneView>,
 }
 
-/// A point that moves.
+/// A moving point.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct PointView {
-    /// The place where it is at the start of the step.
+    /// The position at the start of the step.
     start: [Number; 2],
-    /// The motion of the body within the step.
+    /// The displacement within the step.
     displacement: [Number; 2],
 }
 
@@ -415,27 +414,28 @@ struct PointView {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct HalfPlaneView {
-    /// A point on its boundary.
+    /// A point on the boundary of the half-plane.
     point: [Number; 2],
     /// The half-plane's normal.
     normal: [Number; 2],
 }
 
 view! {
-    /// A polynomial, its zeros, and where it is positive.
+    /// A polynomial, its zeros, and the intervals in which it is positive.
     #[schemars(deny_unknown_fields)]
     struct CurveView from curve: Curve {
-        /// The polynomial's meaning when it is positive.
+        /// The meaning of the polynomial if it is positive.
         role: Role = curve.role,
-        /// As logged and searched, highest power first: leading coefficients below 1e-12 are dropped.
+        /// The coefficients as logged and searched, highest power first, without leading coefficients below 1e-12.
         coefficients: Polynomial = curve.logged,
-        /// Nothing dropped.
+        /// All coefficients, highest power first.
         untrimmed: Polynomial = curve.untrimmed,
-        /// Real and imaginary parts, in the order in which the reference's root finder gives them.
+        /// The zeros as pairs of real and imaginary part, in the order of the reference's root finder.
         zeros: Vec<[Number; 2]> =
             curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect(),
-        /// Intervals of time over the whole line, sorted and apart; an interval may be a single time.
-        positive: Vec<[Number; 2]> = sets(&curve.positive),
+        /// The time intervals in which the polynomial is positive, on the whole line, sorted and disjoint. An interval
+        /// may be a single time.
+        positive: Vec<[Number; 2]> = to_pairs(&curve.positive),
     }
 }
 
@@ -443,13 +443,13 @@ view! {
     /// The decision that follows from the polynomials of a pair.
     #[schemars(deny_unknown_fields)]
     struct AnswerView from answer: Answer {
-        /// Intervals of time in which all polynomials are positive, sorted and disjoint.
-        positive: Vec<[Number; 2]> = sets(&answer.positive),
+        /// The time intervals in which all polynomials are positive, sorted and disjoint.
+        positive: Vec<[Number; 2]> = to_pairs(&answer.positive),
         /// Whether the pair collides within the step.
         collides: bool = answer.decision.collides(),
-        /// The first time from which all are positive; inf if there is none.
+        /// The first time from which all polynomials are positive; inf if there is none.
         time: Number = Number(answer.decision.time()),
-        /// From the first object to the second, not normalized; null without a collision.
+        /// The vector from the first object to the second, not normalized; null without a collision.
         normal: Option<[Number; 2]> = match answer.decision {
             Decision::Hit { normal, .. } => Some(normal.write()),
             Decision::Miss { .. } => None,
@@ -461,13 +461,13 @@ view! {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct RightApproachView {
-    /// The polynomial.
+    /// The right polynomial.
     polynomial: CurveView,
-    /// The answer.
+    /// The decision with the right polynomial.
     answer: AnswerView,
 }
 
-fn sets(list: &[Interval]) -> Vec<[Number; 2]> {
+fn to_pairs(list: &[Interval]) -> Vec<[Number; 2]> {
     list.iter().map(|interval| [interval.lo, interval.hi].write()).collect()
 }
 
@@ -503,10 +503,10 @@ mod tests {
     #[test]
     fn sets_of_times_are_written_as_in_books() {
         let set = |lo, hi| Interval { lo, hi };
-        assert_eq!(intervals(&[], exact), "nowhere");
-        assert_eq!(intervals(&[Interval::EVERYTHING], exact), "always");
+        assert_eq!(format_intervals(&[], exact), "nowhere");
+        assert_eq!(format_intervals(&[Interval::EVERYTHING], exact), "always");
         assert_eq!(
-            intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)], exact),
+            format_intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)], exact),
             "(-inf, 0.25) and at 0.5 (intervals touch)"
         );
     }

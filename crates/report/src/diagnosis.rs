@@ -1,4 +1,4 @@
-//! The report of `explain`: the likely mistakes of a program, trace by trace and all together.
+//! The report of `explain`: the likely mistakes of a program, for each trace and for all traces.
 use super::{
     case::Case,
     explain::{ExplanationView, lines},
@@ -6,7 +6,7 @@ use super::{
     smallest::{self, SmallestView},
     style::{Look, Style},
     view::{FindingView, document, view},
-    words::{describe_located, first_divergence},
+    words::{describe_first, describe_located},
 };
 use crate::foreign::one_line;
 use fosssim_findings::{Book, disclosure::DisclosedFinding, located::LocatedFailure, smallest::SmallestScene};
@@ -16,21 +16,21 @@ use std::fmt::Write;
 /// The version of the JSON report's schema (`schemas/explain.schema.json`).
 const SCHEMA: u32 = 3;
 
-/// The whole report.
+/// The report on all traces.
 #[derive(Debug, Clone, Default)]
 pub struct Diagnosis {
     /// The traces, in the order of the request.
     pub cases: Vec<Case>,
-    /// With several traces, the mistakes that explain them together, the most frequent first.
+    /// The mistakes that explain several traces together, the most frequent first; empty for a single trace.
     pub common: Vec<Explanation>,
-    /// The common properties of the scenes in which the program crashes or runs into a limit.
+    /// The common properties of the scenes in which the program crashes or exceeds a limit.
     pub located: Option<LocatedFailure>,
     /// The smallest scene for each cause, if requested.
     pub smallest: Vec<SmallestScene>,
 }
 
 impl Diagnosis {
-    /// Returns whether nothing is wrong.
+    /// Returns whether the fair rules accept every trace.
     #[must_use]
     pub fn is_accepted(&self) -> bool {
         self.cases.iter().all(|case| case.accepted)
@@ -52,7 +52,7 @@ impl Diagnosis {
         let traces = format_count(self.cases.len() as u64, "trace");
         let _ = writeln!(text, "{wrong} of {traces} {is} wrong by the fair rules.\n");
         if wrong == 0 {
-            text += "These scenes show single formulas; a suite has more of them: fosssim-oracle grade PROGRAM\n\n";
+            text += "These scenes show single formulas. A suite has more: fosssim-oracle grade PROGRAM\n\n";
         }
         if let Some(found) = &self.located {
             let heading = style.paint(Look::Strong, "Where it fails");
@@ -66,9 +66,9 @@ impl Diagnosis {
             } else {
                 likely += 1;
                 match (likely, common.is_unexplained()) {
-                    (_, true) => "What is wrong in most",
+                    (_, true) => "Most frequent fault",
                     (1, _) => "Likely cause of most",
-                    _ => "Likely cause of the others, or a second cause of the same ones",
+                    _ => "Likely cause of the other traces, or a second cause of the same ones",
                 }
             };
             let heading = format!("{most} ({explained} of {})", format_count(wrong as u64, "wrong trace"));
@@ -77,7 +77,7 @@ impl Diagnosis {
             text.push('\n');
         }
         for case in &self.cases {
-            let _ = writeln!(text, "{}", head(case, style));
+            let _ = writeln!(text, "{}", render_head(case, style));
             for other in case.explanations.iter().filter(|other| !self.is_common(other)) {
                 text += &render_mistakes(std::slice::from_ref(other), style);
             }
@@ -97,14 +97,14 @@ impl Diagnosis {
     }
 }
 
-fn head(case: &Case, style: Style) -> String {
+fn render_head(case: &Case, style: Style) -> String {
     let verdict = if case.accepted { style.paint(Look::Good, "right") } else { style.paint(Look::Bad, "wrong") };
     let mut line = format!("{verdict}  {}", case.scene);
     if let Some(note) = &case.note {
         let _ = write!(line, ": {note}");
     }
     if let (Some(first), true) = (&case.first, case.explanations.is_empty()) {
-        let _ = write!(line, ": {}", first_divergence(first));
+        let _ = write!(line, ": {}", describe_first(first));
     }
     line
 }
@@ -120,7 +120,7 @@ fn render_single(case: &Case, style: Style) -> String {
         return text;
     }
     if let Some(first) = first {
-        let _ = writeln!(text, "{}", first_divergence(first));
+        let _ = writeln!(text, "{}", describe_first(first));
     }
     if explanations.is_empty() && first.is_none() {
         text += "No known mistake explains it.\n";
@@ -139,7 +139,7 @@ fn render_mistakes(explanations: &[Explanation], style: Style) -> String {
 }
 
 view! {
-    /// The likely mistakes of the program that left one or several traces.
+    /// The likely mistakes of the program that wrote the traces.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct DiagnosisView<'a> from diagnosis: Diagnosis {
         /// The version of this shape.
@@ -147,16 +147,16 @@ view! {
         schema: u32 = SCHEMA,
         /// Whether the fair rules accept every trace.
         accepted: bool = diagnosis.is_accepted(),
-        /// The contents that the scenes have in common in which the program crashes or runs into a limit, in words;
-        /// null if nothing is known.
+        /// The common contents of the scenes in which the program crashes or exceeds a limit, as text; null if there
+        /// are none.
         located: Option<String> = diagnosis.located.as_ref().map(describe_located),
-        /// With several traces, the mistake that explains most of the wrong traces.
+        /// With several traces, the mistake that explains most of the wrong traces; otherwise null.
         common: Option<ExplanationView> = diagnosis.common.first().map(ExplanationView::from),
         /// With several traces, up to three mistakes that explain the wrong traces together; the first is `common`.
         likely: Vec<ExplanationView> = diagnosis.common.iter().map(ExplanationView::from).collect(),
         /// The traces, in the order of the request.
         traces: Vec<CaseView<'a>> = diagnosis.cases.iter().map(CaseView::from).collect(),
-        /// The smallest scene for each cause, where a program is at hand.
+        /// The smallest scene for each cause, if the program can be run.
         smallest: Vec<SmallestView> = diagnosis.smallest.iter().map(SmallestView::from).collect(),
     }
 }
@@ -167,13 +167,13 @@ view! {
     struct CaseView<'a> from case: Case {
         /// The trace's scene.
         scene: &'a str = &case.scene,
-        /// The trace, or the program that left it.
+        /// The path of the trace, or of the program that wrote it.
         trace: &'a str = &case.trace,
         /// Whether the fair rules accept the trace.
         accepted: bool = case.accepted,
-        /// The way the program ended, where it did not end well.
+        /// The end of the program, if it did not end well.
         note: Option<&'a str> = case.note.as_deref(),
-        /// The first thing that is wrong; null if nothing is wrong, or if hints hide it.
+        /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &case.first {
             Some(DisclosedFinding::Full(finding)) => Some(FindingView::from_finding(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,

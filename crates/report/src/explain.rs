@@ -1,27 +1,27 @@
 //! Explanations of mistakes: lines for people, a view for programs.
 //!
-//! They show all that they get; `mistakes::together::told` decides how much that is. Data of a submission appear as
-//! numbers only.
+//! They show everything in an explanation; `mistakes::together::told` removes the parts that the reader may not see.
+//! Data of a submission appear only as numbers.
 use super::{
     detect::polynomial,
-    number::{exact, format_count, tidy},
+    number::{exact, format_count, format_tidy},
     style::Style,
     view::{key, view},
     words::explanation::{details, known_sentence, place, what},
 };
 use fosssim_mistakes::diagnose::{About, Example, ExamplePlace, ExampleValue, Explanation};
 
-/// The greatest number of listed mistakes that can't be distinguished.
-const LISTED: usize = 3;
+/// The maximum number of indistinguishable mistakes that are listed.
+const MAX_LISTED: usize = 3;
 
-/// Returns the lines about explanations, the likeliest first; nothing without any. Indented by two below each sentence.
+/// Returns the lines about explanations, the likeliest first. Lines below a sentence are indented by two.
 #[must_use]
 pub fn lines(explanations: &[Explanation], style: Style) -> Vec<String> {
     explanations.iter().flat_map(|one| explanation_lines(one, style)).collect()
 }
 
-/// Returns the sentence about the likeliest mistake, or about those that explain everything together, for formats with
-/// room for one line.
+/// Returns the sentence about the likeliest mistake, or about the mistakes that explain everything together, for
+/// formats with one line.
 #[must_use]
 pub fn sentence(explanations: &[Explanation]) -> Option<String> {
     if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
@@ -38,30 +38,30 @@ pub fn sentence(explanations: &[Explanation]) -> Option<String> {
     })
 }
 
-/// The sentences about one explanation, in their parts.
+/// The parts of the text about one explanation.
 pub(crate) struct ExplanationParts {
-    /// Whether it is a mistake that is likely, and not an observation.
+    /// Whether the explanation is a likely mistake, and not an observation.
     pub(crate) is_likely: bool,
-    /// The sentence.
+    /// The sentence that names the mistake.
     pub(crate) what: String,
-    /// The evidence for the sentence.
+    /// The evidence for the mistake.
     pub(crate) evidence: Option<String>,
-    /// The exact form, and the mistakes that can't be distinguished from it.
+    /// The exact form, and the mistakes that can't be distinguished from this one.
     pub(crate) details: Vec<String>,
-    /// A small instance.
+    /// A small instance of the mistake.
     pub(crate) example: Vec<String>,
 }
 
 impl ExplanationParts {
-    /// Returns the parts, with formulas as the style writes them.
+    /// Creates the parts, with formulas in the given style.
     pub(crate) fn new(explanation: &Explanation, style: Style) -> Self {
         let Explanation { reproduced, samples, about, .. } = explanation;
-        // An explanation that reproduces nothing is an observation, not a mistake that is likely.
+        // An explanation that reproduces nothing is an observation, not a likely mistake.
         let (is_likely, evidence) = match (about, *reproduced) {
             _ if *samples == 0 => (false, None),
             (_, 0) => (false, Some(format!("{samples} checked"))),
             (About::Unfinished | About::Pairs(_), _) => (false, None),
-            (About::Mistake, _) => (true, Some(reproduces(*reproduced, *samples))),
+            (About::Mistake, _) => (true, Some(describe_evidence(*reproduced, *samples))),
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials"))),
         };
         let mut details: Vec<String> = details(explanation).iter().map(|line| style.set(line)).collect();
@@ -73,8 +73,8 @@ impl ExplanationParts {
     }
 }
 
-/// Returns how many of the wrong steps tried a mistake reproduces: a trace may have more of them.
-fn reproduces(reproduced: u64, samples: u64) -> String {
+/// Returns the number of tried wrong steps that a mistake reproduces; the trace may have more wrong steps.
+fn describe_evidence(reproduced: u64, samples: u64) -> String {
     match samples {
         1 if reproduced == 1 => "reproduces the wrong step tried".to_owned(),
         _ if reproduced == samples => format!("reproduces all {samples} wrong steps tried"),
@@ -91,11 +91,11 @@ fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
     lines
 }
 
-/// Returns the explanations that can't be distinguished from one. Known mistakes are named; a guess that is only found
-/// in polynomials has no sentence of its own, and is counted.
+/// Returns the explanations that can't be distinguished from one. Known mistakes are named; other guesses have no
+/// sentence, and are counted.
 fn describe_others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known_sentence(key)).collect();
-    let (shown, more) = named.split_at(named.len().min(LISTED));
+    let (shown, more) = named.split_at(named.len().min(MAX_LISTED));
     let more = more.len() + keys.len() - named.len();
     match (shown.is_empty(), more) {
         (true, 0) => None,
@@ -105,7 +105,7 @@ fn describe_others(keys: &[String]) -> Option<String> {
     }
 }
 
-/// Returns the sentences in a row, of which each may hold a colon.
+/// Returns several sentences as one list; each may contain a colon.
 fn list_sentences(sentences: &[String]) -> String {
     sentences.iter().map(|one| one.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
@@ -113,7 +113,7 @@ fn list_sentences(sentences: &[String]) -> String {
 fn example_lines(example: &Example, style: Style) -> Vec<String> {
     let given = example.given.iter();
     let given: Vec<String> =
-        given.map(|given| format!("{} = {}", style.set(&key(&given.input)), vector(&given.value))).collect();
+        given.map(|given| format!("{} = {}", style.set(&key(&given.input)), format_vector(&given.value))).collect();
     let mut lines = vec![format!("example: step {}, {}", example.step, place(&example.place))];
     if !given.is_empty() {
         lines.push(format!("  given     {}", given.join(", ")));
@@ -123,20 +123,20 @@ fn example_lines(example: &Example, style: Style) -> Vec<String> {
         ExamplePlace::Given { .. } | ExamplePlace::Polynomial { .. } | ExamplePlace::NumberedPolynomial(_)
     );
     let [expected, actual] = [&example.expected, &example.actual]
-        .map(|values| if is_polynomial { polynomial(values, exact) } else { list(values) });
+        .map(|values| if is_polynomial { polynomial(values, exact) } else { format_list(values) });
     lines.extend([format!("  expected  {expected}"), format!("  actual    {actual}")]);
     lines
 }
 
-fn vector(values: &[f64]) -> String {
-    let number = |value: &f64| tidy(*value, exact);
+fn format_vector(values: &[f64]) -> String {
+    let number = |value: &f64| format_tidy(*value, exact);
     match values {
         [value] => number(value),
         values => format!("({})", values.iter().map(number).collect::<Vec<_>>().join(", ")),
     }
 }
 
-fn list(values: &[f64]) -> String {
+fn format_list(values: &[f64]) -> String {
     if values.is_empty() {
         return "nothing".to_owned();
     }
@@ -147,32 +147,32 @@ view! {
     /// An explanation in JSON: its key and its evidence, with sentences.
     #[derive(Debug, Clone, PartialEq)]
     pub struct ExplanationView from explanation: Explanation {
-        /// A stable key.
+        /// A stable key for machines.
         pub key: String = explanation.key.clone(),
-        /// The sentence.
+        /// The mistake as a sentence.
         pub text: String = what(explanation),
         /// The exact form, one line each.
         pub details: Vec<String> = details(explanation),
-        /// The number of `samples` that it reproduces.
+        /// The number of `samples` that the mistake reproduces.
         pub reproduced: u64 = explanation.reproduced,
-        /// The number of polynomials or steps that were examined.
+        /// The number of polynomials or steps that were checked.
         pub samples: u64 = explanation.samples,
         /// Keys of mistakes that can't be distinguished from this one.
         pub same_as: Vec<String> = explanation.same_as.clone(),
-        /// A small instance.
+        /// A small instance of the mistake.
         pub example: Option<ExampleView> = explanation.example.as_ref().map(ExampleView::from),
     }
 }
 
 view! {
-    /// An example in JSON.
+    /// An example of a mistake in JSON.
     #[derive(Debug, Clone, PartialEq)]
     pub struct ExampleView from example: Example {
         /// The step, from 1.
         pub step: u32 = example.step,
-        /// The place, in words.
+        /// The place in the step, as text.
         pub place: String = place(&example.place),
-        /// The inputs.
+        /// The inputs of the computation.
         pub given: Vec<ExampleValue> = example.given.clone(),
         /// The expected result.
         #[serde(with = "fosssim_num::written")]
@@ -203,7 +203,7 @@ pub(crate) mod tests {
     };
     use fosssim_testing::scenes;
 
-    /// Returns one with everything, one with the least.
+    /// Returns one explanation with all parts, and one with as few as possible.
     pub(crate) fn explanations() -> Vec<Explanation> {
         let input = |input, value: &[f64]| ExampleValue { input, value: value.to_vec() };
         let pair = Pair { kind: PairKind::ParticleEdge, first: 3, second: 1 };
@@ -274,7 +274,8 @@ pub(crate) mod tests {
         );
     }
 
-    /// The reference has made the mistake and wrote the same: other weights that fit its polynomials are no news.
+    /// The reference makes the mistake and writes the same, so other weights that fit its polynomials add no
+    /// information.
     #[test]
     fn a_known_mistake_comes_without_other_weights_that_fit() {
         let weights = |one: Explanation| match one.details.as_slice() {

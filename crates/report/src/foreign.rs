@@ -1,10 +1,10 @@
-//! Words of others: names, and the output of programs. Control characters become visible, and invisible characters are
-//! replaced, before any format escapes what its own syntax gives a meaning.
+//! Text from others: names, and the output of programs. Control characters become visible, and invisible characters are
+//! replaced, before a format escapes the characters with a meaning in its syntax.
 use fosssim_findings::is_visible_ascii;
 use std::borrow::Cow;
 
-/// Removes a terminal's codes for colors, cursors and titles, which a log of FOSSSim's own holds in every line. Only
-/// whole codes are removed, so that the rest of a broken code becomes visible.
+/// Removes a terminal's codes for colors, cursors and titles, which every line of FOSSSim's log contains. Only complete
+/// codes are removed, so that incomplete ones become visible.
 #[must_use]
 pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
     const ESCAPE: char = '\u{1b}';
@@ -27,8 +27,8 @@ pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
     Cow::Owned(out + rest)
 }
 
-/// Returns the bytes of the code that begins behind an escape character: `[32;1m`, or `]0;title` with its end. ECMA-48,
-/// 5.4 and 5.6.
+/// Returns the number of bytes of the code after an escape character, such as `[32;1m`, or `]0;title` with its end.
+/// ECMA-48, 5.4 and 5.6.
 fn length_of_code(code: &str) -> Option<usize> {
     let bytes = code.as_bytes();
     match bytes.first()? {
@@ -48,14 +48,14 @@ fn length_of_code(code: &str) -> Option<usize> {
     }
 }
 
-/// Returns the output of a program, [`plain`] and without a terminal's codes. Names keep them; otherwise two could look
-/// the same.
+/// Returns the output of a program as [`plain`] text, without a terminal's codes. Names keep the codes; otherwise two
+/// names could look the same.
 #[must_use]
 pub fn clean_output(text: &str) -> String {
     plain(&without_codes(text))
 }
 
-/// Returns a word as a shell takes it.
+/// Returns a word, quoted for a shell.
 #[must_use]
 pub fn quote(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=,-".contains(c);
@@ -65,18 +65,18 @@ pub fn quote(word: &str) -> String {
     }
 }
 
-/// Returns whether a character changes the direction of the text, which could show a report's words in another order,
-/// or has no width, which makes two names look alike.
+/// Returns whether a character is invisible: it changes the direction of the text, which could reorder a report, or has
+/// no width, which makes two names look alike.
 pub(crate) const fn is_unseen(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
         | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// Returns foreign words without control characters: escape codes, bells and NULs become visible, line breaks and tabs
-/// stay, characters that XML 1.0 forbids and invisible ones are replaced.
+/// Returns text from others without control characters. Escape codes, bells and NULs become visible, line breaks and
+/// tabs stay, and invisible characters and those that XML 1.0 forbids are replaced.
 #[must_use]
 pub fn plain(text: &str) -> String {
-    // Nearly every text, which a class has by the ten thousand.
+    // This is the case for nearly all texts, of which a class has tens of thousands.
     if is_visible_ascii(text) {
         return text.to_owned();
     }

@@ -1,4 +1,4 @@
-//! The formats of grades: their names, their contents, and the readers for whom they are.
+//! The formats of grades: their names, contents and readers.
 use crate::{
     grade::{Text, csv_table, github, gradescope, json, junit, not_graded, prairielearn},
     page::{Audience, GradePage},
@@ -8,12 +8,12 @@ use fosssim_findings::{Grade, PassedOver};
 use fosssim_mistakes::together::{for_students, told_to_students};
 use std::borrow::Cow;
 
-/// The warning of a report that leaves groups out.
-const OTHERS: &str =
-    "points, verdict and likely mistakes are those of the groups shown here; the grade has others, too";
+/// The warning in a report that leaves groups out.
+const HIDDEN_GROUPS_WARNING: &str =
+    "points, verdict and likely mistakes are those of the groups shown here; other groups are hidden";
 
-/// A row has the format's name, whether one document holds the grades of several submissions, and the renderer of these
-/// grades and of the entries that are no submissions.
+/// Declares the formats. A row has the format's name, whether one document holds the grades of several submissions, and
+/// the renderer for these grades and for the entries that are not submissions.
 macro_rules! formats {
     ($($(#[$about:meta])+ $format:ident $name:literal $takes_several:literal $render:expr;)+) => {
         /// The formats, in the order in which help lists them.
@@ -38,7 +38,7 @@ macro_rules! formats {
                 match self { $(Self::$format => $takes_several,)+ }
             }
 
-            /// Renders the document as [`Format::render`] does, with the entries that are no submissions.
+            /// Renders the document like [`Format::render`], with the entries that are not submissions.
             #[must_use]
             pub fn render_class(self, grades: &[Grade], passed_over: &[PassedOver]) -> String {
                 let render: fn(&[Grade], &[PassedOver]) -> String = match self { $(Self::$format => $render,)+ };
@@ -49,51 +49,51 @@ macro_rules! formats {
 }
 
 formats! {
-    /// For people.
+    /// Text for people.
     Text "text" true
         |grades, passed_over| {
             Text::default().render(grades) + &not_graded(grades, class_entries(grades, passed_over), Style::Plain)
         };
-    /// Our own, versioned (`schemas/grade.schema.json`).
+    /// The program's own JSON, with a version (`schemas/grade.schema.json`).
     Json "json" true |grades, passed_over| json::render(grades, class_entries(grades, passed_over));
     /// JUnit XML (`schemas/junit.xsd`).
     Junit "junit" true |grades, passed_over| junit::render(grades, class_entries(grades, passed_over));
     /// Gradescope's results.json (`schemas/gradescope.schema.json`).
-    Gradescope "gradescope" false |grades, _| first(grades, gradescope::render);
+    Gradescope "gradescope" false |grades, _| render_first(grades, gradescope::render);
     /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
-    Prairielearn "prairielearn" false |grades, _| first(grades, prairielearn::render);
-    /// GitHub Actions annotations.
+    Prairielearn "prairielearn" false |grades, _| render_first(grades, prairielearn::render);
+    /// A Markdown summary, for GitHub's job summary.
     Github "github" true
         |grades, passed_over| github::annotations(grades) + &github::passed_over(class_entries(grades, passed_over));
-    /// A Markdown summary, for GitHub's step summary.
+    /// A table for spreadsheets with one row per scene.
     Markdown "markdown" true
         |grades, passed_over| {
             github::summary(grades) + &github::list_of_passed_over(class_entries(grades, passed_over))
         };
     /// One row per scene, for spreadsheets.
     Csv "csv" true csv_table::scenes;
-    /// One file to look at ([`page::GradePage`](crate::page::GradePage)); without cards here, because these are on a
+    /// A self-contained page ([`page::GradePage`](crate::page::GradePage)); without cards, because they are stored on
     /// disk.
     Html "html" false
         |grades, _| {
-            first(grades, |grade| {
+            render_first(grades, |grade| {
                 GradePage { grade, card: &|_| None, class: None, reader: Audience::Staff }.html()
             })
         };
 }
 
 /// Renders the only grade of a format for one submission.
-fn first(grades: &[Grade], render: impl Fn(&Grade) -> String) -> String {
+fn render_first(grades: &[Grade], render: impl Fn(&Grade) -> String) -> String {
     grades.first().map(render).unwrap_or_default()
 }
 
-/// Returns the entries that are no submissions for a report on several: a report on one does not list them.
+/// Returns the entries that are not submissions, for a report on several; a report on one does not list them.
 fn class_entries<'e>(grades: &[Grade], passed_over: &'e [PassedOver]) -> &'e [PassedOver] {
     if grades.len() > 1 { passed_over } else { &[] }
 }
 
 impl Format {
-    /// Renders the document. Formats for one submission ([`Format::takes_several`]) show the first.
+    /// Renders the document. Formats for one submission ([`Format::takes_several`]) contain the first.
     #[must_use]
     pub fn render(self, grades: &[Grade]) -> String {
         self.render_class(grades, &[])
@@ -105,7 +105,7 @@ impl Format {
         Self::ALL.iter().copied().find(|format| format.name() == name)
     }
 
-    /// Returns the names of these formats, as a sentence lists them: `text, json or csv`.
+    /// Returns the names of the selected formats as a list, such as `text, json or csv`.
     #[must_use]
     pub fn names(wanted: impl Fn(Self) -> bool) -> String {
         let wanted = Self::ALL.iter().copied().filter(|format| wanted(*format));
@@ -116,19 +116,19 @@ impl Format {
         }
     }
 
-    /// Returns the part of a grade that goes into a document for this reader. Reports for students leave out the groups
-    /// that students do not see immediately, unless the requesting platform hides these itself (`platform_hides`).
+    /// Returns the part of a grade for a document for `reader`. Reports for students leave out the groups that students
+    /// do not see immediately, unless the platform that requests them hides the groups itself (`platform_hides`).
     #[must_use]
     pub fn visible_part(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
         match (self, reader) {
-            // Students read these formats in any case. They hide hidden groups by themselves, and so does a page.
+            // Students always read these formats. The platforms and the page hide hidden groups themselves.
             (Self::Gradescope | Self::Prairielearn, _) | (Self::Html, Audience::Student) => told_to_students(grade),
             (_, Audience::Staff) => Cow::Borrowed(grade),
             (_, Audience::Student) if platform_hides => told_to_students(grade),
             (_, Audience::Student) => {
                 let mut shown = for_students(grade);
                 if shown.groups.len() < grade.groups.len() {
-                    shown.to_mut().warnings.push(OTHERS.to_owned());
+                    shown.to_mut().warnings.push(HIDDEN_GROUPS_WARNING.to_owned());
                 }
                 shown
             }

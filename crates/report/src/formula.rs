@@ -1,6 +1,6 @@
-//! Formulas as people write them: `t^2: -x21.d21` becomes `t²: −x₂₁·Δx₂₁`. Sentences around them stay as they are.
+//! Mathematical signs in formulas: `t^2: -x21.d21` becomes `t²: −x₂₁·Δx₂₁`. Sentences around formulas stay as they are.
 
-/// Returns the line with Unicode's signs in its formulas.
+/// Returns the line with Unicode's mathematical signs in its formulas.
 ///
 /// ```
 /// let line = "t^2 lacks -4 e h, with e = d21.x21.";
@@ -14,8 +14,8 @@ pub fn with_signs(line: &str) -> String {
         let done = &line[..line.len() - rest.len()];
         let word_end = rest.find(|c: char| !c.is_ascii_alphanumeric() && c != '_').unwrap_or(rest.len());
         let (sign, length) = match first {
-            _ if word_end > 0 => (symbol(&rest[..word_end], &rest[word_end..]), word_end),
-            '^' => power(&rest[1..]).map_or(('^'.to_string(), 1), |(sign, length)| (sign, length + 1)),
+            _ if word_end > 0 => (format_symbol(&rest[..word_end], &rest[word_end..]), word_end),
+            '^' => parse_power(&rest[1..]).map_or(('^'.to_string(), 1), |(sign, length)| (sign, length + 1)),
             '<' | '>' if rest[1..].starts_with('=') => (if first == '<' { '≤' } else { '≥' }.to_string(), 2),
             '.' if is_between_factors(done, &rest[1..]) => ("·".to_owned(), 1),
             '-' if is_minus(done, &rest[1..]) => ("−".to_owned(), 1),
@@ -27,8 +27,8 @@ pub fn with_signs(line: &str) -> String {
     out
 }
 
-/// Returns a word as a formula writes it: letters with numbers get indices, Greek letters their own signs.
-fn symbol(word: &str, after: &str) -> String {
+/// Returns a name in a formula with subscript digits and Greek letters.
+fn format_symbol(word: &str, after: &str) -> String {
     let letters = word.trim_end_matches(|c: char| c.is_ascii_digit());
     let number = &word[letters.len()..];
     let is_index = (1..=2).contains(&number.len());
@@ -45,21 +45,21 @@ fn symbol(word: &str, after: &str) -> String {
     }
 }
 
-/// Returns digits in another row of Unicode, which begins with `zero`.
+/// Returns digits in another script of Unicode, which begins with `zero`.
 fn shift_digits(digits: &str, zero: char) -> String {
     digits.bytes().filter_map(|digit| char::from_u32(u32::from(zero) + u32::from(digit - b'0'))).collect()
 }
 
-/// Returns the power that follows a `^`, and its length.
-fn power(rest: &str) -> Option<(String, usize)> {
+/// Returns the power after a `^`, and its length.
+fn parse_power(rest: &str) -> Option<(String, usize)> {
     let raise = |c| "⁰¹²³⁴⁵⁶⁷⁸⁹ᵀ".chars().nth("0123456789T".find(c)?);
     let raised: String = rest.chars().map_while(raise).collect();
     let length = raised.chars().count();
     (length > 0).then_some((raised, length))
 }
 
-/// Returns whether the text before a sign ends with a short name or a parenthesis, and the text behind begins with one.
-/// Names of functions and files, and English words, do not count.
+/// Returns whether the text before a sign ends with a short name or a parenthesis, and the text after it begins with
+/// one. Names of functions and files, and English words, do not count.
 fn is_between_factors(before: &str, behind: &str) -> bool {
     let is_name = |word: &str| word.len() <= 3 && word.starts_with(|c: char| c.is_ascii_alphabetic());
     let start = before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len();
@@ -69,7 +69,7 @@ fn is_between_factors(before: &str, behind: &str) -> bool {
         && (behind.starts_with('(') || is_name(&behind[..end]) && !is_called)
 }
 
-/// Returns whether a `-` between these texts is a sign or a difference, and no hyphen.
+/// Returns whether a `-` between two texts is a sign or a difference, and not a hyphen.
 fn is_minus(before: &str, behind: &str) -> bool {
     let is_first = before.is_empty() || before.ends_with([' ', '(', '=', '|']);
     let begins = behind.starts_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, '(' | '|'));

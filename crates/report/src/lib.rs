@@ -1,7 +1,7 @@
-//! Results to bytes: text, JSON and the formats of learning platforms.
+//! Reports on results: text, JSON and the formats of learning platforms.
 //!
-//! Every renderer is a pure function from results to text; nothing here opens a file, reads a clock or computes a
-//! verdict. Values serialize themselves; `view` has the versions of their schemas.
+//! Every renderer is a pure function from results to text; the crate opens no files, reads no clocks and computes no
+//! verdicts. `view` has the versions of the schemas.
 //!
 //! ```
 //! use fosssim_report::{number::format_count, style::Style, table::{Align, Table}};

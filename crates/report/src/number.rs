@@ -1,6 +1,6 @@
-//! Numbers as text: C's `%g` for everything that the original prints, and the shortest exact form for our own reports.
+//! Numbers as text: C's `%g` for everything that the original prints, and the shortest exact form for other reports.
 //!
-//! Pure functions.
+//! The functions are pure.
 
 pub use fosssim_num::printed::general;
 
@@ -10,7 +10,7 @@ pub fn exact(value: f64) -> String {
     fosssim_num::printed::exact(value + 0.0)
 }
 
-/// Returns a short fraction where a number is one but for a few roundings, and its digits are many: `1/3`.
+/// Returns a short fraction such as `1/3`, if the number equals one up to a few roundings and has many digits.
 fn fraction(value: f64) -> Option<String> {
     let is_near = |denominator: &f64| {
         let (scaled, whole) = (value * denominator, (value * denominator).round());
@@ -20,22 +20,23 @@ fn fraction(value: f64) -> Option<String> {
     Some(format!("{}/{denominator}", (value * denominator).round()))
 }
 
-/// Smaller numbers are round-off of a zero, where numbers are near 1.
-const NOTHING: f64 = 1e-13;
+/// The bound below which numbers count as zero, next to numbers near 1.
+const ZERO_BOUND: f64 = 1e-13;
 
-/// Returns a number as it is computed by hand: short decimals or a short fraction, else six digits.
+/// Returns a number as in a calculation by hand: short decimals, a short fraction, or six digits.
 pub(crate) fn short(value: f64) -> String {
-    tidy(if value.abs() < NOTHING { 0.0 } else { value }, general)
+    format_tidy(if value.abs() < ZERO_BOUND { 0.0 } else { value }, general)
 }
 
-/// Returns short decimals or a short fraction where a number is one but for a few roundings, else as `other` writes it.
-pub(crate) fn tidy(value: f64, other: fn(f64) -> String) -> String {
+/// Returns short decimals or a short fraction if the number equals one up to a few roundings; otherwise the result of
+/// `other`.
+pub(crate) fn format_tidy(value: f64, other: fn(f64) -> String) -> String {
     let rounded = (value * 1e6).round() / 1e6;
-    let is_near = value.abs() < 1e9 && (rounded - value).abs() <= NOTHING * value.abs();
+    let is_near = value.abs() < 1e9 && (rounded - value).abs() <= ZERO_BOUND * value.abs();
     if is_near { exact(rounded) } else { fraction(value).unwrap_or_else(|| other(value)) }
 }
 
-/// Returns a count with thin separation of thousands: `1 234 567`; four digits stay together.
+/// Returns a count with separated thousands, such as `1 234 567`; four digits stay together.
 #[must_use]
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
@@ -52,7 +53,7 @@ pub fn count(value: u64) -> String {
     grouped
 }
 
-/// Returns a count with its noun: `1 step`, `12 345 steps`.
+/// Returns a count with its noun, such as `1 step` or `12 345 steps`.
 #[must_use]
 pub fn format_count(value: u64, noun: &str) -> String {
     let plural = if value == 1 { "" } else { "s" };
@@ -60,21 +61,21 @@ pub fn format_count(value: u64, noun: &str) -> String {
 }
 
 /// Returns two values in one notation, as short as a comparison allows: six digits, and at least two from the first
-/// that differs. Returns also the place in both texts at which they begin to differ; `None` if they are equal.
+/// that differs. Also returns the position in both texts where they begin to differ; `None` if they are equal.
 #[must_use]
 pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>) {
     let texts = in_one_notation(expected, actual).unwrap_or_else(|| (general(expected), general(actual)));
     let (one, other) = (texts.0.as_bytes(), texts.1.as_bytes());
     let common = one.iter().zip(other).take_while(|(one, other)| one == other).count();
     let parts = expected.to_bits() != actual.to_bits() && texts.0 != texts.1;
-    // Numbers of different lengths before the point have no digit in common.
+    // Numbers with different lengths before the point have no digit in common.
     let whole = |text: &str| text.find('.').unwrap_or(text.len());
     let place = if whole(&texts.0) == whole(&texts.1) { common } else { 0 };
     (texts.0, texts.1, parts.then_some(place))
 }
 
-/// Decimals as many as it takes, and one power of ten for both where they are very large or small; nothing for values
-/// that can't be written so.
+/// Returns both values with as many decimals as needed, and with a common power of ten if they are very large or small;
+/// `None` if one notation does not fit both.
 fn in_one_notation(expected: f64, actual: f64) -> Option<(String, String)> {
     let most = expected.abs().max(actual.abs());
     let power = |value: f64| -> Option<i32> { format!("{value:e}").split_once('e')?.1.parse().ok() };
@@ -83,7 +84,7 @@ fn in_one_notation(expected: f64, actual: f64) -> Option<(String, String)> {
     }
     let (top, gap) = (power(most)?, (expected - actual).abs());
     let apart = if gap > 0.0 { power(gap)? } else { top };
-    // Values of very different sizes have nothing that could be compared digit by digit.
+    // Values of very different sizes can't be compared digit by digit.
     let least = expected.abs().min(actual.abs());
     if least > 0.0 && top - power(least)? > 4 {
         return None;
@@ -123,7 +124,7 @@ mod tests {
 
     #[test]
     fn fractions_are_short_and_near() {
-        let texts = [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(|value| tidy(value, exact));
+        let texts = [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(|value| format_tidy(value, exact));
         assert_eq!(texts, ["1/3", "-7/11", "0.3", "0.25", "0.3333333"]);
     }
 

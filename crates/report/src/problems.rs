@@ -1,14 +1,14 @@
-//! Problems of a scene drawn under the lines that they are about.
+//! Problems of a scene, each drawn below the line that it is about.
 use fosssim_model::scene::{Problem, Problems, Severity};
 
-/// At most this many characters of a source line are shown.
-const WIDEST: usize = 100;
+/// The maximum number of characters of a source line that are shown.
+const MAX_SHOWN_CHARS: usize = 100;
 
-/// No more bytes than these on either side of a place can be shown: a character takes four at most. Lines may be
-/// megabytes long.
-const REACH: usize = 4 * WIDEST + 8;
+/// The maximum number of bytes that can be shown on either side of a place: a character takes at most four bytes, and
+/// lines may be megabytes long.
+const MAX_SHOWN_BYTES: usize = 4 * MAX_SHOWN_CHARS + 8;
 
-/// Returns everything that is wrong with a rejected scene: a head line, then each problem with its source line.
+/// Returns the problems of a rejected scene: a head line, then each problem with its source line.
 ///
 /// `name` is the scene's name in messages, `source` its bytes.
 #[must_use]
@@ -25,7 +25,7 @@ pub fn errors(name: &str, source: &[u8], refused: &Problems) -> String {
     text
 }
 
-/// Returns the warnings about an accepted scene; nothing when there is none.
+/// Returns the warnings about an accepted scene; empty if there are none.
 #[must_use]
 pub fn warnings(name: &str, source: &[u8], list: &[Problem]) -> String {
     list.iter().map(|problem| block(name, source, problem) + "\n").collect()
@@ -43,7 +43,7 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     let warning = if problem.severity == Severity::Warning { "warning: " } else { "" };
     let mut text = format!("{name}:{line}:{column}: {warning}{message}\n");
     let start = span.start.min(source.len());
-    let from = start.saturating_sub(REACH);
+    let from = start.saturating_sub(MAX_SHOWN_BYTES);
     let line_start = source[from..start].iter().rposition(|&byte| byte == b'\n').map_or(from, |at| from + at + 1);
     let end = span.end.clamp(start, line_end(source, start));
     let before = escape_line(&source[line_start..start]);
@@ -51,17 +51,17 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     let after = escape_line(&source[end..line_end(source, end)]);
     let advice = help.as_ref().map(|help| format!(" {help}")).unwrap_or_default();
     if before.is_empty() && marked.is_empty() && after.is_empty() {
-        // There is nothing to point at: an empty file, or an empty line.
+        // Nothing can be marked in an empty file or an empty line.
         if !advice.is_empty() {
             text += &format!("    = {}\n", advice.trim_start());
         }
         return text;
     }
-    // Long lines are cut on both sides of the place.
-    let cut = before.chars().count().saturating_sub(WIDEST / 2);
+    // Cut long lines on both sides of the place.
+    let cut = before.chars().count().saturating_sub(MAX_SHOWN_CHARS / 2);
     let (dots, indent) = if cut > 0 { ("...", 3) } else { ("", 0) };
     let before: String = before.chars().skip(cut).collect();
-    let room = WIDEST.saturating_sub(before.chars().count());
+    let room = MAX_SHOWN_CHARS.saturating_sub(before.chars().count());
     let marked: String = marked.chars().take(room.max(1)).collect();
     let tail_room = room.saturating_sub(marked.chars().count());
     let more = if after.chars().count() > tail_room { "..." } else { "" };
@@ -74,13 +74,13 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     text
 }
 
-/// Returns the end of the line behind `at`, or of what can be shown of it.
+/// Returns the end of the line after `at`, or of the part that can be shown.
 fn line_end(source: &[u8], at: usize) -> usize {
-    let to = source.len().min(at + REACH);
+    let to = source.len().min(at + MAX_SHOWN_BYTES);
     source[at..to].iter().position(|&byte| byte == b'\n').map_or(to, |found| at + found)
 }
 
-/// Returns a piece of the source as a terminal may show it: one column per character, no control characters.
+/// Returns a part of the source in printable form: one column per character, without control characters.
 fn escape_line(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\r');
@@ -123,7 +123,7 @@ mod tests {
         let source = format!("{}HERE{}", "a".repeat(500), "b".repeat(500));
         let text = block("s", source.as_bytes(), &problem(&source, "HERE", 1, 501));
         let lines: Vec<_> = text.lines().collect();
-        assert!(lines[1].len() < WIDEST + 15, "{text}");
+        assert!(lines[1].len() < MAX_SHOWN_CHARS + 15, "{text}");
         assert_eq!(lines[1].find("HERE"), lines[2].find("^^^^"), "{text}");
     }
 

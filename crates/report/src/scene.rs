@@ -1,4 +1,4 @@
-//! Scenes as a list: a line on each.
+//! The list of scenes, with one line each.
 use super::{
     number::format_count,
     style::{Look, Style},
@@ -7,21 +7,21 @@ use super::{
 use crate::foreign::one_line;
 use fosssim_model::scene::Scene;
 
-/// Returns one line per scene: its name under `asset:`, how large it is, and the first sentence of its description.
+/// Returns one line per scene: its name with `asset:`, its size, and the first sentence of its description.
 #[must_use]
 pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     let width = scenes.iter().map(|(name, _)| wrap::columns(name)).max().unwrap_or(0);
     let line = |(name, scene): &(&str, Scene)| {
         let blanks = " ".repeat(width - wrap::columns(name));
         let size = style.paint(Look::Faint, &format!("({})", describe_size(scene)));
-        let words = scene.description.as_deref().map(|text| one_line(sentence(text)) + " ").unwrap_or_default();
+        let words = scene.description.as_deref().map(|text| one_line(first_sentence(text)) + " ").unwrap_or_default();
         format!("asset:{name}{blanks}  {words}{size}\n")
     };
     scenes.iter().map(line).collect()
 }
 
-/// Returns `3 particles, 1 edge, 20 steps, for T1M2, T1M3`: kinds without a member are left out, and the milestones are
-/// those whose programs can run it.
+/// Returns the size of a scene, such as `3 particles, 1 edge, 20 steps, for T1M2, T1M3`. Kinds of objects that the
+/// scene lacks are left out; the milestones are those whose programs can run the scene.
 fn describe_size(scene: &Scene) -> String {
     let parts = [
         (scene.particles.len() as u64, "particle"),
@@ -36,7 +36,7 @@ fn describe_size(scene: &Scene) -> String {
 }
 
 /// Returns the first sentence of a text.
-fn sentence(text: &str) -> &str {
+fn first_sentence(text: &str) -> &str {
     let text = text.trim();
     text.match_indices(['.', ';', ':'])
         .find(|(at, _)| text[at + 1..].starts_with(' '))
@@ -49,8 +49,8 @@ mod tests {
 
     #[test]
     fn the_first_sentence_ends_at_a_stop_before_a_blank() {
-        assert_eq!(sentence("Two balls meet at t = 0.5. A wrong program misses."), "Two balls meet at t = 0.5.");
-        assert_eq!(sentence("A cue ball breaks; cushions on four sides."), "A cue ball breaks");
-        assert_eq!(sentence("one"), "one");
+        assert_eq!(first_sentence("Two balls meet at t = 0.5. A wrong program misses."), "Two balls meet at t = 0.5.");
+        assert_eq!(first_sentence("A cue ball breaks; cushions on four sides."), "A cue ball breaks");
+        assert_eq!(first_sentence("one"), "one");
     }
 }

@@ -1,9 +1,9 @@
-//! The schemas of the JSON documents that reports write, made from the types of these documents.
+//! The schemas of the JSON reports, which are generated from the types of the reports.
 use super::{check::CheckView, detect::DetectView, diagnosis::DiagnosisView, grade::GradeDocument};
 use schemars::{JsonSchema, Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::Value;
 
-/// Returns the schemas with the commands that write such documents. Each is `<command>.schema.json` in the folder
+/// Returns the schemas, each with the command that writes such documents. Each is `<command>.schema.json` in the folder
 /// `schemas`.
 #[must_use]
 pub fn all() -> [(&'static str, Schema); 4] {
@@ -23,7 +23,7 @@ fn schema_of<Document: JsonSchema>(command: &str) -> Schema {
     schema
 }
 
-/// Joins the lines of descriptions, which end where the source's lines are full.
+/// Joins the lines of descriptions, which are wrapped in the source.
 fn join_lines(schema: &mut Schema) {
     if let Some(Value::String(description)) = schema.get_mut("description") {
         *description = description.replace('\n', " ");

@@ -1,17 +1,17 @@
-//! The number of steps that are right or wrong, in words that every report shares.
+//! The number of right or wrong steps, as text that every report shares.
 
-/// Returns words such as `all 15 steps are right`, `the only step is right`. `count` writes numbers.
+/// Returns text such as `all 15 steps are right` or `the only step is right`. `count` formats numbers.
 #[must_use]
 pub fn describe_right(steps: u32, count: fn(u64) -> String) -> String {
     match steps {
-        0 => "there is no step to get wrong".to_owned(),
+        0 => "there are no steps, so nothing can be wrong".to_owned(),
         1 => "the only step is right".to_owned(),
         steps => format!("all {} steps are right", count(steps.into())),
     }
 }
 
-/// Returns words such as `3 of 15 steps are wrong`, `1 of 15 steps is wrong`, `the only step is wrong`. `count` writes
-/// numbers.
+/// Returns text such as `3 of 15 steps are wrong`, `1 of 15 steps is wrong` or `the only step is wrong`. `count`
+/// formats numbers.
 #[must_use]
 pub fn describe_wrong(wrong: u64, steps: u32, count: fn(u64) -> String) -> String {
     match (wrong, steps) {

@@ -14,17 +14,17 @@ use serde_json::json;
 /// The results of a simulation.
 #[derive(Debug, Clone, Copy)]
 pub struct SimulationSummary<'a> {
-    /// The scene as typed.
+    /// The scene's name, as typed.
     pub scene: &'a str,
-    /// The trace as typed; `None` when nothing was kept.
+    /// The trace's name, as typed; `None` if no trace was written.
     pub output: Option<&'a str>,
-    /// Steps of the scene.
+    /// The number of steps of the scene.
     pub steps: u32,
-    /// The events of the steps.
+    /// The numbers of events in all steps.
     pub counts: EventCounts,
-    /// Size of the trace.
+    /// The size of the trace.
     pub written: WrittenTrace,
-    /// The root searches, when they were audited.
+    /// The root searches, if they were audited.
     pub audited: Option<SearchCounts>,
 }
 

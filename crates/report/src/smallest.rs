@@ -1,4 +1,4 @@
-//! The smallest scene on which a program is still wrong for the same reason: the scene, the values that differ, and the
+//! The smallest scene on which a program is still wrong for the same reason, with the differing values and the
 //! computation by hand.
 use crate::{
     explain::{ExplanationView, lines},
@@ -6,11 +6,11 @@ use crate::{
     number::format_count,
     style::{Look, Style},
     view::{FindingView, view},
-    words::first_divergence,
+    words::describe_first,
 };
 use fosssim_findings::{Book, disclosure::DisclosedFinding, smallest::SmallestScene};
 
-/// Returns the size and the origin of the scene, in a sentence.
+/// Returns the size and the origin of the scene, as a sentence.
 pub(crate) fn title(small: &SmallestScene) -> String {
     let SmallestScene { bodies, origin, .. } = small;
     let noun = if *bodies == 1 { "body" } else { "bodies" };
@@ -25,7 +25,7 @@ pub fn text(small: &SmallestScene, style: Style) -> String {
     let SmallestScene { note, first, explanations, .. } = small;
     let heading = |words: &str| format!("{}\n", style.paint(Look::Strong, words));
     let told = lines(&explanations[..explanations.len().min(1)], style);
-    let first = first.as_ref().filter(|_| told.is_empty()).map(first_divergence);
+    let first = first.as_ref().filter(|_| told.is_empty()).map(describe_first);
     let causes = note.iter().cloned().chain(first).chain(told).map(|line| format!("  {line}\n"));
     let mut parts = vec![heading(&title(small)) + &causes.collect::<String>(), small.xml.clone()];
     parts.extend(small.differs.clone());
@@ -42,26 +42,26 @@ view! {
     /// The smallest scene on which a program is still wrong for the same reason.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct SmallestView from small: SmallestScene {
-        /// The scene that it was made from.
+        /// The name of the original scene.
         origin: String = plain(&small.origin),
-        /// The scene, as a file.
+        /// The content of the scene file.
         scene: String = small.xml.clone(),
-        /// The command that finds the scene again.
+        /// The command that reproduces the scene.
         again: String = plain(&small.again),
-        /// The number of runs of the program.
+        /// The number of times that the program was run.
         runs: u32 = small.runs,
-        /// Whether no single attempt makes it smaller; false if the search was stopped.
+        /// Whether no single change makes the scene smaller; false if the search was stopped early.
         minimal: bool = small.is_minimal,
-        /// The way the program ended, where it did not end well.
+        /// The end of the program, if it did not end well.
         note: Option<String> = small.note.as_deref().map(plain),
-        /// The first thing that is wrong; null if nothing is wrong, or if hints hide it.
+        /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &small.first {
             Some(DisclosedFinding::Full(finding)) => Some(FindingView::from_finding(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,
         },
-        /// Likely mistakes, the cause first.
+        /// The likely mistakes, beginning with the cause.
         explanations: Vec<ExplanationView> = small.explanations.iter().map(ExplanationView::from).collect(),
-        /// The computation by hand, of the first wrong step; null if hints hide it.
+        /// The computation of the first wrong step by hand; null if hints hide it.
         by_hand: Option<String> = small.by_hand.clone(),
     }
 }

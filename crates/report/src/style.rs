@@ -1,15 +1,15 @@
-//! Decoration for terminals: colors and signs on top of text that makes sense without them.
+//! The style of text for terminals. Colors and signs are added to text that can be understood without them.
 use crate::formula;
 
-/// Whether a report is decorated.
+/// The decoration of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Style {
     /// Plain text, for files, pipes and users who want no color.
     #[default]
     Plain,
-    /// Color codes, for terminals.
+    /// Colors, for terminals.
     Color,
-    /// Color codes, and formulas with Unicode's signs, for terminals that show these.
+    /// Colors and mathematical signs in formulas, for terminals that can show them.
     ColorAndSigns,
 }
 
@@ -24,12 +24,12 @@ pub enum Look {
     Notice,
     /// A heading.
     Strong,
-    /// Less important text.
+    /// Text of less importance.
     Faint,
 }
 
 impl Style {
-    /// Returns the text, decorated. Padding has to be done before.
+    /// Returns the text with the codes of a style. Padding must be added before.
     #[must_use]
     pub fn paint(self, look: Look, text: &str) -> String {
         let code = match (self, look) {
@@ -43,7 +43,7 @@ impl Style {
         format!("\x1b[{code}m{text}\x1b[0m")
     }
 
-    /// Returns the line with its formulas as this style writes them.
+    /// Returns the line, with its formulas as the style requires.
     pub(crate) fn set(self, line: &str) -> String {
         if self == Self::ColorAndSigns { formula::with_signs(line) } else { line.to_owned() }
     }

@@ -1,10 +1,10 @@
-//! Columns of text that line up.
+//! Text in aligned columns.
 use super::{
     style::{Look, Style},
     wrap::columns,
 };
 
-/// A cell: its text, and perhaps its style.
+/// A cell: its text and its style.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cell {
     text: String,
@@ -12,7 +12,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Returns a cell with this style.
+    /// Creates a cell with a style.
     pub fn with_look(look: Look, text: impl Into<String>) -> Self {
         Self { text: text.into(), look: Some(look) }
     }
@@ -27,13 +27,13 @@ impl<T: Into<String>> From<T> for Cell {
 /// The alignment of a column's text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
-    /// At its left edge.
+    /// The text is aligned at the left edge, like words.
     Left,
-    /// At its right edge: numbers.
+    /// The text is aligned at the right edge, like numbers.
     Right,
 }
 
-/// Rows of cells under a fixed list of columns.
+/// Rows of cells with a fixed number of columns.
 #[derive(Debug, Clone)]
 pub struct Table<const COLUMNS: usize> {
     columns: [Align; COLUMNS],
@@ -57,8 +57,8 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
         self.row(titles.map(|title| Cell::with_look(Look::Faint, title)));
     }
 
-    /// Renders the rows as lines, indented by two spaces, columns three spaces apart, without blanks at the ends of
-    /// lines.
+    /// Renders the rows as lines, indented by two spaces, with three spaces between columns and no blanks at the ends
+    /// of lines.
     #[must_use]
     pub fn render(&self, style: Style) -> String {
         let width = |column: usize| self.rows.iter().map(|row| columns(&row[column].text)).max().unwrap_or_default();

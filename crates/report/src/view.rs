@@ -13,7 +13,8 @@ use fosssim_num::polynomial::Polynomial;
 pub use fosssim_num::written::Number;
 use serde::Serialize;
 
-/// A value of a report, made of another: each field with its meaning, its type, and its value.
+/// Declares a value of a report that is made from another value: each field has its meaning, its type and its
+/// expression.
 macro_rules! view {
     ($(#[$about:meta])* $vis:vis struct $name:ident$(<$life:lifetime>)? from $from:ident: $of:ty {
         $($(#[$field:meta])* $access:vis $part:ident: $type:ty = $value:expr,)*
@@ -33,14 +34,14 @@ macro_rules! view {
 }
 pub(crate) use view;
 
-/// The version of all shapes in this module, except for those below.
+/// The version of all shapes in this module, except for the check report.
 pub const SCHEMA: u32 = 1;
 
-/// The version of the check report. Version 2 added the fair rules, whose findings have kinds of their own and may be
-/// in the first record.
+/// The version of the check report. Version 2 added the fair rules, whose findings have additional kinds and may be in
+/// the first record.
 pub const CHECK_SCHEMA: u32 = 2;
 
-/// Returns the name of a value in JSON, for other formats; nothing for a value that has fields.
+/// Returns the name of a value in JSON, for other formats; empty for a value with fields.
 #[must_use]
 pub fn key(value: &impl Serialize) -> String {
     let written = serde_json::to_value(value).unwrap_or_default();
@@ -62,15 +63,15 @@ pub fn numbers(values: &[f64]) -> Vec<Number> {
 /// A polynomial of a step.
 #[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct PolynomialView {
-    /// The polynomial's number in the frame's list, from 0.
+    /// The index of the polynomial in the frame's list, from 0.
     pub index: usize,
     /// The polynomial's role.
     pub role: Role,
-    /// The detection pass that logged it.
+    /// The detection pass of the polynomial.
     pub pass: Pass,
     /// The reference's coefficients, highest power first.
     pub expected: Polynomial,
-    /// The trace's coefficients, highest power first, six at most.
+    /// The trace's coefficients, highest power first, at most six.
     pub actual: Polynomial,
 }
 
@@ -94,29 +95,29 @@ pub enum Value {
     Collision(LoggedImpulse),
 }
 
-/// A finding in a row of its own: the same fields for every kind.
+/// A finding as a row with the same fields for every kind.
 #[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct FindingView {
-    /// The step, from 1; 0 is the first record (fair rules).
+    /// The step number, from 1; 0 is the first record (fair rules).
     pub step: u32,
-    /// The frame of the trace, from 0.
+    /// The index of the trace's frame, from 0.
     pub frame: u64,
-    /// The event's kind.
+    /// The kind of the finding.
     pub kind: FindingKind,
-    /// The pair; null if it belongs to no pair.
+    /// The pair; null if the finding has none.
     pub pair: Option<ImpulsePair>,
-    /// The particle, for positions and velocities.
+    /// The particle's index, for positions and velocities.
     pub particle: Option<usize>,
-    /// The polynomial; null if it is about none.
+    /// The polynomial; null if the finding is not about one.
     pub polynomial: Option<PolynomialView>,
-    /// The highest power of t whose coefficient differs once the factor on which most coefficients agree is taken out.
+    /// The highest power of t whose coefficient differs after division by the factor of most coefficients.
     pub coefficient: Option<usize>,
-    /// The reference's value: a collision, a count of polynomials or coefficients, the coefficients, one coefficient
-    /// times the factor of the trace's polynomial, or a vector.
+    /// The reference's value: a collision, a number of polynomials or coefficients, the coefficients, one coefficient
+    /// multiplied by the factor of the trace's polynomial, or a vector.
     pub expected: Option<Value>,
     /// The trace's value.
     pub actual: Option<Value>,
-    /// The distance between both, if there is one.
+    /// The distance between both values, if they have one.
     pub residual: Option<Number>,
     /// The bound of the distance; for coefficients, of the distance after rescaling. Null if it depends on the values
     /// (fair rules).
@@ -124,11 +125,11 @@ pub struct FindingView {
     /// A coefficient as the original compares it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rescaled: Option<RescaledCoefficient>,
-    /// The finding in words.
+    /// The finding as a sentence.
     pub text: String,
 }
 
-/// Returns the tolerance of a kind's distance.
+/// Returns the tolerance of the distance for a kind of finding.
 #[must_use]
 pub const fn tolerance(kind: FindingKind) -> Option<f64> {
     use fosssim_num::tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL};
@@ -141,7 +142,7 @@ pub const fn tolerance(kind: FindingKind) -> Option<f64> {
 }
 
 impl FindingView {
-    /// Returns a finding by the rules of a book. The tolerances of the fair rules depend on the values.
+    /// Creates the view of a finding by a book. The tolerances of the fair rules depend on the values.
     #[must_use]
     pub fn from_finding(book: Book, finding: &Finding) -> Self {
         let (kind, detail) = (finding.kind(), &finding.detail);
@@ -176,7 +177,7 @@ impl FindingView {
     }
 }
 
-/// Returns the polynomial that a finding is about, where it compares two.
+/// Returns the polynomial of a finding that compares two.
 fn polynomial(detail: &FindingDetail) -> Option<PolynomialView> {
     let (place, expected, actual) = match *detail {
         FindingDetail::PolynomialDegree { place, expected, actual, .. }
@@ -224,7 +225,7 @@ fn compare_values(detail: &FindingDetail) -> (Option<Value>, Option<Value>, Opti
         | FindingDetail::Velocity { expected, actual, residual, .. } => {
             both(Value::Point(expected), Value::Point(actual), Some(residual))
         }
-        // The others have no values to be compared.
+        // Other findings compare no values.
         _ => (None, None, None),
     }
 }

@@ -1,5 +1,4 @@
-//! Results of scenes, in words. Results travel as values up to here; every report takes its sentences from this
-//! place.
+//! Results of scenes, as sentences. All reports take their sentences from this module.
 pub mod explanation;
 
 mod located;
@@ -19,14 +18,14 @@ use fosssim_judge::{FindingKind, PairWords, Unreadable};
 use fosssim_mistakes::together::likely_mistakes;
 use fosssim_model::assignments::Assignment;
 
-/// The words for a trace without the lists that its scene requires.
+/// The text about a trace without the lists that its scene requires.
 pub const STATES_ONLY: &str =
     "the trace holds only positions and velocities, like that of a program without collisions";
 
-/// The exit code of shells and loaders that did not find their program.
-const NOT_FOUND: i32 = 127;
+/// The exit code of shells and loaders that cannot find their program.
+const NOT_FOUND_CODE: i32 = 127;
 
-/// Returns one sentence about the result of a scene.
+/// Returns a sentence about the result of a scene.
 #[must_use]
 pub fn summary(result: &SceneResult) -> String {
     match &result.reason {
@@ -34,7 +33,7 @@ pub fn summary(result: &SceneResult) -> String {
         Reason::Wrong(wrong) => describe_wrong(wrong, result.steps),
         Reason::Trace(bad) => describe_bad_trace(bad),
         Reason::NoTrace => "the program wrote no trace; it must write the file that -o names".to_owned(),
-        Reason::Program(reached) => ending(result) + &describe_progress(*reached, result.steps),
+        Reason::Program(reached) => describe_ending(result) + &describe_progress(*reached, result.steps),
         Reason::LeftOut(why) => describe_left_out(*why),
         Reason::Stopped => "grading was stopped".to_owned(),
         Reason::Withheld => "details of single scenes are not shown, because the suite has hidden groups".to_owned(),
@@ -44,8 +43,8 @@ pub fn summary(result: &SceneResult) -> String {
     }
 }
 
-/// Returns how the program ended, and at which limit, but not how far it came: these words are equal in many scenes.
-pub(crate) fn ending(result: &SceneResult) -> String {
+/// Returns the end of the program, with its limit but without its progress, so that the text is equal in many scenes.
+pub(crate) fn describe_ending(result: &SceneResult) -> String {
     let Reason::Program(reached) = result.reason else { return summary(result) };
     let ended = result.ended.as_ref().map(RunEnd::to_string).unwrap_or_default();
     let limit = match reached.limit {
@@ -56,19 +55,19 @@ pub(crate) fn ending(result: &SceneResult) -> String {
     format!("the program {ended}{limit}")
 }
 
-/// Returns further lines about a scene: the first difference, counts, damage, where a trace is kept.
+/// Returns further lines about a scene: the first difference, counts, damage, and the file of the trace.
 #[must_use]
 pub fn details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
-    if result.ended == Some(RunEnd::Exited(NOT_FOUND)) {
+    if result.ended == Some(RunEnd::Exited(NOT_FOUND_CODE)) {
         lines.push(
-            "exit code 127 usually means that something was not found: the program runs alone, without the files \
-             next to it"
+            "exit code 127 usually means that a file was not found: the program runs alone, without the files next \
+             to it"
                 .to_owned(),
         );
     }
     if let Some(told) = &result.disclosure {
-        lines.extend(told.official().first_divergence.as_ref().map(first_divergence));
+        lines.extend(told.official().first_divergence.as_ref().map(describe_first));
         lines.extend(describe_counts(told.official()));
         if let Some(damage) = &told.damage {
             lines.push(format!("damaged at byte {} (frame {}): {}", damage.offset, damage.frame, damage.what));
@@ -90,24 +89,23 @@ pub fn details(result: &SceneResult) -> Vec<String> {
     lines
 }
 
-/// Returns the fault of the submission itself, and so of each of its scenes.
+/// Returns the fault of the whole submission, which is also that of each of its scenes.
 #[must_use]
 pub fn describe_unfit(grade: &Grade) -> Option<String> {
     grade.unfit().map(|unfit| match unfit {
         SubmissionFault::Build(end) => build(end),
-        SubmissionFault::Milestone(other) => milestone(other),
+        SubmissionFault::Milestone(other) => describe_milestone(other),
         SubmissionFault::Scene(result) if result.verdict == Verdict::Unwritten => describe_unwritten(grade),
         SubmissionFault::Scene(result) => summary(result),
     })
 }
 
-/// Returns the text for a program of another milestone than the suite's.
-fn milestone(other: Assignment) -> String {
+/// Returns the text for a program of a milestone other than the suite's.
+fn describe_milestone(other: Assignment) -> String {
     format!("it looks like a program of {}, which is not the milestone of this suite", other.definition().title)
 }
 
-/// Returns the text for a submission that logs nothing in any scene: the parts that are not written yet, if hints allow
-/// it.
+/// Returns the text for a submission that logs nothing in any scene, with the unwritten parts if hints allow it.
 fn describe_unwritten(grade: &Grade) -> String {
     let scenes = format_count(grade.scenes().count() as u64, "scene");
     let missing = match likely_mistakes(grade).first() {
@@ -117,7 +115,7 @@ fn describe_unwritten(grade: &Grade) -> String {
     format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
 }
 
-/// Returns one sentence why not everything is accepted; nothing if everything is.
+/// Returns a sentence on the reason why a grade is not fully accepted; `None` if it is.
 #[must_use]
 pub fn reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = describe_unfit(grade) {
@@ -130,7 +128,7 @@ pub fn reason(grade: &Grade) -> Option<String> {
     Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, summary(first)))
 }
 
-/// Returns the end of a build, in words.
+/// Returns the end of a build, as text.
 #[must_use]
 pub fn build(end: &BuildEnd) -> String {
     match end {
@@ -139,7 +137,7 @@ pub fn build(end: &BuildEnd) -> String {
         BuildEnd::MadeNo(program) => format!("the build made no {program}"),
         BuildEnd::Unusable(why) => format!("the built program can't be used: {why}"),
         BuildEnd::Sources(why) => format!("the submission can't be built: {why}"),
-        BuildEnd::NoScript(command) => format!("the submission holds no {command}, which builds it"),
+        BuildEnd::NoScript(command) => format!("the submission lacks {command}, which builds it"),
     }
 }
 
@@ -150,7 +148,7 @@ fn number(count: u64) -> String {
 fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
     match wrong {
         WrongTrace::Untold => "the trace is wrong".to_owned(),
-        WrongTrace::Nothing => "the trace holds no polynomial and no collision: no pair is tested".to_owned(),
+        WrongTrace::Nothing => "the trace holds no polynomials and no collisions, so no pair is tested".to_owned(),
         WrongTrace::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
         WrongTrace::Steps { wrong, first, kind } => {
             format!("{}, first step {first}: {kind}", share::describe_wrong(*wrong, steps, number))
@@ -159,9 +157,10 @@ fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
         WrongTrace::SmallErrors => "small errors add up beyond the tolerance".to_owned(),
         WrongTrace::NoResult(error) => no_result(error),
         WrongTrace::Borderline => {
-            "most of the trace's decisions are not the reference's, although round-off may flip them".to_owned()
+            "most of the trace's decisions differ from the reference's, although only round-off could flip them"
+                .to_owned()
         }
-        WrongTrace::Undecided => "nothing is wrong so far, but judging the trace would take too long".to_owned(),
+        WrongTrace::Undecided => "no fault was found before judging stopped, because it would take too long".to_owned(),
     }
 }
 
@@ -182,8 +181,8 @@ fn describe_bad_trace(bad: &BadTrace) -> String {
     }
 }
 
-/// Returns the progress of a program's trace. The number of records that a crash has lost is unknown: some may have
-/// been waiting to be written.
+/// Returns the progress of a program's trace. The number of records that a crash lost is unknown, because some may have
+/// been buffered.
 fn describe_progress(reached: ProgramProgress, steps: u32) -> String {
     match (reached.limit, reached.steps) {
         (_, done) if done == steps => " after its last step".to_owned(),
@@ -196,16 +195,16 @@ fn describe_progress(reached: ProgramProgress, steps: u32) -> String {
 fn describe_left_out(why: NotRunReason) -> String {
     match why {
         NotRunReason::Limits { scenes: 1, .. } => {
-            "not run: the scene before it ran into a limit of time, memory or output".to_owned()
+            "not run: the preceding scene exceeded a limit of time, memory or output".to_owned()
         }
         NotRunReason::Limits { scenes, .. } => {
-            format!("not run: {scenes} scenes in a row before it ran into a limit of time, memory or output")
+            format!("not run: {scenes} preceding scenes in a row exceeded a limit of time, memory or output")
         }
         NotRunReason::Total(total) => {
             let seconds = total.as_secs_f64();
-            format!("not run: the scenes before it took {seconds} s, the limit for a submission")
+            format!("not run: the preceding scenes took {seconds} s, the limit for a submission")
         }
-        NotRunReason::FailFast => "not run: a scene before it is not accepted (--fail-fast)".to_owned(),
+        NotRunReason::FailFast => "not run: a preceding scene is not accepted (--fail-fast)".to_owned(),
     }
 }
 
@@ -214,14 +213,13 @@ fn describe_unusable(why: &UnusableReason) -> String {
         UnusableReason::CouldNotStart(problem) => format!("the program {}", RunEnd::CouldNotStart(problem.clone())),
         UnusableReason::Unreadable(why) => format!("the program can't be used: {why}"),
         UnusableReason::NoProgram { sought, found } => {
-            let sought = format!("no program called {sought} in the upload");
+            let sought = format!("the upload has no program called {sought}");
             match found {
                 FolderContents::Unreadable(error) => format!("{sought}: it can't be read: {error}"),
                 FolderContents::Nothing => format!("{sought}; it is empty"),
                 FolderContents::Others { names, more, elsewhere } => {
                     let more = if *more > 0 { format!(" and {more} more") } else { String::new() };
-                    let elsewhere =
-                        elsewhere.as_ref().map(|path| format!("; {path} is not in the place that is searched"));
+                    let elsewhere = elsewhere.as_ref().map(|path| format!("; {path} is not in the expected folder"));
                     format!("{sought}; it holds {}{more}{}", names.join(", "), elsewhere.unwrap_or_default())
                 }
             }
@@ -240,8 +238,8 @@ fn describe_failure(failure: &Failure) -> String {
     }
 }
 
-/// Returns where a trace diverges from the reference, if hints allow it.
-pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
+/// Returns the place where a trace first differs from the reference, if hints allow it.
+pub(crate) fn describe_first(first: &DisclosedFinding) -> String {
     match first {
         DisclosedFinding::Full(finding) => format!("first difference: {finding}"),
         DisclosedFinding::Place { step, kind, place } => {
@@ -257,10 +255,11 @@ pub(crate) fn first_divergence(first: &DisclosedFinding) -> String {
     }
 }
 
-/// Returns `counts: wrong coefficient (12), missed collision (3)`, if there is more than the first finding.
+/// Returns the counts of findings, such as `counts: wrong coefficient (12), missed collision (3)`, if there is more
+/// than the first finding.
 fn describe_counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
-    // A kind that is found in damaged records only has no example, and proves nothing about the program.
+    // A kind that occurs only in damaged records has no example, and proves nothing about the program.
     let has_example = |kind: FindingKind| account.examples.iter().any(|example| example.kind() == kind);
     let list: Vec<String> = FindingKind::ALL
         .into_iter()

@@ -1,15 +1,15 @@
-//! Lines broken at blanks where a terminal would break them anywhere.
+//! Line breaks at blanks, for terminals of a given width.
 //!
-//! Works on finished text, so that no renderer has to know a width: a continued line is indented under its beginning.
-//! Color codes take no room. A word that is too long stays whole, and so does a line that is meant to be copied: those
-//! begin with `$ `. Lines of a program's output keep their mark (`| `) on every line, so that none can be taken for
-//! ours.
+//! The functions work on finished text, so that renderers need no width. A continued line is indented below its
+//! beginning. Color codes have no width. A word that is too long stays whole, and so does a line to be copied, which
+//! begins with `$ `. Lines of a program's output have their mark (`| `) on every line, so that they can't be confused
+//! with the report's.
 use unicode_width::UnicodeWidthChar;
 
-/// The last column of a line keeps its indentation when at least this number of columns is left to it.
-const ROOM: usize = 30;
+/// The minimum width of the last column for which continued lines keep its indentation.
+const MIN_LAST_COLUMN: usize = 30;
 
-/// Returns the text with no line wider than `width`, if words allow it.
+/// Returns the text with no line wider than `width`, if its words allow it.
 #[must_use]
 pub fn wrap(text: &str, width: usize) -> String {
     let mut result = String::with_capacity(text.len());
@@ -21,7 +21,7 @@ pub fn wrap(text: &str, width: usize) -> String {
     result
 }
 
-/// Returns the columns that a text takes; color codes take none.
+/// Returns the width of a text in columns; color codes have none.
 #[must_use]
 pub fn columns(text: &str) -> usize {
     let mut inside_code = false;
@@ -52,7 +52,7 @@ fn push_broken(result: &mut String, line: &str, width: usize) {
     let mut fresh = true;
     for piece in line.split_inclusive(' ') {
         let (word, wide) = (piece.trim_end_matches(' '), columns(piece));
-        // A blank at the end of a line needs no room.
+        // A blank at the end of a line takes no space.
         if !fresh && !word.is_empty() && at + columns(word) > width {
             result.truncate(result.trim_end_matches(' ').len());
             result.push('\n');
@@ -66,7 +66,7 @@ fn push_broken(result: &mut String, line: &str, width: usize) {
     }
 }
 
-/// Returns the start of each further line: a number of blanks, and the mark of a program's output.
+/// Returns the prefix of each continued line: a number of blanks, and the mark of a program's output.
 fn continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
     let lead = line.len() - body.len();
     if body.starts_with("| ") {
@@ -75,13 +75,13 @@ fn continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
     if body.starts_with("- ") {
         return (lead + 2, "");
     }
-    // A row of a table continues under its last column, if there is room.
+    // A row of a table continues below its last column, if there is space.
     let gaps = line.match_indices("  ").map(|(at, _)| at).filter(|at| *at > lead);
     let columns_at = gaps.filter_map(|at| {
         let rest = line[at..].trim_start_matches(' ');
         (!rest.is_empty()).then(|| columns(&line[..line.len() - rest.len()]))
     });
-    let last = columns_at.take_while(|at| *at < width).last().filter(|at| at + ROOM <= width);
+    let last = columns_at.take_while(|at| *at < width).last().filter(|at| at + MIN_LAST_COLUMN <= width);
     (last.unwrap_or(lead + 4), "")
 }
 

@@ -1,32 +1,32 @@
-//! Moments as people and other programs write them, in UTC.
+//! Times as people and other programs write them, in UTC.
 use chrono::DateTime;
 use std::ops::RangeInclusive;
 
-/// Returns a moment by its milliseconds since 1970, as a form's field has it; `None` beyond the calendar.
+/// Formats a time, given in milliseconds since 1970; empty if it is beyond the calendar.
 fn format(milliseconds: i64, form: &str) -> String {
     DateTime::from_timestamp_millis(milliseconds).map(|moment| moment.format(form).to_string()).unwrap_or_default()
 }
 
-/// Formats a time for people: `2026-11-22 08:45`.
+/// Formats a time for people, such as `2026-11-22 08:45`.
 pub fn format_minute(milliseconds: i64) -> String {
     format(milliseconds, "%Y-%m-%d %H:%M")
 }
 
-/// Formats a time for other programs (ISO 8601): `2026-11-22T08:45:12.345+00:00`.
-pub fn exact(milliseconds: i64) -> String {
+/// Formats a time for other programs (ISO 8601), such as `2026-11-22T08:45:12.345+00:00`.
+pub fn format_iso(milliseconds: i64) -> String {
     format(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
 }
 
-/// Moments in milliseconds: numbers between these are seconds that a client took for milliseconds.
-pub const PLAUSIBLE: [RangeInclusive<i64>; 2] = [0..=99_999_999, 100_000_000_000..=253_402_300_799_999];
+/// The ranges of plausible times in milliseconds. Numbers between them are probably seconds.
+pub const MILLISECOND_RANGES: [RangeInclusive<i64>; 2] = [0..=99_999_999, 100_000_000_000..=253_402_300_799_999];
 
-/// Returns whether a number is a moment in milliseconds.
+/// Returns whether a number is a plausible time in milliseconds.
 pub fn is_plausible(milliseconds: i64) -> bool {
-    PLAUSIBLE.iter().any(|range| range.contains(&milliseconds))
+    MILLISECOND_RANGES.iter().any(|range| range.contains(&milliseconds))
 }
 
-/// Reads a moment in ISO 8601: `2026-12-01T23:59:00+01:00`, also without seconds, and with `Z`. The time zone is
-/// required.
+/// Reads a time in ISO 8601, such as `2026-12-01T23:59:00+01:00`; seconds may be missing, and `Z` is allowed. The time
+/// zone is required.
 pub fn read(text: &str) -> Option<i64> {
     let text = text.trim().replace(' ', "T");
     let text = match text.strip_suffix(['Z', 'z']) {
@@ -38,7 +38,7 @@ pub fn read(text: &str) -> Option<i64> {
     Some(moment.timestamp_millis())
 }
 
-/// Reads a moment as a form's field writes it, `2026-12-01T23:59`, this many minutes east of UTC.
+/// Reads a time of a form's field, such as `2026-12-01T23:59`, in a time zone that is `east` minutes east of UTC.
 pub fn read_field(text: &str, east: i64) -> Option<i64> {
     let seconds = if text.len() == 16 { ":00Z" } else { "Z" };
     Some(read(&format!("{text}{seconds}"))? - east * 60_000)
@@ -74,7 +74,7 @@ mod tests {
         ] {
             assert_eq!(format_minute(milliseconds), text);
         }
-        assert_eq!(exact(1_795_336_859_999), "2026-11-22T08:40:59.999+00:00");
-        assert_eq!(exact(-1), "1969-12-31T23:59:59.999+00:00");
+        assert_eq!(format_iso(1_795_336_859_999), "2026-11-22T08:40:59.999+00:00");
+        assert_eq!(format_iso(-1), "1969-12-31T23:59:59.999+00:00");
     }
 }

@@ -1,8 +1,8 @@
-//! The part of `schemas/grade.schema.json` that the service reads of a `grade.json`.
+//! The parts of a `grade.json` (`schemas/grade.schema.json`) that the service reads.
 use serde::Deserialize;
 use serde_json::Number;
 
-/// A `grade.json`.
+/// The content of a `grade.json`.
 #[derive(Debug, Deserialize)]
 pub(crate) struct GradeFile {
     pub(crate) schema: u32,
@@ -17,16 +17,16 @@ pub(crate) struct GradeInFile {
     pub(crate) code: String,
     pub(crate) points: Option<Number>,
     pub(crate) max_points: Option<Number>,
-    /// The fault of the submission itself, in a sentence.
+    /// The fault of the whole submission, as a sentence.
     pub(crate) unfit: Option<String>,
-    /// The mistakes that explain the wrong scenes together, likeliest first.
+    /// The mistakes that explain the wrong scenes together, the likeliest first.
     #[serde(default)]
     pub(crate) likely_mistakes: Vec<LikelyInFile>,
     #[serde(default)]
     pub(crate) groups: Vec<GroupInFile>,
 }
 
-/// A mistake that is likely, in a sentence.
+/// A likely mistake, as a sentence.
 #[derive(Debug, Deserialize)]
 pub(crate) struct LikelyInFile {
     pub(crate) text: String,
@@ -40,7 +40,7 @@ pub(crate) struct GroupInFile {
     pub(crate) visibility: Option<String>,
     pub(crate) points: Option<f64>,
     pub(crate) max_points: Option<f64>,
-    /// Whether its points are extra, and neither in the sum nor in the maximum.
+    /// Whether the points are extra, so that they count in neither the sum nor the maximum.
     #[serde(default)]
     pub(crate) extra: bool,
     pub(crate) scenes: Vec<SceneInFile>,
@@ -56,7 +56,7 @@ pub(crate) struct SceneInFile {
 }
 
 impl GradeInFile {
-    /// Returns all scenes.
+    /// Returns the scenes of all groups.
     pub(crate) fn scenes(&self) -> Vec<&SceneInFile> {
         self.groups.iter().flat_map(|group| &group.scenes).collect()
     }

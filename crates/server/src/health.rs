@@ -1,5 +1,5 @@
-//! The health of workers and suites. Faults of the grader count for both: a worker that fails leaves the work to
-//! others, and a suite by which nothing can be graded waits for staff.
+//! The health of workers and suites. Faults of the grader count for both: a failing worker leaves the work to others,
+//! and a suite by which nothing can be graded waits for staff.
 use crate::{
     db::{DbError, Transaction},
     queue::{Claimant, QueuePolicy, millis},
@@ -7,20 +7,22 @@ use crate::{
 };
 use std::time::Duration;
 
-/// After this many faults in a row a worker leaves jobs to others that had none since their last result.
-const STEPS_ASIDE: i64 = 3;
+/// The number of consecutive faults after which a worker leaves jobs to workers that had no fault since their last
+/// result.
+const MAX_FAULTS: i64 = 3;
 
-/// The longest pause; it doubles from a second on.
-const LONGEST_ASIDE: Duration = Duration::from_secs(60);
+/// The maximum pause of a worker; it starts at a second and doubles.
+const MAX_PAUSE: Duration = Duration::from_secs(60);
 
-/// Returns the time after its last sign of life for which a worker counts as alive, in milliseconds.
+/// Returns the time after the last sign of life for which a worker counts as alive, in milliseconds.
 pub fn recent(policy: &QueuePolicy) -> i64 {
     millis(policy.lease * 2)
 }
 
-/// Notes that a worker is alive, and can or can't grade.
+/// Records that a worker is alive, and whether it can grade.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn note_sign_of_life(
     transaction: &mut Transaction,
@@ -47,10 +49,11 @@ pub async fn note_sign_of_life(
     Ok(())
 }
 
-/// Returns whether a worker may claim: it holds no more jobs than its token has slots, and it does not fail while
+/// Returns whether a worker may claim a job: it holds fewer jobs than its token has slots, and it does not fail while
 /// others succeed.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn may_claim(
     transaction: &mut Transaction,
@@ -59,7 +62,7 @@ pub async fn may_claim(
 ) -> Result<bool, DbError> {
     let recent = recent(policy);
     if let Some(token) = claimant.token {
-        // One after another, so that the count holds.
+        // Requests of one token are handled one after another, so that the count is right.
         transaction.row("SELECT id FROM token WHERE id = ? {for update}", values![token]).await?;
         let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots,
                (SELECT count(*) FROM job WHERE token = ? AND state = 'running') AS held
@@ -70,11 +73,11 @@ pub async fn may_claim(
         }
     }
     let statement = "SELECT in_a_row, {now} - fault_at AS since FROM worker WHERE name = ? AND in_a_row >= ?";
-    let row = transaction.row(statement, values![claimant.worker, STEPS_ASIDE]).await?;
+    let row = transaction.row(statement, values![claimant.worker, MAX_FAULTS]).await?;
     let Some(row) = row else { return Ok(true) };
-    let steps = u32::try_from(row.int("in_a_row")? - STEPS_ASIDE).unwrap_or(0).min(16);
-    let aside = Duration::from_secs(1).saturating_mul(1 << steps).min(LONGEST_ASIDE);
-    // A fault in the future comes from a clock that was set back.
+    let steps = u32::try_from(row.int("in_a_row")? - MAX_FAULTS).unwrap_or(0).min(16);
+    let aside = Duration::from_secs(1).saturating_mul(1 << steps).min(MAX_PAUSE);
+    // A fault in the future is from a clock that was set back.
     let since = row.maybe_int("since")?.and_then(|since| u64::try_from(since).ok());
     if since.is_none_or(|since| Duration::from_millis(since) >= aside) {
         return Ok(true);
@@ -85,7 +88,7 @@ pub async fn may_claim(
     Ok(better.is_none())
 }
 
-/// Notes that the grader failed in this worker, which reported that it can grade.
+/// Records that the grader failed in a worker that reported that it can grade.
 pub(crate) async fn note_failure(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
         WHERE name = ?";
@@ -93,13 +96,13 @@ pub(crate) async fn note_failure(transaction: &mut Transaction, worker: &str, fa
     Ok(())
 }
 
-/// Notes that the worker brought a result.
+/// Records that a worker delivered a result.
 pub(crate) async fn note_result(transaction: &mut Transaction, worker: &str) -> Result<(), DbError> {
     transaction.execute("UPDATE worker SET in_a_row = 0 WHERE name = ? AND in_a_row > 0", values![worker]).await?;
     Ok(())
 }
 
-/// Returns a message without the folders of its machine: only the last name of an absolute path is left.
+/// Returns a message without the folders of its machine: absolute paths are reduced to their last part.
 pub fn without_paths(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut rest = text;
@@ -109,7 +112,7 @@ pub fn without_paths(text: &str) -> String {
         plain.push_str(head);
         let end = tail.find(|c: char| c.is_whitespace() || "\"'`(),;:<>|".contains(c)).unwrap_or(tail.len());
         let (path, after) = tail.split_at(end);
-        // `Group/scene` and `asset:Group/scene` are names, and in `<a/>` a slash is no path.
+        // `Group/scene` and `asset:Group/scene` are names, and the slash in `<a/>` is not a path.
         let is_name = before.is_some_and(|c| c.is_alphanumeric() || "_.-@*".contains(c));
         let last = path.trim_end_matches('/').rsplit('/').next().unwrap_or_default();
         plain.push_str(if is_name || last.is_empty() { path } else { last });

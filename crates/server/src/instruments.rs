@@ -1,5 +1,5 @@
-//! Numbers for a monitor, in Prometheus' text format: the server's own counts, the state of its process and disk, and
-//! the database's counts of the queue. They describe no person.
+//! Metrics in Prometheus' text format: the server's own counts, the state of its process and disk, and the database's
+//! counts of the queue. They contain no personal data.
 use crate::storage::Storage;
 use prometheus::{
     CounterVec, GaugeVec, HistogramOpts, HistogramVec, IntCounterVec, IntGauge, Opts, Registry, TextEncoder,
@@ -10,7 +10,7 @@ use std::time::Duration;
 /// Upper bounds of the histogram of latencies, in seconds: from a page to an upload over a slow line.
 const BUCKETS: [f64; 12] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0];
 
-/// Counts requests. Cloning it is cheap.
+/// The counters of requests. Clones are cheap and share the counters.
 #[derive(Debug, Clone)]
 pub struct Instruments {
     requests: IntCounterVec,
@@ -18,7 +18,7 @@ pub struct Instruments {
     in_flight: IntGauge,
 }
 
-/// A request that is being answered; it counts when its result is noted, or when it is dropped.
+/// A request that is being answered; it is counted when its result is recorded, or when it is dropped.
 #[derive(Debug)]
 pub struct InFlight(IntGauge);
 
@@ -29,10 +29,11 @@ impl Drop for InFlight {
 }
 
 impl Instruments {
-    /// Instruments that show zero.
+    /// Creates counters that show zero.
     ///
     /// # Errors
-    /// When a name is none that Prometheus allows.
+    ///
+    /// When Prometheus does not allow a name.
     pub fn new() -> Result<Self, prometheus::Error> {
         let of_requests = ["method", "route", "status"];
         let duration = HistogramOpts::new(
@@ -47,23 +48,24 @@ impl Instruments {
         })
     }
 
-    /// Counts a request that begins.
+    /// Counts the start of a request.
     #[must_use]
     pub fn begin(&self) -> InFlight {
         self.in_flight.inc();
         InFlight(self.in_flight.clone())
     }
 
-    /// Counts a request that was answered. Routes are templates, so that there are as many series as there are routes.
+    /// Counts the answer of a request. Routes are templates, so that the number of series is limited.
     pub fn count_answer(&self, method: &str, route: &str, status: u16, took: Duration) {
         self.requests.with_label_values(&[method, route, &status.to_string()]).inc();
         self.seconds.with_label_values(&[method, route]).observe(took.as_secs_f64());
     }
 
-    /// Returns the page of all numbers. Without a database that answers there is nothing about the queue.
+    /// Returns all metrics as text. If the database does not answer, there are none about the queue.
     ///
     /// # Errors
-    /// When it can't be written as text.
+    ///
+    /// When they can't be written as text.
     pub fn show(&self, storage: &Storage, queue: Option<&Metrics>) -> Result<String, prometheus::Error> {
         let page = MetricsPage(Registry::new());
         page.0.register(Box::new(self.requests.clone()))?;
@@ -72,7 +74,7 @@ impl Instruments {
         page.0.register(Box::new(ProcessCollector::for_self()))?;
         page.gauge("build_info", "The version of the server.", "version", &[(env!("CARGO_PKG_VERSION"), 1.0)])?;
         if let Some((free, size)) = storage.disk() {
-            page.write_number("disk_free_bytes", "Free room on the data folder's disk.", free as f64)?;
+            page.write_number("disk_free_bytes", "Free space on the data folder's disk.", free as f64)?;
             page.write_number("disk_size_bytes", "The size of the data folder's disk.", size as f64)?;
         }
         page.write_number("database_up", "Whether the database answers.", queue.is_some().into())?;
@@ -83,32 +85,32 @@ impl Instruments {
     }
 }
 
-/// The numbers that can be counted without names.
+/// The numbers from the database, without personal data.
 #[derive(Debug, Clone, Default)]
 pub struct Metrics {
-    /// Jobs by state.
+    /// The number of jobs by state.
     pub jobs: Vec<(String, i64)>,
-    /// Scores for learning platforms by state.
+    /// The number of scores for learning platforms by state.
     pub scores: Vec<(String, i64)>,
     /// The time that the oldest waiting job has waited, in milliseconds.
     pub oldest: i64,
-    /// Workers that were seen lately.
+    /// The number of workers that were seen recently.
     pub workers: i64,
-    /// The workers' slots.
+    /// The total number of the workers' slots.
     pub slots: i64,
-    /// Workers that take no jobs, because they can't grade.
+    /// The number of workers that take no jobs because they can't grade.
     pub aside: i64,
-    /// Workers that grade something.
+    /// The number of workers that are grading.
     pub working: i64,
-    /// Events by kind, for the kinds that need attention.
+    /// The number of events by kind, for the kinds that need attention.
     pub events: Vec<(String, i64)>,
-    /// Bytes of uploads and reports that are kept, in all and of the course that has most.
+    /// The stored bytes of uploads and reports: of all courses, and of the course with the most.
     pub kept: [i64; 2],
-    /// Submissions in all.
+    /// The number of all submissions.
     pub submissions: i64,
 }
 
-/// The numbers of this moment; names begin with `fosssim_`, and a label without a name is none.
+/// The metrics at one time. Names begin with `fosssim_`; an empty label name means no label.
 struct MetricsPage(Registry);
 
 impl MetricsPage {
@@ -152,25 +154,25 @@ impl MetricsPage {
             let states = ["waiting", "running", "done", "buried", "cancelled"];
             self.gauge(name, help, "state", &states.map(|state| (state, named(counts, state))))?;
         }
-        let help = "How long the oldest waiting upload has waited.";
+        let help = "The waiting time of the oldest waiting upload.";
         self.write_number("oldest_waiting_seconds", help, queue.oldest.max(0) as f64 / 1000.0)?;
         let idle = queue.workers - queue.working - queue.aside;
         let by_state = [("working", queue.working as f64), ("idle", idle as f64), ("aside", queue.aside as f64)];
-        let help = "Workers that were seen lately: they grade, wait for a job, or can't grade.";
+        let help = "Workers that were seen recently: they grade, wait for a job, or can't grade.";
         self.gauge("workers_by_state", help, "state", &by_state)?;
         for (name, help, value) in [
-            ("workers", "Workers that were seen lately.", queue.workers),
+            ("workers", "Workers that were seen recently.", queue.workers),
             ("slots", "Their slots.", queue.slots),
             ("workers_aside", "Workers that take no jobs, because they can't grade.", queue.aside),
         ] {
             self.write_number(name, help, value as f64)?;
         }
         let kept = [("all", queue.kept[0] as f64), ("largest course", queue.kept[1] as f64)];
-        self.gauge("kept_bytes", "Uploads and reports that are kept: of all, of the largest course.", "of", &kept)?;
+        self.gauge("kept_bytes", "Stored uploads and reports: of all courses, of the largest course.", "of", &kept)?;
         self.write_counter("submissions_total", "Submissions.", "", &[("", queue.submissions as f64)])?;
         let kinds = ["graded", "failed try", "late answer", "buried"];
         let kinds = kinds.map(|kind| (kind.replace(' ', "_"), named(&queue.events, kind)));
         let kinds: Vec<(&str, f64)> = kinds.iter().map(|(kind, count)| (kind.as_str(), *count)).collect();
-        self.write_counter("events_total", "Results, and what went wrong with jobs.", "kind", &kinds)
+        self.write_counter("events_total", "Results and errors of jobs.", "kind", &kinds)
     }
 }

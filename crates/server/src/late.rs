@@ -1,14 +1,14 @@
-//! The worth of a submission that arrived after it was due.
+//! The points of a submission that arrived after its due date.
 use crate::db::{DbError, Row};
 use chrono::{DateTime, Days};
 use chrono_tz::Tz;
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A day in milliseconds.
-const DAY: i64 = 86_400_000;
+/// The number of milliseconds of a day.
+const DAY_MILLIS: i64 = 86_400_000;
 
-/// The part of an assignment's settings about being late.
+/// The settings of an assignment for late submissions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct LatePolicy {
@@ -21,36 +21,36 @@ pub(crate) struct LatePolicy {
 /// The delay of a submission.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Lateness {
-    /// Days after the due date; a day that has begun counts.
+    /// The number of days after the due date; a started day counts.
     pub days: i64,
-    /// The percentage of the grader's points that it loses.
+    /// The percentage of the grader's points that the submission loses.
     pub percent: i64,
 }
 
 impl LatePolicy {
-    /// Returns the last moment at which an upload is accepted from a student with this due date.
+    /// Returns the last time at which an upload of a student with the due date `due` is accepted.
     pub(crate) fn closes_at(&self, due: i64) -> i64 {
         self.days_after(due, self.late_days.into())
     }
 
-    /// Returns the same time of the day some days later, by the course's calendar: a day may have 23 or 25 hours.
+    /// Returns the same time of day some days later, by the course's calendar, in which a day may have 23 or 25 hours.
     fn days_after(&self, due: i64, days: i64) -> i64 {
         let by_calendar = self.time_zone.and_then(|zone| {
             let due = DateTime::from_timestamp_millis(due)?.with_timezone(&zone);
             Some(due.checked_add_days(Days::new(u64::try_from(days).ok()?))?.timestamp_millis())
         });
-        // Without a calendar, or where the clocks skip that time.
-        by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY)))
+        // There is no calendar, or the clocks skip that time.
+        by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY_MILLIS)))
     }
 
-    /// Returns the delay of a submission that arrived at this moment, with the student's own due date if there is one.
-    /// There is none for a submission in time, or if the assignment has no rule for late ones.
+    /// Returns the delay of a submission that arrived at `came_at`, with the student's own due date if there is one.
+    /// `None` for a submission in time, or if the assignment has no rule for late ones.
     pub(crate) fn lateness(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
-        // At most as late as anything may be: it was in time by an extension that was taken back. Where nothing is
-        // taken late any more, the work that was taken keeps its price.
+        // The delay is capped at the allowed late days, because an extension may have been withdrawn. If late uploads
+        // are no longer accepted, earlier ones keep their deduction.
         let most = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
-        let mut days = ((came_at - due) / DAY - 1).max(0);
+        let mut days = ((came_at - due) / DAY_MILLIS - 1).max(0);
         while self.days_after(due, days) < came_at {
             days += 1;
         }
@@ -61,14 +61,14 @@ impl LatePolicy {
 }
 
 impl Lateness {
-    /// Returns the delay of a submission, by its row with `created_at`, the assignment's `settings` and its owner's own
-    /// due date, `own_due`.
+    /// Returns the delay of a submission from its row, with `created_at`, the assignment's `settings` and the owner's
+    /// own due date `own_due`.
     pub(crate) fn from_row(row: &Row) -> Result<Option<Self>, DbError> {
         let policy: LatePolicy = serde_json::from_str(&row.text("settings")?).unwrap_or_default();
         Ok(policy.lateness(row.maybe_int("own_due")?, row.int("created_at")?))
     }
 
-    /// Returns the rest of the grader's points.
+    /// Returns the remaining points of the grader's.
     pub(crate) fn left_of(self, points: &str) -> String {
         let left = |points: f64| (points * (100 - self.percent) as f64 / 100.0).to_string();
         points.parse().map_or_else(|_| points.to_owned(), left)
@@ -84,12 +84,12 @@ mod tests {
         let due = 1_700_000_000_000;
         let policy = LatePolicy { due_at: Some(due), late_days: 3, late_percent: 40, time_zone: None };
         let late = |after| policy.lateness(None, due + after).map(|late| (late.days, late.percent));
-        assert_eq!([late(-DAY), late(0), late(1)], [None, None, Some((1, 40))]);
-        assert_eq!([late(DAY), late(DAY + 1)], [Some((1, 40)), Some((2, 80))]);
-        assert_eq!([late(3 * DAY), late(9 * DAY)], [Some((3, 100)); 2], "it never costs more than all");
-        assert_eq!(policy.lateness(Some(due + DAY), due + DAY), None, "an extension moves the due date");
-        assert_eq!(policy.closes_at(due), due + 3 * DAY);
-        assert_eq!(policy.lateness(Some(due - DAY), due), None, "and never forwards");
+        assert_eq!([late(-DAY_MILLIS), late(0), late(1)], [None, None, Some((1, 40))]);
+        assert_eq!([late(DAY_MILLIS), late(DAY_MILLIS + 1)], [Some((1, 40)), Some((2, 80))]);
+        assert_eq!([late(3 * DAY_MILLIS), late(9 * DAY_MILLIS)], [Some((3, 100)); 2], "it never costs more than all");
+        assert_eq!(policy.lateness(Some(due + DAY_MILLIS), due + DAY_MILLIS), None, "an extension moves the due date");
+        assert_eq!(policy.closes_at(due), due + 3 * DAY_MILLIS);
+        assert_eq!(policy.lateness(Some(due - DAY_MILLIS), due), None, "and never forwards");
         let closed = LatePolicy { late_days: 0, ..policy };
         assert_eq!(closed.lateness(None, due + 1).map(|late| late.percent), Some(40), "closing later forgives nothing");
         let never = LatePolicy { late_percent: 0, ..closed };
@@ -110,6 +110,6 @@ mod tests {
         assert_eq!(days("2026-10-25T23:59+01:00"), Some(1));
         assert_eq!(days("2026-10-26T00:00+01:00"), Some(2));
         assert_eq!(policy.closes_at(due), crate::calendar::read("2026-10-26T23:59+01:00").expect("a moment"));
-        assert_eq!(LatePolicy { time_zone: None, ..policy }.closes_at(due), due + 2 * DAY);
+        assert_eq!(LatePolicy { time_zone: None, ..policy }.closes_at(due), due + 2 * DAY_MILLIS);
     }
 }

@@ -9,10 +9,11 @@ use crate::{
 };
 use std::time::Duration;
 
-/// Writes the result of a job, if its lease still holds; a late one is noted and changes nothing.
+/// Writes the result of a job, if its lease is still valid; a late result is recorded and changes nothing.
 ///
 /// # Errors
-/// An error of the database; nothing is written then unless the caller commits all the same.
+///
+/// An error of the database; nothing is written then unless the caller commits anyway.
 pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outcome) -> Result<Completion, DbError> {
     let completion = queue::complete(transaction, lease).await?;
     match completion {
@@ -26,9 +27,10 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
     Ok(completion)
 }
 
-/// Reports that a try failed; after the last one the judge error is written.
+/// Records that a try failed; after the last one, writes the judge error.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn fail(
     transaction: &mut Transaction,
@@ -42,21 +44,22 @@ pub async fn fail(
         note_late(transaction, lease, "a failure").await?;
         return Ok(failure);
     }
-    let row = about(transaction, lease.job).await?;
+    let row = find_job(transaction, lease.job).await?;
     if failure == Failure::Buried {
         bury(transaction, lease.job, lease.attempt, fault).await?;
     } else {
         note(transaction, &row, "failed try", fault).await?;
     }
-    // The worker's row is locked last, as when a job is finished: its holder waits for no job.
+    // The worker's row is locked last, as when a job is finished, so that no deadlock is possible.
     health::note_failure(transaction, &row.worker, fault).await?;
     Ok(failure)
 }
 
-/// Finds silent workers, and writes the judge errors of jobs that were tried too often. In a transaction of its own: it
-/// locks jobs of other workers, and must not wait then for anything that their workers hold.
+/// Finds silent workers, and writes the judge errors of jobs that were tried too often. It uses its own transaction,
+/// because it locks jobs of other workers, and must not wait then for anything that they hold.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbError> {
     let mut transaction = database.begin().await?;
@@ -75,7 +78,7 @@ pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbErr
     Ok(())
 }
 
-/// The subject of a job.
+/// The row of a job, with its submission.
 struct JobFacts {
     job: i64,
     submission: Option<i64>,
@@ -83,13 +86,13 @@ struct JobFacts {
     assignment: Option<i64>,
     course: Option<i64>,
     worker: String,
-    /// The person who had it graded again.
+    /// The person who requested the regrading.
     asked_by: Option<i64>,
     task: String,
     seconds: i64,
 }
 
-async fn about(transaction: &mut Transaction, job: i64) -> Result<JobFacts, DbError> {
+async fn find_job(transaction: &mut Transaction, job: i64) -> Result<JobFacts, DbError> {
     let statement = "SELECT job.submission, job.campaign, job.payload, job.asked_by,
                 coalesce(job.worker, job.failed_by, '') AS worker,
            submission.assignment, assignment.course,
@@ -115,13 +118,13 @@ async fn note(transaction: &mut Transaction, about: &JobFacts, kind: &str, text:
     Ok(())
 }
 
-/// Notes that a worker was too late: its message changes nothing, and is counted. A message about an invented job is
-/// not even counted.
+/// Records and counts a message of a worker that came too late, and changes nothing. A message about a job that does
+/// not exist is not counted.
 async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
     let known =
         transaction.row("SELECT id FROM job WHERE id = ? AND attempt >= ?", values![lease.job, lease.attempt]).await?;
     if known.is_some() {
-        let row = about(transaction, lease.job).await?;
+        let row = find_job(transaction, lease.job).await?;
         note(transaction, &row, "late answer", &format!("{what}, of attempt {}", lease.attempt)).await?;
     }
     Ok(())
@@ -142,14 +145,14 @@ async fn bury(transaction: &mut Transaction, job: i64, attempt: i64, fault: &str
     note(transaction, &row, "buried", fault).await
 }
 
-/// Writes a result and, unless it belongs to an undecided regrade, the grade.
+/// Writes a result. Unless it belongs to an undecided regrade, it also becomes the grade.
 async fn write_result(
     transaction: &mut Transaction,
     job: i64,
     attempt: i64,
     outcome: &Outcome,
 ) -> Result<JobFacts, DbError> {
-    let about = about(transaction, job).await?;
+    let about = find_job(transaction, job).await?;
     // Jobs of other lanes have no result.
     let Some(submission) = about.submission else { return Ok(about) };
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
@@ -190,13 +193,13 @@ async fn write_result(
             .await?;
     }
     let counted = transaction.row("SELECT result FROM grade WHERE submission = ?", values![submission]).await?;
-    // A grader that failed removes no grade.
+    // A failure of the grader does not replace a grade.
     if about.campaign.is_none() && !(outcome.code == JUDGE_ERROR && counted.is_some()) {
         let reason = if counted.is_some() { "graded again" } else { "graded" };
         let change = GradeChange { submission, result, by: about.asked_by, campaign: None, reason };
         set_grade(transaction, &change).await?;
     }
-    // Judge errors are reported where jobs are buried.
+    // Judge errors are reported when jobs are given up.
     if outcome.code == JUDGE_ERROR {
         return Ok(about);
     }
@@ -215,19 +218,20 @@ async fn write_result(
 pub struct GradeChange<'a> {
     /// The submission with the grade.
     pub submission: i64,
-    /// The result that counts from now on.
+    /// The number of the result that counts.
     pub result: i64,
-    /// The person who wanted it; `None` for the first grading.
+    /// The person who requested the change; `None` for the first grading.
     pub by: Option<i64>,
-    /// The regrade to which it belongs.
+    /// The regrade that caused the change.
     pub campaign: Option<i64>,
-    /// The reason, as students read it.
+    /// The reason for the change, for students.
     pub reason: &'a str,
 }
 
-/// Makes a result count, and keeps what counted before.
+/// Makes a result count, and records the earlier one.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) -> Result<(), DbError> {
     let statement = "SELECT result FROM grade WHERE submission = ? {for update}";

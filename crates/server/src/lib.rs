@@ -1,5 +1,5 @@
-//! The service: a course's grading server that loses nothing, on SQLite out of the box and on PostgreSQL with any
-//! number of workers. docs/server/internals.md describes how it works.
+//! The service: a grading server for courses that loses no submission. It uses SQLite by default, or PostgreSQL with
+//! any number of workers. docs/server/internals.md describes how it works.
 
 pub mod calendar;
 pub mod cli;

@@ -1,4 +1,4 @@
-//! The command `fosssim-server`: a shim around [`fosssim_server::cli`].
+//! The command `fosssim-server`, which calls [`fosssim_server::cli`].
 #![forbid(unsafe_code)]
 
 fn main() -> std::process::ExitCode {

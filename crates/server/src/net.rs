@@ -1,5 +1,5 @@
-//! Serves connections until the server stops, and answers the requests that arrived. The proxy that
-//! docs/server/operation.md requires limits their number, slow heads and slow readers.
+//! Serves connections until the server stops, and completes the requests that have arrived. The proxy that
+//! docs/server/operation.md requires limits the number of connections, slow heads and slow readers.
 use axum::Router;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::{io, net::SocketAddr, time::Duration};
@@ -7,15 +7,16 @@ use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use ureq::Agent;
 
-/// The time that connections get when the server stops.
-const GRACE: Duration = Duration::from_secs(20);
+/// The time for open connections when the server stops.
+const GRACE_PERIOD: Duration = Duration::from_secs(20);
 
-/// Serves until `stop` is canceled and the requests that arrived are answered.
+/// Serves until `stop` is canceled and the requests that have arrived are answered.
 ///
 /// # Errors
+///
 /// When connections can no longer be accepted.
 pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToken) -> io::Result<()> {
-    // Each connection may need a file besides: as many as the kernel lets this process have.
+    // Each connection may need a file in addition, so use as many as the kernel allows.
     let maximum = getrlimit(Resource::Nofile).maximum;
     if let Err(error) = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum }) {
         tracing::debug!(%error, "the limit of open files stays");
@@ -24,14 +25,14 @@ pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToke
     let serving = axum::serve(listener, service).with_graceful_shutdown(stop.clone().cancelled_owned());
     tokio::select! {
         served = serving => served,
-        () = async { stop.cancelled().await; tokio::time::sleep(GRACE).await } => {
+        () = async { stop.cancelled().await; tokio::time::sleep(GRACE_PERIOD).await } => {
             tracing::warn!("some connections did not end in time");
             Ok(())
         }
     }
 }
 
-/// Returns a client for requests to services whose addresses are configured: it follows no redirection.
+/// Returns a client for requests to configured services, which follows no redirections.
 pub(crate) fn agent(over_http: bool, patience: Duration) -> Agent {
     Agent::config_builder()
         .http_status_as_error(false)

@@ -1,5 +1,5 @@
 //! An OpenID Connect provider, by which the people of an organization sign in: the authorization code flow with PKCE.
-//! The crate `openidconnect` writes the requests and checks the answers. This room sends them, keeps the provider's
+//! The crate `openidconnect` writes the requests and checks the answers. This module sends them, caches the provider's
 //! configuration, and returns the provider's description of a person. `domain` finds the account.
 use crate::{net, problem::ensure};
 use anyhow::{Context as _, anyhow};
@@ -19,19 +19,19 @@ use tokio::sync::Mutex;
 use ureq::Agent;
 use url::Url;
 
-/// The age up to which the provider's configuration is used without reading it again.
-const FRESH: Duration = Duration::from_secs(3600);
+/// The time for which the provider's configuration is used without reading it again.
+const CONFIGURATION_LIFETIME: Duration = Duration::from_secs(3600);
 
-/// The least time between two readings, for an unknown key or after a failure.
-const PAUSE: Duration = Duration::from_secs(1);
+/// The minimum time between two readings, for an unknown key or after a failure.
+const MIN_PAUSE: Duration = Duration::from_secs(1);
 
-/// The longest time that the provider may take.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// The maximum time to wait for the provider's answer.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// The longest answer that is read.
-const ANSWER: u64 = 1 << 20;
+/// The maximum size of an answer, in bytes.
+const MAX_ANSWER_BYTES: u64 = 1 << 20;
 
-/// The accepted signatures of tokens: only the provider has the private part of their keys.
+/// The accepted signature algorithms of tokens: those whose private key only the provider has.
 const ALGORITHMS: [CoreJwsSigningAlgorithm; 9] = [
     CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha256,
     CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha384,
@@ -44,46 +44,46 @@ const ALGORITHMS: [CoreJwsSigningAlgorithm; 9] = [
     CoreJwsSigningAlgorithm::EdDsa,
 ];
 
-/// A client of the provider, with the addresses that it published.
+/// The client type, with the addresses that the provider published.
 type Client =
     CoreClient<EndpointSet, EndpointNotSet, EndpointNotSet, EndpointNotSet, EndpointMaybeSet, EndpointMaybeSet>;
 
-/// The reason why nobody was signed in.
+/// The reason why a sign-in failed.
 #[derive(Debug, Clone, Error)]
 pub enum ProviderFault {
     /// The provider does not answer; a later request may succeed.
     #[error("{0}")]
     Away(String),
-    /// The provider rejects the sign-in, or its answer is not believed.
+    /// The provider rejects the sign-in, or its answer is not trusted.
     #[error("{0}")]
     Rejected(String),
 }
 
-/// A person as the provider describes them.
+/// A person in the provider's description.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProviderPerson {
-    /// The provider's name for the person, which never changes.
+    /// The provider's identifier of the person, which never changes.
     pub subject: String,
     /// The person's name.
     pub name: Option<String>,
-    /// The person's short name there: a new account's login is made from it.
+    /// The person's short name at the provider, from which a new account's login is made.
     pub nickname: Option<String>,
-    /// The part before the @ of an address that the provider has confirmed, in the domain that is allowed.
+    /// The part before the @ of an address that the provider has confirmed, in the allowed domain.
     pub mailbox: Option<String>,
 }
 
-/// The words of one sign-in, which the provider sees and gives back.
+/// The secrets of one sign-in, which the provider receives.
 #[derive(Debug, Clone)]
 pub struct SignInWords {
-    /// Sent back as it is.
+    /// The state, which is returned unchanged.
     pub state: String,
-    /// Is in the token.
+    /// The nonce, which the token contains.
     pub nonce: String,
-    /// Proves that this service asked for the code: 43 characters or more.
+    /// The proof that this service requested the code, with at least 43 characters.
     pub verifier: String,
 }
 
-/// The claims about a person that are used here.
+/// The used claims about a person.
 struct SaidClaims {
     name: Option<String>,
     nickname: Option<String>,
@@ -91,7 +91,7 @@ struct SaidClaims {
     is_confirmed: bool,
 }
 
-/// Reads the claims of a token or an answer: both have these methods, and no trait for them.
+/// Reads the claims of a token or an answer; both have the methods, but no common trait.
 macro_rules! said {
     ($claims:ident) => {
         SaidClaims {
@@ -103,14 +103,14 @@ macro_rules! said {
     };
 }
 
-/// The provider's configuration, and when it was read.
+/// The provider's configuration, and the time when it was read.
 #[derive(Debug)]
 struct KnownConfiguration {
     asked_at: Instant,
     metadata: Result<CoreProviderMetadata, ProviderFault>,
 }
 
-/// A provider, and this service as its client.
+/// A provider, with this service as its client.
 #[derive(Debug)]
 pub struct Provider {
     issuer: IssuerUrl,
@@ -124,10 +124,11 @@ pub struct Provider {
 }
 
 impl Provider {
-    /// Creates the client of a provider. With a domain only people with a confirmed address in it may sign in.
+    /// Creates the client of a provider. With a domain, only people with a confirmed address in it may sign in.
     ///
     /// # Errors
-    /// When the issuer is not an HTTPS address. On this machine HTTP is accepted, for tests.
+    ///
+    /// When the issuer is not an HTTPS address; on this machine HTTP is accepted, for tests.
     pub fn new(
         issuer: String,
         client: String,
@@ -145,21 +146,21 @@ impl Provider {
             client: ClientId::new(client),
             secret: ClientSecret::new(secret),
             domain: domain.map(|domain| domain.to_ascii_lowercase()),
-            agent: net::agent(over_http, PATIENCE),
+            agent: net::agent(over_http, ANSWER_TIMEOUT),
             published: Mutex::default(),
         })
     }
 
-    /// Returns the provider's issuer: with a subject it names a person.
+    /// Returns the provider's issuer, which identifies a person together with a subject.
     pub fn issuer(&self) -> &str {
         &self.issuer
     }
 
-    /// Returns the provider's configuration, read at most this time ago.
+    /// Returns the provider's configuration, which is at most `age` old.
     async fn metadata(&self, age: Duration) -> Result<CoreProviderMetadata, ProviderFault> {
         let mut published = self.published.lock().await;
         if let Some(KnownConfiguration { asked_at, metadata }) = &*published
-            && asked_at.elapsed() < if metadata.is_ok() { age } else { PAUSE }
+            && asked_at.elapsed() < if metadata.is_ok() { age } else { MIN_PAUSE }
         {
             return metadata.clone();
         }
@@ -168,13 +169,13 @@ impl Provider {
         let metadata = asked.map_err(|error| {
             let why = format!("{:#}", anyhow!(error));
             tracing::warn!(issuer = %*self.issuer, why, "the provider's configuration can't be read");
-            ProviderFault::Away(format!("{} does not answer as it should", self.label))
+            ProviderFault::Away(format!("{} returned an unexpected answer", self.label))
         });
         *published = Some(KnownConfiguration { asked_at: Instant::now(), metadata: metadata.clone() });
         metadata
     }
 
-    /// Returns a client by the provider's configuration of this age, for answers at an address of this service.
+    /// Returns a client with the provider's configuration of at most this age, for answers at the address `redirect`.
     async fn client(&self, age: Duration, redirect: &str) -> Result<Client, ProviderFault> {
         let metadata = self.metadata(age).await?;
         let methods = metadata.token_endpoint_auth_methods_supported().cloned().unwrap_or_default();
@@ -185,12 +186,13 @@ impl Provider {
             .set_auth_type(if by_header { AuthType::BasicAuth } else { AuthType::RequestBody }))
     }
 
-    /// Returns the address at which a browser asks the provider to sign somebody in.
+    /// Returns the address to which a browser is redirected for signing in.
     ///
     /// # Errors
+    ///
     /// When the provider does not answer.
     pub async fn address(&self, redirect: &str, words: SignInWords) -> Result<Url, ProviderFault> {
-        let client = self.client(FRESH, redirect).await?;
+        let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
         let SignInWords { state, nonce, verifier } = words;
         let challenge = PkceCodeChallenge::from_code_verifier_sha256(&PkceCodeVerifier::new(verifier));
         let flow = CoreAuthenticationFlow::AuthorizationCode;
@@ -202,17 +204,18 @@ impl Provider {
         Ok(address)
     }
 
-    /// Returns the person for whom the provider gave a code.
+    /// Returns the person for whom the provider issued a code.
     ///
     /// # Errors
-    /// When the provider does not answer, or rejects the code, or its answer is not believed.
+    ///
+    /// When the provider does not answer or rejects the code, or its answer is not trusted.
     pub async fn person(
         &self,
         redirect: &str,
         code: String,
         words: SignInWords,
     ) -> Result<ProviderPerson, ProviderFault> {
-        let client = self.client(FRESH, redirect).await?;
+        let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
         let http = |request| send(self.agent.clone(), request);
         let asked = client.exchange_code(AuthorizationCode::new(code)).map_err(untrusted_answer)?;
         let asked = asked.set_pkce_verifier(PkceCodeVerifier::new(words.verifier)).request_async(&http).await;
@@ -220,18 +223,18 @@ impl Provider {
             RequestTokenError::Request(_) => ProviderFault::Away(format!("{} does not answer", self.label)),
             error => untrusted_answer(error),
         })?;
-        let token = answer.id_token().ok_or_else(|| untrusted_answer(anyhow!("there is no token about a person")))?;
+        let token = answer.id_token().ok_or_else(|| untrusted_answer(anyhow!("the provider returned no ID token")))?;
         let nonce = Nonce::new(words.nonce);
         let claims = match claims(&client, token, &nonce) {
             // Providers change their keys.
             Err(ClaimsVerificationError::SignatureVerification(SignatureVerificationError::NoMatchingKey)) => {
-                claims(&self.client(PAUSE, redirect).await?, token, &nonce)
+                claims(&self.client(MIN_PAUSE, redirect).await?, token, &nonce)
             }
             claims => claims,
         };
         let claims = claims.map_err(untrusted_answer)?;
         let said = said!(claims);
-        // Some providers put the address into the token, others only into a further answer.
+        // Some providers put the mail address into the token, others only into a further answer.
         let more = match said.email {
             Some(_) => None,
             None => self.ask_for_claims(&client, answer.access_token().clone(), claims.subject().clone()).await?,
@@ -239,7 +242,7 @@ impl Provider {
         self.read(claims.subject().to_string(), more.unwrap_or(said))
     }
 
-    /// Returns the claims about a person beyond their token, if the provider has an address for these.
+    /// Returns further claims about a person, if the provider has an address for them.
     async fn ask_for_claims(
         &self,
         client: &Client,
@@ -276,7 +279,7 @@ fn claims<'a>(
     token.claims(&client.id_token_verifier().set_allowed_algs(ALGORITHMS), nonce)
 }
 
-/// Returns the fault of an answer that is not believed, with all its causes.
+/// Returns the error about an answer that is not trusted, with all its causes.
 fn untrusted_answer(error: impl Into<anyhow::Error>) -> ProviderFault {
     let why: String = format!("{:#}", error.into()).chars().filter(|c| !c.is_control()).take(300).collect();
     ProviderFault::Rejected(format!("the provider's answer is not accepted: {why}"))
@@ -286,7 +289,7 @@ fn untrusted_answer(error: impl Into<anyhow::Error>) -> ProviderFault {
 async fn send(agent: Agent, request: HttpRequest) -> Result<HttpResponse, std::io::Error> {
     let sent = tokio::task::spawn_blocking(move || {
         let (head, mut body) = agent.run(request).map_err(std::io::Error::other)?.into_parts();
-        let body = body.with_config().limit(ANSWER).read_to_vec().map_err(std::io::Error::other)?;
+        let body = body.with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(std::io::Error::other)?;
         Ok(HttpResponse::from_parts(head, body))
     });
     sent.await?

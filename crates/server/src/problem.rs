@@ -1,4 +1,4 @@
-//! Problems, as clients get them: what went wrong, and how to mend it (RFC 9457, problem+json).
+//! Errors in the form that clients receive: the problem, and its remedy (RFC 9457, problem+json).
 use crate::{db::DbError, store::StoreError};
 use serde::Serialize;
 use utoipa::ToSchema;
@@ -6,24 +6,24 @@ use utoipa::ToSchema;
 /// The reason why a request was rejected.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Problem {
-    /// A name that programs may go by.
+    /// A stable name of the problem, for programs.
     #[serde(rename = "type")]
     pub kind: String,
-    /// The kind of problem in words.
+    /// The kind of problem, as text.
     pub title: String,
-    /// The status of the answer.
+    /// The HTTP status of the answer.
     pub status: u16,
-    /// The fault of this request.
+    /// The description of this problem.
     pub detail: String,
-    /// The advice about the problem.
+    /// The remedy for the problem.
     pub remedy: String,
-    /// The seconds after which it may work, if that is known.
+    /// The number of seconds after which a retry may succeed, if known.
     #[serde(skip)]
     pub wait: Option<u64>,
 }
 
-/// The reason why a request is rejected: the status, a name for programs, words, what is wrong, and what to do. A
-/// detail or a remedy that the caller gives is an argument.
+/// Declares the reasons for rejections: the status, a name for programs, a title, the detail, and the remedy. A detail
+/// or a remedy that the caller gives is an argument.
 macro_rules! problems {
     ($($(#[doc = $doc:literal])* $name:ident($($argument:ident: $type:ty),*): $status:literal, $kind:literal, $title:literal,
         $detail:expr, $remedy:expr;)*) => {
@@ -48,27 +48,27 @@ problems! {
     not_signed_in(): 401, "not-signed-in", "Not signed in",
         "this needs a sign-in",
         "sign in, or send a token: Authorization: Bearer fso_...";
-    /// The token, session or link is none of ours, or not any more.
+    /// The token, session or link is unknown or no longer valid.
     unknown_secret(what: &str, remedy: &str): 401, "unknown-secret", "Not signed in",
         format!("this {what} is unknown, used, too old or revoked"),
         remedy;
-    /// Known, and not allowed.
+    /// The person is known, but lacks the permission.
     not_allowed(detail: impl Into<String>): 403, "not-allowed", "Not allowed",
         detail,
         "ask a person whose role allows it";
-    /// Known, but it is not certain that it is the person.
+    /// The person must sign in again, because somebody else may use the browser.
     sign_in_again(detail: impl Into<String>): 403, "sign-in-again", "Sign in again",
         detail,
-        "sign in again on this server's pages, and do it there";
-    /// A request that another site may have made a browser send.
+        "sign in again on this server's pages, and repeat the action there";
+    /// Another site may have made the browser send the request.
     cross_site(): 403, "cross-site", "Sent from another site",
         "the request came from another site, or does not say where it came from",
         "send it from this site's own pages, or with a token instead of a cookie";
-    /// A sign-in from a learning platform is not possible.
+    /// A sign-in from a learning platform is rejected.
     refused_launch(detail: impl Into<String>): 403, "launch-refused", "This sign-in is not possible",
         detail,
         "go back to the platform and open it there again; if it happens again, tell the server's administrator";
-    /// A sign-in at a provider is not accepted.
+    /// A sign-in at a provider is rejected.
     refused_sign_in(detail: impl Into<String>): 403, "sign-in-refused", "This sign-in is not possible",
         detail,
         "sign in again; if it happens again, tell the server's administrator";
@@ -76,71 +76,71 @@ problems! {
     platform_failed(detail: impl Into<String>): 502, "platform-failed", "The learning platform failed",
         detail,
         "try again later; if it happens again, tell the server's administrator";
-    /// There is no such thing, or none that the asker may know of.
+    /// The thing does not exist, or the sender may not know of it.
     not_found(what: &str): 404, "not-found", "Not found",
         format!("there is no such {what}, or you may not see it"),
         "check the address";
-    /// The thing was there, and is not kept any longer.
+    /// The thing existed, and is no longer kept.
     removed(): 410, "removed", "No longer kept",
-        "the upload and its reports were removed; the grade and its history are kept",
+        "the upload and its reports were removed; the grade and its history stay",
         "ask the course's staff about the grade";
-    /// A part of the request is not as it must be.
+    /// A part of the request is invalid.
     invalid(detail: impl Into<String>): 400, "invalid", "Not understood",
         detail,
         "correct it and send it again";
-    /// The action can't be done in the present state.
+    /// The action is not possible in the present state.
     conflict(detail: impl Into<String>, remedy: &str): 409, "conflict", "Not possible now",
         detail,
         remedy;
-    /// Administrators neither shut, remove nor demote themselves.
+    /// Administrators cannot close, remove or demote their own account.
     own_account(): 409, "conflict", "Not possible now",
         "this is your own account",
         "ask another administrator";
-    /// The upload is no submission.
+    /// The upload is not a submission.
     unusable(detail: impl Into<String>): 422, "unusable-upload", "This can't be graded",
         detail,
         "correct the file and upload it again; this did not count as an attempt";
-    /// The upload is no suite.
+    /// The upload is not a suite.
     no_suite(detail: impl Into<String>): 422, "unusable-upload", "This is not a suite",
         detail,
         "correct the suite and upload it again; the assignment keeps its suite";
-    /// An upload with more bytes than allowed.
+    /// The upload has more bytes than allowed.
     too_large(most: u64): 413, "too-large", "Too large",
         format!("more than the {} that are allowed", size(most)),
-        "send less: no build folders, no traces in an archive of sources";
-    /// Another request with more bytes than allowed.
+        "send less: leave out build folders, and traces in an archive of sources";
+    /// Another request has more bytes than allowed.
     too_long(most: usize): 413, "too-large", "Too large",
         format!("more than the {} that are allowed", size(most as u64)),
         "send less in one request";
-    /// A method that the address does not take.
+    /// The address does not support the method.
     wrong_method(method: &str): 405, "wrong-method", "Not done so",
         format!("this address does not accept {method}"),
         "see the API's description: /api/openapi.json";
     /// The disk is nearly full.
     no_room(): 507, "no-room", "No room",
         "the server's disk is nearly full; nothing was stored",
-        "tell the administrator, and send it again later";
-    /// As many bytes are kept as may be.
-    quota(detail: impl Into<String>): 507, "quota", "No room for more uploads",
+        "tell the administrator, and send the request again later";
+    /// The limit of stored bytes is reached.
+    quota(detail: impl Into<String>): 507, "quota", "No space for more uploads",
         detail,
-        "ask the course's staff: the server's administrator can give more room, or have old uploads removed; \
-                      nothing was stored";
+        "ask the course's staff: the server's administrator can increase the limit, or remove old uploads; nothing \
+                      was stored";
     /// The body arrived too slowly.
     too_slow(): 408, "too-slow", "Too slow",
         "the rest of the request did not arrive in time",
         "send it again";
-    /// Too many requests or submissions.
+    /// There were too many requests or submissions.
     too_many(detail: impl Into<String>): 429, "too-many", "Too many",
         detail,
         "wait, and try again";
-    /// Our fault, and it may pass.
+    /// The server failed, and a retry may succeed.
     unavailable(detail: impl Into<String>): 503, "unavailable", "Not available",
         detail,
-        "try again in a moment; what was accepted is safe";
-    /// Our fault.
+        "try again in a moment; accepted uploads are safe";
+    /// The server failed.
     fault(): 500, "fault", "The server failed",
         "something went wrong here",
-        "try again, and tell the administrator: the log says more";
+        "try again, and tell the administrator; the log has details";
 }
 
 /// Returns an error unless a condition holds.
@@ -151,7 +151,7 @@ pub(crate) fn ensure<E>(holds: bool, otherwise: E) -> Result<(), E> {
     if holds { Ok(()) } else { Err(otherwise) }
 }
 
-/// Returns a size in bytes, in the unit that leaves few digits.
+/// Formats a size in bytes, in a unit with few digits.
 pub(crate) fn size(bytes: u64) -> String {
     match bytes {
         few @ ..1024 => format!("{few} B"),

@@ -1,6 +1,6 @@
-//! The time for which uploads and reports are kept. Grades and their history stay forever; bytes that nothing names are
-//! removed. All of it is done in batches: memory is the same for ten submissions and for a million, and no request
-//! waits for long.
+//! The time for which uploads and reports are kept. Grades and their history stay forever; bytes without references are
+//! removed. The work is done in batches, so that memory is the same for ten submissions and for a million, and no
+//! request waits for long.
 use crate::{
     db::{Database, DbError, Transaction},
     queue::millis,
@@ -10,61 +10,62 @@ use crate::{
 use std::{collections::HashSet, time::Duration};
 use thiserror::Error;
 
-/// Younger artifacts are left alone: they may be on their way to be named.
-pub const LEAST_AGE: Duration = Duration::from_secs(24 * 3600);
+/// The minimum age for a removal; younger artifacts may get a reference soon.
+pub const MIN_AGE: Duration = Duration::from_secs(24 * 3600);
 
-/// Submissions that are given up in one transaction.
-const BATCH: i64 = 500;
+/// The number of submissions that expire in one transaction.
+const BATCH_SIZE: i64 = 500;
 
-/// The reason why nothing was given up, or not all.
+/// The reason why nothing was removed, or not everything.
 #[derive(Debug, Error)]
 pub enum RetentionError {
     /// The database reported an error.
     #[error(transparent)]
     Database(#[from] DbError),
-    /// The store does.
+    /// The store reported an error.
     #[error(transparent)]
     Store(#[from] StoreError),
 }
 
-/// The number of things that were given up.
+/// The numbers of removed things.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub struct GivenUp {
-    /// Submissions whose upload and reports are not kept any more.
+pub struct RemovalCounts {
+    /// The number of submissions whose upload and reports expired.
     pub submissions: u64,
-    /// Artifacts that were removed.
+    /// The number of removed artifacts.
     pub artifacts: usize,
 }
 
-/// Removes uploads and reports of submissions that are older than `keep`, if it is set, and artifacts older than
-/// `least` that nothing names. Submissions that are being graded or regraded stay.
+/// Removes uploads and reports of submissions that are older than `keep`, if it is set, and artifacts without
+/// references that are older than `least`. Submissions that are being graded or regraded stay.
 ///
 /// # Errors
+///
 /// An error of database or store; the rest is removed the next time.
 pub async fn give_up(
     database: &Database,
     store: &Store,
     keep: Option<Duration>,
     least: Duration,
-) -> Result<GivenUp, RetentionError> {
+) -> Result<RemovalCounts, RetentionError> {
     let submissions = match keep {
         Some(keep) => give_up_submissions(database, millis(keep)).await?,
         None => 0,
     };
     let artifacts = store.give_up(least, |digests| find_named(database, digests)).await?;
-    Ok(GivenUp { submissions, artifacts })
+    Ok(RemovalCounts { submissions, artifacts })
 }
 
 async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbError> {
     let (mut after, mut id) = (i64::MIN, 0);
     let mut submissions = 0;
     loop {
-        // Found outside of the transaction that writes, which keeps others from writing.
+        // The search uses a read transaction, so that it does not block writers.
         let mut transaction = database.read().await?;
         let statement = "SELECT id, created_at FROM submission
             WHERE removed_at IS NULL AND created_at <= {now} - ? AND (created_at, id) > (?, ?)
             ORDER BY created_at, id LIMIT ?";
-        let found = transaction.rows(statement, values![keep, after, id, BATCH]).await?;
+        let found = transaction.rows(statement, values![keep, after, id, BATCH_SIZE]).await?;
         drop(transaction);
         let Some(last) = found.last() else { break };
         (after, id) = (last.int("created_at")?, last.int("id")?);
@@ -94,10 +95,10 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
     Ok(submissions)
 }
 
-/// Returns which of these digests the database names.
+/// Returns the digests that the database still references.
 async fn find_named(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
     let mut transaction = database.read().await?;
-    let suites = suites(&mut transaction).await?;
+    let suites = used_suites(&mut transaction).await?;
     let wanted = serde_json::to_string(&digests).unwrap_or_default();
     let statement = "SELECT wanted.value AS digest FROM {each}
         WHERE EXISTS (SELECT 1 FROM submission
@@ -121,8 +122,8 @@ async fn find_named(database: &Database, digests: Vec<Digest>) -> Result<HashSet
     Ok(named)
 }
 
-/// Archives of suites that settings name, or jobs that are still to be done.
-async fn suites(transaction: &mut Transaction) -> Result<HashSet<String>, DbError> {
+/// Returns the archives of suites that settings or unfinished jobs reference.
+async fn used_suites(transaction: &mut Transaction) -> Result<HashSet<String>, DbError> {
     let statement = "SELECT settings AS words FROM assignment UNION SELECT settings FROM campaign
         UNION SELECT substr(payload, {strpos}(payload, '\"archive\":\"') + 11, 64) FROM job
            WHERE state IN ('waiting', 'running') AND {strpos}(payload, '\"archive\":\"') > 0";

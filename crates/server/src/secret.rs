@@ -1,21 +1,20 @@
-//! Random words that cannot be guessed.
+//! Random secrets that cannot be guessed.
 
 /// Returns 128 random bits in hexadecimal.
 ///
-/// # Panics
-/// When the system has no random numbers, without which there are no secrets.
+/// # Panics When the system has no random numbers.
 pub fn random_hex() -> String {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).expect("random numbers from the system");
     hex(&bytes)
 }
 
-/// Returns eight random bits, for what only should not be equal.
+/// Returns eight random bits, for values that should only differ.
 pub(crate) fn random_byte() -> u8 {
     getrandom::u32().map_or(0, |word| word.to_le_bytes()[0])
 }
 
-/// Bytes in hexadecimal.
+/// Returns bytes in hexadecimal.
 pub fn hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

@@ -1,5 +1,5 @@
-//! The part of a grade that students see while groups that its suite hides are withheld: as if there were no such
-//! groups.
+//! The part of a grade that students see while groups that its suite hides are withheld. It looks as if there were no
+//! such groups.
 use crate::{
     grade_file::{GradeFile, GradeInFile, GroupInFile, SceneInFile},
     store::{Store, StoreError},
@@ -11,8 +11,8 @@ use serde_json::Number;
 use std::io;
 use tokio_util::io::{StreamReader, SyncIoBridge};
 
-/// Verdicts from the best to the worst, in short and in words: the worst of the scenes is the grade's. The letters are
-/// those of scenes in a row.
+/// The verdicts from the best to the worst, with their codes and texts; the worst of the scenes is the grade's. The
+/// letters are those of scenes in a row.
 const VERDICTS: [(&str, &str, char); 14] = [
     ("AC", "accepted", 'r'),
     ("--", "not run", 'n'),
@@ -30,13 +30,13 @@ const VERDICTS: [(&str, &str, char); 14] = [
     ("JE", "judge error", 'e'),
 ];
 
-/// Returns a verdict in words. A grader of another version may have verdicts that are not known here.
+/// Returns the text of a verdict. A grader of another version may have verdicts that are unknown here.
 pub fn verdict(code: &str) -> &str {
     let known = VERDICTS.iter().find(|verdict| verdict.0 == code);
     known.map_or(if code == "NR" { "not shown yet" } else { code }, |verdict| verdict.1)
 }
 
-/// A grade without the groups that are withheld.
+/// A grade without the withheld groups.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ShownGrade {
     verdict: String,
@@ -46,25 +46,25 @@ pub struct ShownGrade {
     summary: String,
 }
 
-/// The texts that the database keeps about the scenes of an outcome.
+/// The texts that the database stores about the scenes of an outcome.
 #[derive(Debug, Default)]
 pub struct KeptTexts {
     /// The part that students see while groups are withheld; empty if its suite hides nothing.
     pub shown: String,
-    /// The scenes that are not accepted, a line each with the verdict in short; `None` if they are not known.
+    /// The scenes that are not accepted, one line each with the verdict's code; `None` if they are unknown.
     pub failed: Option<String>,
-    /// The grade's [`GradeParts`]; `None` if they are not known.
+    /// The grade's [`GradeParts`]; `None` if they are unknown.
     pub parts: Option<String>,
 }
 
-/// The parts of a grade that tables of a class have a column for.
+/// The parts of a grade with a column in tables of a class.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct GradeParts {
-    /// Groups, each with its points; `None` if the grader failed.
+    /// The groups, each with its points; `None` if the grader failed.
     pub groups: Vec<(String, Option<f64>)>,
-    /// Likely mistakes, in sentences.
+    /// The likely mistakes, as sentences.
     pub mistakes: Vec<String>,
-    /// A letter for each scene, with `|` between groups; empty if an older version graded.
+    /// A letter for each scene, with `|` between groups; empty for results of an older version.
     #[serde(default)]
     pub scenes: String,
 }
@@ -79,7 +79,7 @@ pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<KeptTexts
     let pieces = StreamReader::new(opened.pieces.map(|piece| piece.map_err(io::Error::other)));
     let reading = move || read(SyncIoBridge::new(Box::pin(pieces)));
     let report = tokio::task::spawn_blocking(reading).await.unwrap_or_default();
-    let shown = report.as_ref().map_or_else(|| Some(nothing()), shown_grade);
+    let shown = report.as_ref().map_or_else(|| Some(empty_grade()), shown_grade);
     Ok(KeptTexts {
         shown: shown.as_ref().map(text).unwrap_or_default(),
         failed: report.as_ref().map(list_failed),
@@ -87,7 +87,7 @@ pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<KeptTexts
     })
 }
 
-/// Reads a `grade.json`, if it can be read.
+/// Parses a `grade.json`; `None` if it is invalid.
 fn read(grade: impl io::Read) -> Option<GradeFile> {
     serde_json::from_reader(io::BufReader::new(grade)).ok()
 }
@@ -118,8 +118,8 @@ fn text(shown: &ShownGrade) -> String {
     serde_json::to_string(shown).unwrap_or_default()
 }
 
-/// Returns a grade of which nothing is shown.
-fn nothing() -> ShownGrade {
+/// Returns a grade without any shown group.
+fn empty_grade() -> ShownGrade {
     ShownGrade {
         verdict: "graded".to_owned(),
         code: "NR".to_owned(),
@@ -129,7 +129,7 @@ fn nothing() -> ShownGrade {
     }
 }
 
-/// Returns the rest of a `grade.json` without hidden groups; `None` if it hides none.
+/// Returns the part of a `grade.json` without hidden groups; `None` if it hides none.
 fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     let groups: Vec<&GroupInFile> = report.grades.iter().flat_map(|grade| &grade.groups).collect();
     let is_visible =
@@ -139,11 +139,11 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
         return None;
     }
     let scenes: Vec<&SceneInFile> = visible.iter().flat_map(|group| &group.scenes).collect();
-    // A code that a newer grader has is worse than all that are known here.
+    // A code of a newer grader that is unknown here counts as worse than all known ones.
     let rank =
         |scene: &&SceneInFile| VERDICTS.iter().position(|verdict| scene.code == verdict.0).unwrap_or(VERDICTS.len());
     let counted = visible.iter().filter(|group| !group.extra).flat_map(|group| &group.scenes);
-    let Some(worst) = counted.max_by_key(rank).or_else(|| scenes.first().copied()) else { return Some(nothing()) };
+    let Some(worst) = counted.max_by_key(rank).or_else(|| scenes.first().copied()) else { return Some(empty_grade()) };
     let sum = |of: fn(&GroupInFile) -> Option<f64>| {
         let numbers: Option<Vec<f64>> = visible.iter().filter(|group| !group.extra).map(|group| of(group)).collect();
         numbers.and_then(|numbers| Number::from_f64(numbers.iter().sum())).map(|sum| sum.to_string())
@@ -151,7 +151,7 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
     Some(ShownGrade {
         verdict: worst.verdict.clone(),
-        // A code has letters: nothing is known of groups that were not run.
+        // A code has letters; "--" means that no group was run.
         code: if worst.code == "--" { "NR".to_owned() } else { worst.code.clone() },
         points: sum(|group| group.points),
         max_points: sum(|group| group.max_points),
@@ -160,25 +160,25 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
 }
 
 impl ShownGrade {
-    /// Reads the shown grade in a text of the database; `None` if nothing is withheld.
+    /// Reads the shown grade from a text of the database; `None` if nothing is withheld.
     pub fn read(text: &str) -> Option<Self> {
         match text {
             "" => None,
-            text => Some(serde_json::from_str(text).unwrap_or_else(|_| nothing())),
+            text => Some(serde_json::from_str(text).unwrap_or_else(|_| empty_grade())),
         }
     }
 
-    /// Returns the points, and of how many.
+    /// Returns the points, and their maximum.
     pub fn points(self) -> (Option<String>, Option<String>) {
         (self.points, self.max_points)
     }
 
-    /// Returns the verdict in short, and the points.
+    /// Returns the verdict's code, and the points.
     pub fn line(self) -> (String, Option<String>) {
         (self.code, self.points)
     }
 
-    /// Reduces an outcome to its shown part. Digests, sizes and times of what is withheld would reveal when it changes.
+    /// Reduces an outcome to its shown part. Digests, sizes and times of withheld parts would reveal when they change.
     pub fn cover(self, outcome: &mut Outcome, page: &str) {
         (outcome.verdict, outcome.code, outcome.summary) = (self.verdict, self.code, self.summary);
         (outcome.points, outcome.max_points) = (self.points, self.max_points);
@@ -187,8 +187,8 @@ impl ShownGrade {
     }
 }
 
-/// Returns the full hour before a moment: a grade's exact time would reveal how long hidden groups took.
-pub fn hour(milliseconds: i64) -> i64 {
+/// Returns a time, rounded down to the hour: a grade's exact time would reveal how long hidden groups took.
+pub fn round_to_hour(milliseconds: i64) -> i64 {
     milliseconds - milliseconds.rem_euclid(3_600_000)
 }
 
@@ -243,7 +243,7 @@ mod tests {
         assert_eq!((one.points.as_deref(), one.max_points.as_deref()), (Some("7.5"), Some("10.0")));
         assert!(one.summary.starts_with("1 of 2 scenes accepted"), "{}", one.summary);
         assert_eq!(ShownGrade::read(&text(&one)), Some(one));
-        assert_eq!(shown(&hidden("AC", 90)), Some(nothing()));
+        assert_eq!(shown(&hidden("AC", 90)), Some(empty_grade()));
         assert!(read(&b"{"[..]).is_none(), "what can't be read is not shown");
         let both = file(&format!("{seen}, {}", hidden("RTE", 0)));
         assert_eq!(list_failed(&both), "WA b\nRTE secret\n", "staff knows of hidden scenes, too");

@@ -1,8 +1,8 @@
-//! Checks whether the server can still write, and whether it has room for more.
+//! Checks whether the server can still write, and whether it has space for more.
 //!
-//! A database that answers reads may be unable to write: a full disk, a folder that became read-only. Therefore
-//! [`Storage::prove`] writes to the database and to the store, and [`Storage::ensure_room`] rejects uploads before the
-//! disk is full, so that accepted ones can still be graded.
+//! A database that answers reads may be unable to write, for example because the disk is full or a folder became
+//! read-only. Therefore [`Storage::prove`] writes to the database and to the store, and [`Storage::ensure_room`]
+//! rejects uploads before the disk is full, so that accepted ones can still be graded.
 use crate::{
     db::{self, Database, DbError},
     problem::Problem,
@@ -16,43 +16,44 @@ use std::{
 };
 use tokio::sync::Mutex;
 
-/// The time for which a proof counts: more frequent requests of monitors cost one write.
-const PROOF_COUNTS: Duration = Duration::from_secs(2);
+/// The time for which a check counts, so that frequent requests of monitors cost only one write.
+const CHECK_LIFETIME: Duration = Duration::from_secs(2);
 
-/// The longest time that a proof may take: probes wait for five seconds.
-const PROOF_TIME: Duration = Duration::from_secs(3);
+/// The maximum duration of a check; probes wait for five seconds.
+const CHECK_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// Database, store and disk, for writing to them.
+/// The database, the store and the disk, for checks that they can be written.
 #[derive(Debug)]
 pub struct Storage {
     database: Database,
     store: Store,
-    /// On the disk that uploads come to.
+    /// The folder of incoming uploads, whose disk is checked.
     incoming: PathBuf,
-    /// Uploads are rejected when fewer bytes are free on it.
+    /// The number of free bytes on the disk below which uploads are rejected.
     low_water: u64,
-    /// The time of the last proof, and its result: what can't be done.
+    /// The time of the last check, with its result: the part that cannot be written.
     last: Mutex<Option<(Instant, Option<&'static str>)>>,
 }
 
 impl Storage {
-    /// Creates storage that rejects uploads below this many free bytes.
+    /// Creates storage that rejects uploads below a number of free bytes.
     pub fn new(database: Database, store: Store, incoming: PathBuf, low_water: u64) -> Self {
         Self { database, store, incoming, low_water, last: Mutex::default() }
     }
 
-    /// Proves by writing that the database and the store can be written.
+    /// Checks by writing that the database and the store can be written.
     ///
     /// # Errors
-    /// When one can't: 503, and which.
+    ///
+    /// When one can't: 503, with the part.
     pub async fn prove(&self) -> Result<(), Problem> {
-        let proved = tokio::time::timeout(PROOF_TIME, self.prove_now()).await;
+        let proved = tokio::time::timeout(CHECK_TIMEOUT, self.prove_now()).await;
         proved.unwrap_or_else(|_| Err(Problem::unavailable("the database or the store does not answer in time")))
     }
 
     async fn prove_now(&self) -> Result<(), Problem> {
         let mut last = self.last.lock().await;
-        let known = last.filter(|(at, _)| at.elapsed() < PROOF_COUNTS);
+        let known = last.filter(|(at, _)| at.elapsed() < CHECK_LIFETIME);
         let fault = match known {
             Some((_, fault)) => fault,
             None => {
@@ -86,23 +87,24 @@ impl Storage {
 
     async fn write_to_database(&self) -> Result<(), DbError> {
         let mut transaction = self.database.begin().await?;
-        // The row stays as it is; the commit has to write it all the same.
+        // The row does not change, but the commit has to write it.
         transaction.execute("UPDATE pulse SET beat_at = beat_at WHERE id = 1", values![]).await?;
         transaction.commit().await
     }
 
-    /// Returns the free bytes of the data folder's disk, and its size, if the disk reports them.
+    /// Returns the free bytes of the data folder's disk, and its size, if the disk reports both.
     pub fn disk(&self) -> Option<(u64, u64)> {
         let disk = statvfs(&self.incoming).ok()?;
         Some((disk.f_bavail.saturating_mul(disk.f_frsize), disk.f_blocks.saturating_mul(disk.f_frsize)))
     }
 
-    /// Checks that there is room for an upload.
+    /// Checks that there is space for an upload.
     ///
     /// # Errors
+    ///
     /// When less than the low-water mark is free: 507. Nothing was written.
     pub fn ensure_room(&self) -> Result<(), Problem> {
-        // A disk that does not report its free space rejects nothing.
+        // If a disk does not report its free space, uploads are accepted.
         if self.disk().is_some_and(|(free, _)| free < self.low_water) {
             tracing::error!(low_water = self.low_water, "uploads are rejected: the disk is nearly full");
             return Err(Problem::no_room());

@@ -1,8 +1,8 @@
-//! The store of artifacts: submissions, reports, suites. Each is stored under the SHA-256 of its bytes, is written once
-//! and never changed; a reader gets the bytes that its name promises, or an error. The store is a folder by default;
-//! for several servers it is a bucket of S3 or a compatible service.
+//! The store of artifacts: submissions, reports, suites. Each is stored under the SHA-256 of its bytes, and is written
+//! once and never changed. A reader gets the bytes of the digest, or an error. The store is a folder by default; for
+//! several servers it is a bucket of S3 or a compatible service.
 //!
-//! An artifact is safely stored before the database names it, so that a named artifact is always there.
+//! An artifact is safely stored before the database refers to it, so that a referenced artifact always exists.
 mod read;
 mod sweep;
 
@@ -27,27 +27,27 @@ use tokio_util::io::ReaderStream;
 use utoipa::ToSchema;
 
 /// The number of bytes that are read at a time.
-const CHUNK: usize = 256 * 1024;
+const CHUNK_BYTES: usize = 256 * 1024;
 
-/// The place of artifacts, and the place of those that are about to be removed.
-const KEPT: &str = "sha256";
-const ASIDE: &str = "aside";
+/// The folder of artifacts.
+const KEPT_FOLDER: &str = "sha256";
+const TRASH: &str = "aside";
 
-/// An artifact that is stored once more is written anew if it is older than this: the removal of unnamed artifacts
-/// checks their age, and must not take one that is about to be named.
-const FRESH: Duration = Duration::from_secs(6 * 3600);
+/// The age above which an artifact is written again if it is stored again. The removal of unreferenced artifacts checks
+/// their age, and must not take one that gets a reference soon.
+const FRESH_AGE: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artifact's bytes, in lower-case hexadecimal.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
 #[serde(try_from = "String")]
 pub struct Digest(String);
 
-/// An artifact's name and size.
+/// The digest and size of an artifact.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Artifact {
-    /// The digest of its bytes.
+    /// The digest of the artifact's bytes.
     pub digest: Digest,
-    /// The number of bytes.
+    /// The number of the artifact's bytes.
     #[schema(maximum = 9_007_199_254_740_991_i64)]
     pub size: u64,
 }
@@ -55,13 +55,13 @@ pub struct Artifact {
 /// The reason why an artifact can't be stored or read.
 #[derive(Debug, Error)]
 pub enum StoreError {
-    /// There is none of this digest.
+    /// There is no artifact with this digest.
     #[error("the store has no artifact {0}")]
     Missing(Digest),
-    /// The bytes are not those that were stored: the disk is damaged, or the file was changed.
+    /// The bytes differ from those that were stored, because the disk is damaged or the file was changed.
     #[error("the artifact {0} is damaged in the store")]
     Damaged(Digest),
-    /// The store can't be used: no space, no permission, not reachable.
+    /// The store can't be used: no space, no permission, or not reachable.
     #[error("the store failed: {0}")]
     Failed(String),
 }
@@ -89,12 +89,12 @@ impl Digest {
         &self.0
     }
 
-    /// Returns the digest's beginning, for people.
+    /// Returns the beginning of the digest, for people.
     pub fn short(&self) -> &str {
         &self.0[..12]
     }
 
-    /// Returns the key of an artifact, in one of the two places.
+    /// Returns the key of an artifact in one of the two folders.
     fn key(&self, place: &str) -> Key {
         Key::from(format!("{place}/{}/{}", &self.0[..2], &self.0[2..]))
     }
@@ -126,19 +126,20 @@ impl fmt::Display for Digest {
     }
 }
 
-/// The store. Cloning it is cheap.
+/// The store of artifacts. Clones are cheap.
 #[derive(Debug, Clone)]
 pub struct Store {
     objects: Arc<dyn ObjectStore>,
-    /// The path, if it is a folder.
+    /// The path, if the store is a folder.
     folder: Option<PathBuf>,
 }
 
 impl Store {
-    /// Returns a folder as a store; made when it is missing. What was stored survives a power cut.
+    /// Creates a store in a folder, which is created if it does not exist. Stored artifacts survive a power cut.
     ///
     /// # Errors
-    /// When the folder can't be made.
+    ///
+    /// When the folder can't be created.
     pub fn folder(folder: &Path) -> Result<Self, StoreError> {
         std::fs::create_dir_all(folder)
             .map_err(|error| StoreError::Failed(format!("cannot make {}: {error}", folder.display())))?;
@@ -146,11 +147,12 @@ impl Store {
         Ok(Self { objects: Arc::new(objects), folder: Some(folder.to_owned()) })
     }
 
-    /// Returns a bucket as a store: `s3://BUCKET` or `s3://BUCKET/PREFIX`, with the settings of the variables
+    /// Creates a store in a bucket, `s3://BUCKET` or `s3://BUCKET/PREFIX`, with the settings in the variables
     /// `AWS_...`.
     ///
     /// # Errors
-    /// When the address is not valid, or this program was built without buckets.
+    ///
+    /// When the address is invalid, or this program was built without buckets.
     pub fn bucket(address: &str) -> Result<Self, StoreError> {
         let place = address.strip_prefix("s3://").unwrap_or_default();
         let (bucket, prefix) = place.split_once('/').unwrap_or((place, ""));
@@ -162,7 +164,7 @@ impl Store {
 
     #[cfg(feature = "s3")]
     fn s3(bucket: &str, prefix: &str) -> Result<Self, StoreError> {
-        // The second time it exists already, and the store reports that.
+        // If a provider is installed already, the error can be ignored.
         drop(rustls::crypto::ring::default_provider().install_default());
         let objects = object_store::aws::AmazonS3Builder::from_env().with_bucket_name(bucket).build()?;
         let objects = object_store::prefix::PrefixStore::new(objects, prefix);
@@ -174,29 +176,31 @@ impl Store {
         Err(StoreError::Failed("this program was built without buckets: build it with --features s3".to_owned()))
     }
 
-    /// Writes a small object, and removes it: proof that more can be stored.
+    /// Writes a small object and removes it, as a check that more can be stored.
     ///
     /// # Errors
+    ///
     /// When the store fails.
     pub async fn prove(&self) -> Result<(), StoreError> {
-        let key = Key::from(format!("{ASIDE}/proof-{}", std::process::id()));
+        let key = Key::from(format!("{TRASH}/proof-{}", std::process::id()));
         self.objects.put(&key, PutPayload::from_static(b"proof")).await?;
         self.objects.delete(&key).await?;
         Ok(())
     }
 
-    /// Stores a file, without ever holding it whole.
+    /// Stores a file in pieces, so that it is never completely in memory.
     ///
     /// # Errors
-    /// When the file can't be read, or changes meanwhile, or the store fails.
+    ///
+    /// When the file can't be read or changes during the upload, or the store fails.
     pub async fn put_file(&self, file: &Path) -> Result<Artifact, StoreError> {
         let artifact = digest_of_file(file).await?;
         if self.find_fresh(&artifact.digest).await? {
             return Ok(artifact);
         }
         let (mut pieces, mut hasher) = (pieces(file).await?, Sha256::new());
-        // An upload that is not completed never shows under its name.
-        let mut upload = WriteMultipart::new(self.objects.put_multipart(&artifact.digest.key(KEPT)).await?);
+        // An incomplete upload is never visible under its name.
+        let mut upload = WriteMultipart::new(self.objects.put_multipart(&artifact.digest.key(KEPT_FOLDER)).await?);
         while let Some(piece) = pieces.try_next().await? {
             hasher.update(&piece);
             upload.wait_for_capacity(4).await?;
@@ -210,20 +214,21 @@ impl Store {
         Ok(artifact)
     }
 
-    /// Returns whether there is an artifact of this digest.
+    /// Returns whether there is an artifact with a digest.
     ///
     /// # Errors
+    ///
     /// When the store fails.
     pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
-        Ok(self.age(&digest.key(KEPT)).await?.is_some() || self.age(&digest.key(ASIDE)).await?.is_some())
+        Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some() || self.age(&digest.key(TRASH)).await?.is_some())
     }
 
     /// Returns whether there is an artifact that will not be removed soon.
     async fn find_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
-        Ok(self.age(&digest.key(KEPT)).await?.is_some_and(|age| age < FRESH))
+        Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some_and(|age| age < FRESH_AGE))
     }
 
-    /// Returns the age of an object; `None` if there is none.
+    /// Returns the age of an object; `None` if it does not exist.
     async fn age(&self, key: &Key) -> Result<Option<Duration>, StoreError> {
         match self.objects.head(key).await {
             Ok(meta) => Ok(Some(age(&meta))),
@@ -252,7 +257,7 @@ pub async fn digest_of_file(file: &Path) -> io::Result<Artifact> {
     Ok(Artifact { digest: Digest(hex(&hasher.finalize())), size })
 }
 
-/// Returns a file in pieces, so that it is never held whole.
+/// Returns a file in pieces, so that it is never completely in memory.
 async fn pieces(file: &Path) -> io::Result<ReaderStream<tokio::fs::File>> {
-    Ok(ReaderStream::with_capacity(tokio::fs::File::open(file).await?, CHUNK))
+    Ok(ReaderStream::with_capacity(tokio::fs::File::open(file).await?, CHUNK_BYTES))
 }

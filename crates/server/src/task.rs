@@ -1,4 +1,4 @@
-//! A worker's task and its answer: the same words in the queue, over HTTP and in the database.
+//! A worker's task and its result, with the same form in the queue, over HTTP and in the database.
 use crate::{
     schema::{Code, Decimal, ReportName},
     store::{Artifact, Digest},
@@ -6,55 +6,56 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// One grading, complete: with this and the artifacts that it names it can be repeated.
+/// The complete description of one grading. It can be repeated with this and the artifacts that it refers to.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Task {
-    /// The upload.
+    /// The uploaded file, as stored.
     pub submission: Input,
-    /// The suite that it is graded by.
+    /// The suite for the grading.
     pub suite: Suite,
-    /// The rule books, when the suite is not to decide: `parity`, `fair` or `both`.
+    /// The rule books, unless the suite decides: `parity`, `fair` or `both`.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rules: Option<String>,
-    /// The detail that the reports show, unless the suite decides: `none`, `where`, `what` or `full`.
+    /// The level of detail in reports, unless the suite decides: `none`, `where`, `what` or `full`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hints: Option<String>,
-    /// The program's name within a folder of sources.
+    /// The name of the program in a folder of sources.
     pub program: String,
-    /// The seconds after which the grading is stopped; its results so far count.
+    /// The number of seconds after which the grading is stopped; its results so far count.
     pub seconds: u64,
 }
 
-/// The upload.
+/// An uploaded file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Input {
     /// The upload's form.
     pub form: Form,
-    /// The file's name, made harmless.
+    /// The file's name, without dangerous characters.
     pub name: String,
     /// The upload's bytes.
     #[serde(flatten)]
     pub artifact: Artifact,
 }
 
-/// A row has a kind, its name in tables and messages, and what to hand in.
+/// Declares the forms of submissions. A row has a form, its name in tables and messages, and a description of the
+/// upload.
 macro_rules! forms {
     ($($(#[$about:meta])+ $form:ident $name:literal $what:literal;)+) => {
-        /// The kinds of submissions.
+        /// The forms of submissions.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
         #[serde(rename_all = "lowercase")]
         pub enum Form { $($(#[$about])+ $form,)+ }
 
         impl Form {
-            /// All submissions.
+            /// All forms, in the order of declaration.
             pub const ALL: [Self; [$(Self::$form),+].len()] = [$(Self::$form),+];
 
-            /// Returns the name in tables and messages.
+            /// Returns the form's name in tables and messages.
             pub fn name(self) -> &'static str {
                 match self { $(Self::$form => $name,)+ }
             }
 
-            /// Returns the thing to hand in, in words.
+            /// Returns a description of the upload.
             pub fn describe(self) -> &'static str {
                 match self { $(Self::$form => $what,)+ }
             }
@@ -63,9 +64,9 @@ macro_rules! forms {
 }
 
 forms! {
-    /// A program, ready to run.
+    /// A program that can be run.
     Program "program" "a program for Linux";
-    /// An archive of sources, for which the suite has the build.
+    /// An archive of sources; the suite has the commands to build it.
     Sources "sources" "an archive of sources";
     /// An archive of traces, one for each scene.
     Traces "traces" "an archive of traces";
@@ -78,13 +79,13 @@ impl Form {
     }
 }
 
-/// The suite that a submission is graded by.
+/// A suite for grading a submission.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Suite {
-    /// A suite that comes with the program.
+    /// A suite of the grader, by name.
     Named(String),
-    /// An archive with a `suite.toml` and its scenes.
+    /// An archive with a `suite.toml` and its scenes, by digest.
     Archive(Digest),
 }
 
@@ -98,51 +99,51 @@ impl Suite {
     }
 }
 
-/// The result of a grading: the grader makes it, a worker reports it and the service shows it.
+/// The result of a grading, which the grader makes, a worker reports and the service shows.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Outcome {
-    /// The verdict in words.
+    /// The verdict as text.
     #[schema(max_length = 200)]
     pub verdict: String,
-    /// The verdict in short: AC, WA, ...; JE is the grader's fault and no zero.
+    /// The verdict's code: AC, WA, ...; JE means that the grader failed, and gives no points instead of zero.
     #[schema(value_type = Code)]
     pub code: String,
-    /// Points, digit for digit as the grader wrote them; none after a judge error.
+    /// The points, with exactly the grader's digits; none after a judge error.
     #[schema(value_type = Option<Decimal>)]
     pub points: Option<String>,
-    /// The most that could be had.
+    /// The maximum number of points.
     #[schema(value_type = Option<Decimal>)]
     pub max_points: Option<String>,
     /// One line about the result.
     pub summary: String,
     /// The grader's version.
     pub version: String,
-    /// The SHA-256 of the grader, where it is known.
+    /// The SHA-256 of the grader, if it is known.
     #[schema(pattern = "^([0-9a-f]{64})?$")]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub grader: String,
-    /// The time that it took, in seconds; missing while groups are withheld.
+    /// The duration of the grading in seconds; missing while groups are withheld.
     #[schema(value_type = Decimal)]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub seconds: String,
-    /// Reports and logs; empty in lists.
+    /// The reports and logs; empty in lists.
     pub files: Vec<OutputFile>,
-    /// The part that students see while groups are withheld, as [`ShownGrade`](crate::shown::ShownGrade) keeps it;
+    /// The part that students see while groups are withheld, in the form of [`ShownGrade`](crate::shown::ShownGrade);
     /// `None` until it was computed.
     #[serde(skip)]
     pub shown: Option<String>,
-    /// The scenes that are not accepted, a line each with the verdict in short; `None` until they were computed.
+    /// The scenes that are not accepted, one line each with the verdict's code; `None` until they were computed.
     #[serde(skip)]
     pub failed: Option<String>,
-    /// Points of groups and likely mistakes, as [`GradeParts`](crate::shown::GradeParts); `None` until they were
-    /// computed.
+    /// The points of groups and the likely mistakes, in the form of [`GradeParts`](crate::shown::GradeParts); `None`
+    /// until they were computed.
     #[serde(skip)]
     pub parts: Option<String>,
 }
 
 impl Outcome {
-    /// Returns the outcome of a job that was tried too often: the service's fault, and no zero. Only staff reads the
-    /// reason, in the job.
+    /// Returns the outcome of a job that was tried too often. It is the service's fault, so it gives no points instead
+    /// of zero. Only staff see the reason, which is in the job.
     pub fn judge_error() -> Self {
         Self {
             verdict: "judge error".to_owned(),
@@ -156,7 +157,7 @@ impl Outcome {
     }
 }
 
-/// Returns a number of points with two digits at most, for people.
+/// Returns a number of points with at most two decimals, for people.
 pub fn round_points(number: impl ToString) -> String {
     let number = number.to_string();
     let Ok(value) = number.parse::<f64>() else { return number };
@@ -164,18 +165,18 @@ pub fn round_points(number: impl ToString) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The verdict that is no zero for the student.
+/// The code of the verdict that gives no points instead of zero.
 pub const JUDGE_ERROR: &str = "JE";
 
-/// A report or log.
+/// A file that the grader wrote: a report or a log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct OutputFile {
-    /// The file's name, `grade.json` for example.
+    /// The file's name, such as `grade.json`.
     #[schema(value_type = ReportName)]
     pub name: String,
     /// The file's media type.
     pub media_type: String,
-    /// The upload's bytes.
+    /// The file's bytes, as stored.
     #[serde(flatten)]
     pub artifact: Artifact,
 }

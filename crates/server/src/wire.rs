@@ -1,5 +1,5 @@
-//! The messages between workers on other machines and the server, as JSON. Fields that the other side does not know are
-//! passed over: the two may be of different versions while they are upgraded.
+//! The messages between workers on other machines and the server, as JSON. Unknown fields are ignored, because the two
+//! sides may have different versions during an upgrade.
 use crate::{
     queue::{Lease, Progress},
     task::{Outcome, Task},
@@ -10,21 +10,21 @@ use utoipa::ToSchema;
 /// A job for a worker.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct ClaimedJob {
-    /// The lease to show from now on.
+    /// The lease for further messages.
     pub lease: Lease,
-    /// The time between two renewals, in milliseconds.
+    /// The time between two renewals of the lease, in milliseconds.
     pub renew_every: u64,
-    /// The task.
+    /// The task of the job.
     pub task: Task,
 }
 
-/// A sign of life.
+/// A worker's report that it is alive.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct SignOfLife {
-    /// The number of gradings that it does at one time; 0 while it can't grade.
+    /// The maximum number of parallel gradings; 0 while the worker can't grade.
     #[schema(maximum = 10_000)]
     pub(crate) slots: usize,
-    /// The reason why it can't grade.
+    /// The reason why the worker can't grade.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) fault: Option<String>,
     /// The worker's version.
@@ -33,7 +33,7 @@ pub(crate) struct SignOfLife {
     pub(crate) version: String,
 }
 
-/// The rules for a worker.
+/// The server's settings for a worker.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub struct Manners {
     /// The time between two reports that the worker is alive, in milliseconds.
@@ -43,10 +43,10 @@ pub struct Manners {
     pub(crate) version: String,
 }
 
-/// Whether the lease still holds.
+/// The state of a lease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct LeaseAnswer {
-    /// If not, another worker has the job and nothing was changed.
+    /// Whether the lease is still valid. Otherwise another worker has the job, and nothing was changed.
     pub held: bool,
 }
 
@@ -66,7 +66,7 @@ pub(crate) struct Renewal {
     pub(crate) progress: Option<Progress>,
 }
 
-/// The reason why a try failed.
+/// A failed try.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct JobFault {
     pub(crate) lease: Lease,
@@ -74,7 +74,7 @@ pub(crate) struct JobFault {
     pub(crate) fault: String,
 }
 
-/// A result.
+/// The result of a job.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct FinishedJob {
     pub(crate) lease: Lease,

@@ -1,17 +1,17 @@
-//! Arguments of the commands that draw and show details, as typed.
-use super::values::at_least_one;
+//! Arguments of the commands that draw or show details.
+use super::values::parse_positive;
 use crate::render::Size;
 use clap::{Args, ValueEnum};
 use std::{num::NonZeroU32, path::PathBuf};
 
-/// The form of the pictures.
+/// The format of the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum RenderFormat {
-    /// Pictures as SVG: a folder of them, or one with --step.
+    /// SVG pictures: a folder of them, or one picture with --step.
     Svg,
-    /// Pictures as PNG: a folder of them, or one with --step.
+    /// PNG pictures: a folder of them, or one picture with --step.
     Png,
-    /// A GIF.
+    /// An animated GIF.
     Gif,
     /// A movie, if ffmpeg is installed.
     Mp4,
@@ -36,7 +36,7 @@ pub(in crate::cli) struct RenderArguments {
     /// A second trace, drawn on top in dashed outlines.
     #[arg(long, value_name = "TRACE")]
     pub(in crate::cli) overlay: Option<PathBuf>,
-    /// The file or folder to write; the ending of a file's name selects the format.
+    /// The file or folder to write; the extension of a file's name selects the format.
     #[arg(short, long, value_name = "FILE or DIR")]
     pub(in crate::cli) output: PathBuf,
     /// The format of the output, if its name does not show it.
@@ -48,25 +48,25 @@ pub(in crate::cli) struct RenderArguments {
     /// Pictures per second of a film.
     #[arg(long, value_name = "N", default_value_t = 25)]
     pub(in crate::cli) fps: u16,
-    /// Draw every Nth step only.
-    #[arg(long, value_name = "N", value_parser = at_least_one::<NonZeroU32>)]
+    /// Draw only every Nth step.
+    #[arg(long, value_name = "N", value_parser = parse_positive::<NonZeroU32>)]
     pub(in crate::cli) every: Option<NonZeroU32>,
-    /// One picture: the state after this step; 0 is the start.
+    /// Draw one picture: the state after this step; 0 is the start.
     #[arg(long, value_name = "N", conflicts_with = "every")]
     pub(in crate::cli) step: Option<u32>,
-    /// Leave out step and time in the lower left corner.
+    /// Leave out the step and the time in the lower left corner.
     #[arg(long)]
     pub(in crate::cli) no_label: bool,
 }
 
-/// The format of a detection.
+/// The format of the report on a pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum DetectFormat {
-    /// For people.
+    /// Text for people.
     Text,
-    /// For programs; one JSON object.
+    /// One JSON object, for programs.
     Json,
-    /// A picture like the assignment's figure 2: the polynomials, where each is positive, where all are.
+    /// A picture like the assignment's figure 2: the polynomials, where each is positive, and where all are.
     Svg,
 }
 
@@ -94,10 +94,10 @@ pub(in crate::cli) struct DetectArguments {
     /// The radii of the two objects; of a particle and a half-plane, the particle's.
     #[arg(long, value_name = "R,R", allow_hyphen_values = true)]
     pub(in crate::cli) radii: Option<String>,
-    /// Look at a pair of this scene instead.
+    /// Use a pair of this scene instead.
     #[arg(long, value_name = "SCENE", requires = "step", requires = "pair", conflicts_with_all = ["word", "radii"])]
     pub(in crate::cli) scene: Option<PathBuf>,
-    /// The trace that gives the states; by default the reference's run.
+    /// The trace with the states; by default the reference's run.
     #[arg(long, value_name = "TRACE", requires = "scene")]
     pub(in crate::cli) trace: Option<PathBuf>,
     /// The step, from 1.
@@ -109,10 +109,10 @@ pub(in crate::cli) struct DetectArguments {
     /// The detection pass of the step, from 1.
     #[arg(long, value_name = "N", requires = "scene", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
     pub(in crate::cli) pass: u32,
-    /// The format of the answer.
+    /// The format of the report.
     #[arg(long, value_enum, default_value_t = DetectFormat::Text)]
     pub(in crate::cli) format: DetectFormat,
-    /// The file to write, instead of standard output.
+    /// The file for the report, instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(in crate::cli) output: Option<PathBuf>,
 }

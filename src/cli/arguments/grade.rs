@@ -1,5 +1,5 @@
-//! Arguments of the commands that run programs, as typed.
-use super::values::{TextOrJson, at_least_one, hints, reader, rules};
+//! Arguments of the commands that run programs.
+use super::values::{TextOrJson, hints, parse_positive, reader, rules};
 use crate::{
     assignments::Assignment,
     judge::Rules,
@@ -9,22 +9,22 @@ use crate::{
 use clap::{Args, Subcommand};
 use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
-/// Returns the help of `--format`, where these formats are taken.
+/// Returns the help of `--format` for the accepted formats.
 fn help_of_formats(takes: impl Fn(Format) -> bool) -> String {
-    format!("A report: {}; with =FILE into a file", Format::names(takes))
+    format!("A report: {}; with =FILE, written to a file", Format::names(takes))
 }
 
-/// Returns the suites that come with the program, by name.
-fn built_in() -> String {
+/// Returns the names of the built-in suites, as text.
+fn list_built_in() -> String {
     plan::built_in_names().collect::<Vec<_>>().join(", ")
 }
 
 fn help_of_suite() -> String {
-    format!("The suite: a file, or one that comes with the program ({})", built_in())
+    format!("The suite: a file, or a built-in one ({})", list_built_in())
 }
 
 fn help_of_built_in() -> String {
-    format!("A suite that comes with the program ({}), instead of the commented template", built_in())
+    format!("A built-in suite ({}), instead of the commented template", list_built_in())
 }
 
 #[derive(Debug, Args)]
@@ -54,7 +54,7 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) programs: Vec<PathBuf>,
     #[arg(long, value_name = "SUITE", default_value = Assignment::DEFAULT.key(), help = help_of_suite())]
     pub(in crate::cli) suite: String,
-    /// The rule books; by default the suite's.
+    /// The rule books; by default those of the suite.
     #[arg(long, value_parser = rules())]
     pub(in crate::cli) rules: Option<Rules>,
     /// The folder for results, logs and the journal.
@@ -62,63 +62,64 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(|_| true))]
     pub(in crate::cli) format: Vec<String>,
-    /// The reader of the reports. Staff sees everything; students see what the suite's hints allow, without groups that
-    /// it hides. The output folder gets pages of both kinds; those for students are in students/.
+    /// The reader of the reports. Staff see everything; students see what the suite's hints allow, without hidden
+    /// groups. The output folder gets pages of both kinds; those for students are in students/.
     #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
     pub(in crate::cli) reader: Audience,
-    /// Number of runs at one time. One per core by default.
-    #[arg(short, long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
+    /// The number of parallel runs. One per core by default.
+    #[arg(short, long, value_name = "N", value_parser = parse_positive::<NonZeroUsize>)]
     pub(in crate::cli) jobs: Option<NonZeroUsize>,
-    /// Only scenes of these names, such as 'GeometricTests/*' or 'ball-*'; may be given several times.
+    /// Run only scenes with these names, such as 'GeometricTests/*' or 'ball-*'; may be given several times.
     #[arg(long, value_name = "GLOB")]
     pub(in crate::cli) scene: Vec<String>,
-    /// Only scenes that were not accepted when the same submissions were graded last.
+    /// Run only scenes that were not accepted in the last grading of the same submissions.
     #[arg(long)]
     pub(in crate::cli) failed: bool,
-    /// How much reports show. By default staff sees everything, and students what the suite says.
-    /// `full` may give a formula away.
+    /// The level of detail in reports. By default staff see everything, and students what the suite allows. `full` may
+    /// give a formula away.
     #[arg(long, value_parser = hints(), value_name = "LEVEL")]
     pub(in crate::cli) hints: Option<Hints>,
-    /// Make the smallest scene on which a program is still wrong, for up to four causes of each submission, with two
+    /// Find the smallest scene on which a program is still wrong, for up to four causes of each submission, with two
     /// seconds of processor time for each.
     #[arg(long)]
     pub(in crate::cli) smallest: bool,
     /// Keep the traces of scenes that are not accepted, in the output folder.
     #[arg(long)]
     pub(in crate::cli) keep_traces: bool,
-    /// Write how far it is into a file, such as `3/85`: scenes with a verdict, and all. Scenes that the reader does not
-    /// see do not count.
+    /// The file for the progress, such as `3/85`: scenes with a verdict, and all. Scenes that are hidden from the
+    /// reader do not count.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PROGRESS")]
     pub(in crate::cli) progress: Option<PathBuf>,
     /// With reports for students, also write the page for staff, which shows everything.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_STAFF_PAGE")]
     pub(in crate::cli) staff_page: Option<PathBuf>,
-    /// With reports for students, also write the page that they see when hidden groups are published, if there are any.
+    /// With reports for students, also write the page that they see after hidden groups are published, if there are
+    /// any.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PUBLISHED_PAGE")]
     pub(in crate::cli) published_page: Option<PathBuf>,
-    /// Keep hidden groups in reports for students, because the requesting platform hides these groups itself.
+    /// Keep hidden groups in reports for students, because the platform that requests them hides the groups itself.
     #[arg(long, env = "FOSSSIM_PLATFORM_HIDES")]
     pub(in crate::cli) platform_hides: bool,
-    /// Show a line per submission only.
+    /// Show only a line per submission.
     #[arg(short, long, conflicts_with = "verbose")]
     pub(in crate::cli) quiet: bool,
-    /// Show every scene of every submission, accepted scenes included.
+    /// Show every scene of every submission, including accepted ones.
     #[arg(short, long)]
     pub(in crate::cli) verbose: bool,
     /// The program's name in the folder of a submission.
     #[arg(long, value_name = "NAME", default_value = "FOSSSim")]
     pub(in crate::cli) program: String,
-    /// A folder is one submission, not a folder of submissions.
+    /// Treat a folder as one submission, not as a folder of submissions.
     #[arg(long)]
     pub(in crate::cli) single: bool,
-    /// An earlier grading, to show what became right and what broke since: its output folder, its grades.jsonl, or
-    /// what --format json wrote.
+    /// An earlier grading, to show which scenes became right and which broke since: its output folder, its
+    /// grades.jsonl, or the output of --format json.
     #[arg(long, value_name = "OLD")]
     pub(in crate::cli) compare: Option<PathBuf>,
-    /// Forget earlier results.
+    /// Discard earlier results.
     #[arg(long)]
     pub(in crate::cli) fresh: bool,
-    /// Stop at a submission's first scene that is not accepted: its other scenes are not run, so that it has no points.
+    /// Stop at a submission's first scene that is not accepted. Its other scenes are not run, so it has no points.
     #[arg(long)]
     pub(in crate::cli) fail_fast: bool,
     /// Compare with the recorded traces instead of simulating from the submission's states. Everything after the first
@@ -128,15 +129,15 @@ pub(in crate::cli) struct GradeArguments {
     /// Grade again whenever the program changes, until interrupted.
     #[arg(long)]
     pub(in crate::cli) watch: bool,
-    /// Grade only the I-th of N parts of the submissions, as one machine of several; `merge` joins the parts. Results
-    /// go to the folder shard-I-of-N in the output folder.
+    /// Grade only the I-th of N parts of the submissions, for several machines; `merge` joins the parts. Results are
+    /// written to the folder shard-I-of-N in the output folder.
     #[arg(long, value_name = "I/N", conflicts_with_all = ["watch", "failed", "scene"])]
     pub(in crate::cli) shard: Option<ShardArgument>,
-    /// Print at the end the processor time of each part: programs, sandbox, judging, explaining, reports.
+    /// Print the processor time of each part at the end: programs, sandbox, judging, explaining, reports.
     #[arg(long, conflicts_with_all = ["watch", "traces"])]
     pub(in crate::cli) timings: bool,
-    /// Judge traces that exist already, and run no program. Every path is a folder with Group/name.bin, or name.bin,
-    /// for each scene.
+    /// Judge existing traces, and run no program. Every path is a folder with Group/name.bin, or name.bin, for each
+    /// scene.
     #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single", "smallest"])]
     pub(in crate::cli) traces: bool,
     /// Run programs even if required layers of the sandbox are missing. The other layers remain, and every report names
@@ -145,15 +146,15 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) unsafe_no_sandbox: bool,
 }
 
-/// The greatest number of shards of a grading.
-pub(in crate::cli) const MOST_SHARDS: usize = 10_000;
+/// The maximum number of shards of a grading.
+pub(in crate::cli) const MAX_SHARDS: usize = 10_000;
 
-/// A part of the submissions: the `number`-th of `total`.
+/// A part of the submissions: number `number` of `total`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::cli) struct ShardArgument {
     /// The number of this part, from 1.
     pub(in crate::cli) number: usize,
-    /// The number of parts.
+    /// The total number of parts.
     pub(in crate::cli) total: usize,
 }
 
@@ -163,9 +164,7 @@ impl FromStr for ShardArgument {
     fn from_str(word: &str) -> Result<Self, Self::Err> {
         let parts = word.split_once('/').and_then(|(number, total)| Some((number.parse().ok()?, total.parse().ok()?)));
         match parts {
-            Some((number, total)) if (1..=total).contains(&number) && total <= MOST_SHARDS => {
-                Ok(Self { number, total })
-            }
+            Some((number, total)) if (1..=total).contains(&number) && total <= MAX_SHARDS => Ok(Self { number, total }),
             _ => Err("a shard is I/N: the I-th of N parts, from 1/N to N/N, and N is 10000 at most"),
         }
     }
@@ -183,15 +182,15 @@ pub(in crate::cli) struct MergeArguments {
     /// Folders of shards, or folders that hold them.
     #[arg(required = true)]
     pub(in crate::cli) folders: Vec<PathBuf>,
-    /// The folder for the results. By default the folder that holds the shards, if you name only one.
+    /// The folder for the results. By default the folder that contains the shards, if you name only one.
     #[arg(short, long, value_name = "DIR")]
     pub(in crate::cli) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
     pub(in crate::cli) format: Vec<String>,
-    /// The reader of HTML pages. Pages for students go to students/, next to those for staff.
+    /// The reader of HTML pages. Pages for students are written to students/, next to those for staff.
     #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
     pub(in crate::cli) reader: Audience,
-    /// Show a line per submission only.
+    /// Show only a line per submission.
     #[arg(short, long)]
     pub(in crate::cli) quiet: bool,
 }
@@ -215,29 +214,29 @@ pub(in crate::cli) struct SuiteInitArguments {
     #[arg(help = help_of_built_in())]
     pub(in crate::cli) name: Option<String>,
 
-    /// The file to write, instead of standard output.
+    /// The file for the suite, instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(in crate::cli) output: Option<PathBuf>,
 }
 
-/// Checks a suite: its faults, its scenes and points, and the decisions that depend on round-off.
+/// Checks a suite: its errors, its scenes and points, and the decisions that depend on round-off.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle suite check course.toml
   fosssim-oracle suite check t1m3 --mistakes")]
 pub(in crate::cli) struct SuiteCheckArguments {
-    /// The suite: a file, or one that comes with the program.
+    /// The suite: a file, or the name of a built-in one.
     pub(in crate::cli) suite: String,
-    /// Also list the pairs of properties that no step of its scenes has.
+    /// Also list the pairs of properties that no step of the suite's scenes has.
     #[arg(long)]
     pub(in crate::cli) missing: bool,
-    /// Also list the known mistakes that no scene shows, part by part. Takes some seconds.
+    /// Also list the known mistakes that no scene shows, by area of the assignment. Takes some seconds.
     #[arg(long)]
     pub(in crate::cli) mistakes: bool,
 }
 
-/// Lists the suites that come with the program; the first is the default.
+/// Lists the built-in suites; the first is the default.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -254,13 +253,14 @@ Example:
   fosssim-oracle demo
   fosssim-oracle demo --program flawed && fosssim-oracle grade ./flawed")]
 pub(in crate::cli) struct DemoArguments {
-    /// The mistake of the wrong sample, or several, separated by commas; `fosssim-oracle sample --list` lists them.
+    /// The mistake of the wrong sample, or several mistakes separated by commas; `fosssim-oracle sample --list` lists
+    /// them.
     #[arg(long, value_name = "ID")]
     pub(in crate::cli) mistake: Option<String>,
-    /// Where to write the HTML report on the wrong sample.
+    /// The file for the HTML report on the wrong sample.
     #[arg(short, long, value_name = "FILE", default_value = "fosssim-demo.html")]
     pub(in crate::cli) output: PathBuf,
-    /// Run nothing; write the wrong sample as a program of its own, to grade it or to hand it in.
+    /// Run nothing; write the wrong sample as a separate program, to grade or submit it.
     #[arg(long, value_name = "FILE")]
     pub(in crate::cli) program: Option<PathBuf>,
 }
@@ -279,10 +279,10 @@ pub(in crate::cli) struct SelftestArguments {
     /// The C compiler that builds the hostile programs.
     #[arg(long, value_name = "PROGRAM", default_value = "cc")]
     pub(in crate::cli) compiler: String,
-    /// Tries the attacks as on a host that lacks this layer (its name in `doctor`).
+    /// Try the attacks as on a host without this layer (its name in `doctor`).
     #[arg(long, value_name = "LAYER", hide = true)]
     pub(in crate::cli) without: Vec<String>,
-    /// Tries only attacks whose names hold this text.
+    /// Try only attacks whose names contain this text.
     #[arg(long, value_name = "TEXT", hide = true)]
     pub(in crate::cli) only: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! The command line as typed. What it means is decided by the commands.
+//! The arguments of the command line; the commands interpret them.
 pub(super) mod draw;
 pub(super) mod grade;
 pub(super) mod scenes;
@@ -11,7 +11,7 @@ use draw::{DetectArguments, RenderArguments};
 use grade::{DemoArguments, DoctorArguments, GradeArguments, MergeArguments, SelftestArguments, SuiteCommand};
 use scenes::SceneCommand;
 use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
-use values::{TextOrJson, assignment, at_least_one, explaining, reader, rules};
+use values::{TextOrJson, assignment, explanation_hints, parse_positive, reader, rules};
 
 /// Grades the traces of FOSSSim, a course's collision simulator: right or wrong, where, and why.
 #[derive(Debug, Parser)]
@@ -50,47 +50,47 @@ SUITE is a file, or a milestone of the course: t1m1, t1m2, t1m3, t2m1, t2m2 or t
 SCENE is a file, or asset:Group/name for a scene that comes with the program.
 TRACE is a file (.zst and .gz files are unpacked), - for standard input, or asset:Group/name for its recording.";
 
-// The commands. Help's sentence about each in the list is here, all else with its arguments.
+// The commands. Help lists the sentence about each; other texts of help are at the arguments.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Simulates a scene, and records its trace.
     Simulate(SimulateArguments),
-    /// Shows what is wrong in a trace, and where, by the original's rules and by fair ones.
+    /// Shows the faults of a trace and their places, by the original's rules and by fair ones.
     Check(CheckArguments),
     /// Names the likely mistake of a program, from its trace or by running it.
     Explain(ExplainArguments),
-    /// Makes the smallest scene on which a program is still wrong for the same reason.
+    /// Finds the smallest scene on which a program is still wrong for the same reason.
     Shrink(ShrinkArguments),
     /// Computes one pair: polynomials, zeros, intervals, decision, time of impact, normal.
     Detect(Box<DetectArguments>),
     /// Draws a scene's motion: a picture per step, a GIF, or a movie.
     Render(Box<RenderArguments>),
-    /// Shows what a trace holds, or one of its steps.
+    /// Shows the contents of a trace, or one of its steps.
     #[command(subcommand)]
     Trace(TraceCommand),
-    /// Records the traces of all scenes of a folder, or checks that they are still the same.
+    /// Records the traces of all scenes of a folder, or checks that they are unchanged.
     Record(RecordArguments),
-    /// Grades programs: runs them on a suite of scenes in a sandbox, and judges the traces that they leave.
+    /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces.
     Grade(GradeArguments),
-    /// Joins the parts that `grade --shard` graded into one grading.
+    /// Joins the parts that `grade --shard` graded.
     Merge(MergeArguments),
-    /// Writes and explains suites: what is graded, with what limits and points.
+    /// Writes and explains suites: the scenes of a grading, with limits and points.
     #[command(subcommand)]
     Suite(SuiteCommand),
-    /// Lists the scenes that come with the program, prints one, or writes them into a folder.
+    /// Lists the built-in scenes, prints one, or writes them into a folder.
     #[command(subcommand)]
     Scene(SceneCommand),
-    /// Grades a right and a wrong sample program, to show how everything works.
+    /// Grades a right and a wrong sample program, as a demonstration.
     Demo(DemoArguments),
-    /// Reports which layers of the sandbox hold on this machine, and what to install.
+    /// Reports which layers of the sandbox work on this machine, and what to install.
     Doctor(DoctorArguments),
     /// Runs hostile programs in the sandbox of this machine, and prints which of its promises hold.
     Selftest(SelftestArguments),
-    /// Runs a course's grading server, the program fosssim-server next to this one.
+    /// Runs a course's grading server, which is the program fosssim-server in the same folder.
     Serve(ServeArguments),
-    /// Writes the page that checks traces in any browser, with nothing installed.
+    /// Writes the page that checks traces in any browser, without installation.
     Page(PageArguments),
-    /// Behaves as the original program: same flags, same output, same files, same exit codes.
+    /// Behaves like the original program: same flags, same output, same files, same exit codes.
     ///
     /// The same happens when the program is called under a name that starts with FOSSSimOracle.
     Original(OriginalArguments),
@@ -108,11 +108,11 @@ fn step(word: &str) -> Result<u32, &'static str> {
 /// The format of the report on a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum CheckFormat {
-    /// For people.
+    /// Text for people.
     Text,
-    /// For programs; one JSON object.
+    /// One JSON object, for programs.
     Json,
-    /// For a browser: one file with pictures and a viewer of both motions.
+    /// A page for browsers: one file with pictures and a viewer of both motions.
     Html,
     /// Annotations for GitHub Actions.
     Github,
@@ -121,18 +121,18 @@ pub(super) enum CheckFormat {
 /// The format of an explanation.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum ExplainFormat {
-    /// For people.
+    /// Text for people.
     Text,
-    /// For programs; one JSON object.
+    /// One JSON object, for programs.
     Json,
-    /// For a browser: one file with pictures and a viewer of both motions.
+    /// A page for browsers: one file with pictures and a viewer of both motions.
     Html,
 }
 
-/// The option of commands whose exit code, or whose file, is the answer.
+/// The option of commands whose main result is an exit code or a file.
 #[derive(Debug, Clone, Copy, Args)]
 pub(super) struct QuietArguments {
-    /// Show no report, no warnings and no progress: errors only, and the exit code. Files are written all the same.
+    /// Show only errors: no report, no warnings and no progress. Files are still written.
     #[arg(short, long)]
     pub(super) quiet: bool,
 }
@@ -144,10 +144,10 @@ Example:
 pub(super) struct SimulateArguments {
     /// The scene, a file or asset:Group/name.
     pub(super) scene: PathBuf,
-    /// The file for the trace; - for standard output. Without this option no trace is written.
+    /// The file for the trace; - for standard output. By default no trace is written.
     #[arg(short, long, value_name = "TRACE")]
     pub(super) output: Option<PathBuf>,
-    /// Search all roots, also where a certificate excludes an impact, and count disagreements.
+    /// Search all roots, even if a certificate excludes an impact, and count disagreements.
     #[arg(long)]
     pub(super) audit: bool,
     /// The format of the summary.
@@ -181,20 +181,21 @@ pub(super) struct CheckArguments {
     /// Show all wrong steps, not only the first one, with expected and actual values.
     #[arg(long, conflicts_with = "step")]
     pub(super) all: bool,
-    /// Show tables, too: residuals, the used share of each tolerance, all kinds of findings with their first examples.
+    /// Also show tables: residuals, the used share of each tolerance, and all kinds of findings with their first
+    /// examples.
     #[arg(long)]
     pub(super) tables: bool,
 
-    /// Show these steps alone, from 1; 0 is the first record. Several are separated by commas.
+    /// Show only these steps, from 1; 0 is the first record. Several are separated by commas.
     #[arg(long, short, value_name = "N", value_delimiter = ',', allow_negative_numbers = true, value_parser = step)]
     pub(super) step: Vec<u32>,
     /// Do not search for the mistake that explains a wrong trace.
     #[arg(long)]
     pub(super) no_explain: bool,
-    /// Number of threads, eight at most; the report does not depend on it. One per core by default.
-    #[arg(long, value_name = "N", value_parser = at_least_one::<NonZeroUsize>)]
+    /// The number of threads, at most eight; the report does not depend on it. One per core by default.
+    #[arg(long, value_name = "N", value_parser = parse_positive::<NonZeroUsize>)]
     pub(super) threads: Option<NonZeroUsize>,
-    /// Search all roots, also where a certificate excludes an impact, and count disagreements.
+    /// Search all roots, even if a certificate excludes an impact, and count disagreements.
     #[arg(long)]
     pub(super) audit: bool,
     #[command(flatten)]
@@ -218,8 +219,8 @@ pub(super) struct ExplainArguments {
     /// The program to run.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) program: Option<PathBuf>,
-    /// The milestone of the program, whose small scenes it runs. By default the program's own, recognized by the scenes
-    /// that it accepts.
+    /// The milestone of the program, whose small scenes it runs. By default it is inferred from the scenes that the
+    /// program accepts.
     #[arg(
         long,
         alias = "assignment",
@@ -229,8 +230,8 @@ pub(super) struct ExplainArguments {
         requires = "program"
     )]
     pub(super) suite: Option<Assignment>,
-    /// How much the explanation shows.
-    #[arg(long, value_parser = explaining(), default_value = "full")]
+    /// The level of detail of the explanation.
+    #[arg(long, value_parser = explanation_hints(), default_value = "full")]
     pub(super) hints: Hints,
     /// The format of the report.
     #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]
@@ -238,7 +239,7 @@ pub(super) struct ExplainArguments {
     /// The file for the report, instead of standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
-    /// Run the program without the sandbox where its layers are missing. Never do this with programs of others.
+    /// Run the program without the sandbox if layers are missing. Never do this with programs of others.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
     #[command(flatten)]
@@ -257,18 +258,19 @@ small.2.xml and so on. The exit code is 0 when nothing is wrong, else 1.")]
 pub(super) struct ShrinkArguments {
     /// The program to run.
     pub(super) program: PathBuf,
-    /// The scene to begin with, a file or asset:Group/name. By default the suite's, or small scenes of the milestone.
+    /// The scene to begin with, a file or asset:Group/name. By default those of the suite, or small scenes of the
+    /// milestone.
     pub(super) scene: Option<PathBuf>,
-    /// The suite whose scenes are tried. By default the scenes of the program's own milestone.
+    /// The suite whose scenes are tried. By default the scenes of the program's milestone.
     #[arg(long, value_name = "SUITE")]
     pub(super) suite: Option<String>,
-    /// The wrong step of the scene to begin with, from 1; by default the first one that shows the cause alone.
+    /// The wrong step of the scene to begin with, from 1; by default the first one that shows only one cause.
     #[arg(long, value_name = "N", requires = "scene", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) step: Option<u32>,
     /// The file for the scene.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
-    /// The most runs for one cause.
+    /// The maximum number of runs for one cause.
     #[arg(long, value_name = "N", default_value_t = 2_000)]
     pub(super) runs: u32,
     /// The most processor time for one cause, in seconds.
@@ -277,7 +279,7 @@ pub(super) struct ShrinkArguments {
     /// The format of the report.
     #[arg(long, value_enum, default_value_t = ExplainFormat::Text)]
     pub(super) format: ExplainFormat,
-    /// Run the program without the sandbox where its layers are missing. Never do this with programs of others.
+    /// Run the program without the sandbox if layers are missing. Never do this with programs of others.
     #[arg(long)]
     pub(super) unsafe_no_sandbox: bool,
     #[command(flatten)]
@@ -293,35 +295,35 @@ pub(super) enum TraceCommand {
     Show(TraceShowArguments),
 }
 
-/// Reports what a trace holds, and where it is damaged.
+/// Reports the contents of a trace, and its damage.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle trace info scenes/test00.xml submission.bin")]
 pub(super) struct TraceInfoArguments {
-    /// The scene, which decides how the trace is read.
+    /// The scene of the trace, which is needed to read it.
     pub(super) scene: PathBuf,
-    /// The trace.
+    /// The trace file.
     pub(super) trace: PathBuf,
-    /// The format of the answer.
+    /// The format of the report.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
 }
 
-/// Shows what one step logged, in words or as JSON.
+/// Shows the log of one step, as text or JSON.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle trace show scenes/test00.xml submission.bin --step 14")]
 pub(super) struct TraceShowArguments {
-    /// The scene, which decides how the trace is read.
+    /// The scene of the trace, which is needed to read it.
     pub(super) scene: PathBuf,
-    /// The trace.
+    /// The trace file.
     pub(super) trace: PathBuf,
     /// The step, from 1; 0 is the initial record.
     #[arg(long, short, value_name = "N", allow_negative_numbers = true, value_parser = step)]
     pub(super) step: u32,
-    /// The format of the answer.
+    /// The format of the report.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
     pub(super) format: TextOrJson,
 }
@@ -335,8 +337,8 @@ Example:
 Scenes are read from ASSETS/<Group>/<name>.xml and ASSETS/<assignment>/<Group>/<name>.xml. REFERENCES gets the same \
 folders, with <name>.bin.zst, a digest per step in <name>.steps, and manifest.txt.")]
 pub(super) struct RecordArguments {
-    /// Write nothing; simulate in memory, and fail with a diff when a byte differs. Without an assets folder this
-    /// checks the scenes that come with the program.
+    /// Write nothing; simulate in memory, and fail with a diff if a byte differs. By default this checks the built-in
+    /// scenes.
     #[arg(long)]
     pub(super) check: bool,
     /// The folder of scenes.
@@ -381,16 +383,16 @@ Example:
   fosssim-oracle page --output oracle.html
   fosssim-oracle page --suite course/suite.toml --for student --output course.html")]
 pub(super) struct PageArguments {
-    /// The file to write; - is standard output.
+    /// The file to write; - for standard output.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: PathBuf,
-    /// The module (WebAssembly) to put inside, instead of the program's own; scripts/browser-page makes it.
+    /// The WebAssembly module for the page, instead of the built-in one; scripts/browser-page builds it.
     #[arg(long, value_name = "FILE")]
     pub(super) module: Option<PathBuf>,
-    /// The suite of a course, with its scenes, to put inside.
+    /// The suite of a course that the page contains, with its scenes.
     #[arg(long, value_name = "SUITE")]
     pub(super) suite: Option<String>,
-    /// The page's readers. A page for students contains nothing that the suite hides from them.
+    /// The readers of the page. A page for students contains nothing that the suite hides from them.
     #[arg(
         long = "for",
         value_parser = reader(),
@@ -406,7 +408,7 @@ pub(super) struct PageArguments {
 Example:
   fosssim-oracle completions bash > ~/.local/share/bash-completion/completions/fosssim-oracle")]
 pub(super) struct CompletionsArguments {
-    /// The shell.
+    /// The shell for the script.
     pub(super) shell: Shell,
 }
 
@@ -418,6 +420,6 @@ Example:
 
 The page refers to those of the commands: fosssim-oracle-trace-show(1) is what man trace show prints.")]
 pub(super) struct ManArguments {
-    /// A command, such as check or trace show. Without it the page is about the program.
+    /// A command, such as check or trace show. By default the manual page of the program is printed.
     pub(super) command: Vec<String>,
 }

@@ -1,4 +1,4 @@
-//! Arguments of the commands about scenes, as typed.
+//! Arguments of the commands about scenes.
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -12,17 +12,17 @@ pub(in crate::cli) enum SceneCommand {
     Export(SceneExportArguments),
 }
 
-/// Lists the scenes that come with the program, with a line on each.
+/// Lists the built-in scenes, with a line on each.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
   fosssim-oracle scene list
   fosssim-oracle scene list 'Geometric*'")]
 pub(in crate::cli) struct SceneListArguments {
-    /// Only scenes of these names, such as 'GeometricTests/*'.
+    /// List only scenes with these names, such as 'GeometricTests/*'.
     #[arg(value_name = "GLOB")]
     pub(in crate::cli) patterns: Vec<String>,
-    /// Names only.
+    /// Print only names.
     #[arg(short, long)]
     pub(in crate::cli) quiet: bool,
 }
@@ -33,7 +33,7 @@ pub(in crate::cli) struct SceneListArguments {
 Example:
   fosssim-oracle scene show GeometricTests/ball-on-a-fixed-edge > scene.xml")]
 pub(in crate::cli) struct SceneShowArguments {
-    /// The scene, Group/name or asset:Group/name.
+    /// The scene's name, Group/name or asset:Group/name.
     #[arg(value_name = "SCENE")]
     pub(in crate::cli) name: String,
 }
@@ -47,16 +47,16 @@ Example:
 
 A file that holds something else is left alone and named, unless --force is given.")]
 pub(in crate::cli) struct SceneExportArguments {
-    /// Only scenes of these names, such as 'GeometricTests/*'. Without any, all of them.
+    /// Write only scenes with these names, such as 'GeometricTests/*'. By default all are written.
     #[arg(value_name = "GLOB")]
     pub(in crate::cli) patterns: Vec<String>,
-    /// The folder; it is made when there is none.
+    /// The folder, which is created if it does not exist.
     #[arg(short, long, value_name = "DIR")]
     pub(in crate::cli) output: PathBuf,
-    /// Replace files that hold something else.
+    /// Replace files with other contents.
     #[arg(long)]
     pub(in crate::cli) force: bool,
-    /// Print errors only.
+    /// Print only errors.
     #[arg(short, long)]
     pub(in crate::cli) quiet: bool,
 }

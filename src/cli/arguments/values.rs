@@ -6,38 +6,38 @@ use clap::{
 };
 use std::str::FromStr;
 
-/// Returns a count that can't be zero.
-pub(in crate::cli) fn at_least_one<N: FromStr>(word: &str) -> Result<N, &'static str> {
+/// Parses a number of at least one.
+pub(in crate::cli) fn parse_positive<N: FromStr>(word: &str) -> Result<N, &'static str> {
     word.trim().parse().map_err(|_| "it must be a whole number, 1 or more")
 }
 
 /// The format of a report.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum TextOrJson {
-    /// For people.
+    /// Text for people.
     Text,
-    /// For programs; one JSON object.
+    /// One JSON object, for programs.
     Json,
 }
 
-/// A word of the command line, the library's value that it means, and its help.
+/// A word of the command line, the value that it stands for, and its help.
 type Word<T> = (&'static str, T, &'static str);
 
-/// Reads the words of a value.
-fn one_of<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl TypedValueParser<Value = T> {
+/// Returns a parser for one of several words.
+fn word_parser<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(words.iter().map(|(word, _, help)| PossibleValue::new(*word).help(*help))).try_map(
         |found| words.iter().find(|(word, ..)| *word == found).map(|(_, value, _)| *value).ok_or("no such word"),
     )
 }
 
-/// Returns the choice of rule books.
+/// Returns the parser for the rule books.
 pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
-    one_of(&[
+    word_parser(&[
         ("parity", Rules::Parity, "The original's rules alone"),
         (
             "fair",
             Rules::Fair,
-            "The fair rules give the verdict: round-off, scale and the course's own slip can't change it",
+            "The fair rules give the verdict, which is independent of round-off, scale and the course's slip",
         ),
         (
             "both",
@@ -47,34 +47,34 @@ pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
     ])
 }
 
-/// Returns the hints of reports.
+/// Returns the parser for the hints of reports.
 pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
-    one_of(&[
+    word_parser(&[
         ("none", Hints::None, "The verdict only"),
-        ("where", Hints::Where, "Where the first difference is"),
+        ("where", Hints::Where, "The place of the first difference"),
         ("what", Hints::What, "Also the likely mistake, in a sentence"),
-        ("full", Hints::Full, "Everything, formulas and values included"),
+        ("full", Hints::Full, "Everything, including formulas and values"),
     ])
 }
 
-/// Returns the hints of an explanation: at least the likely mistake.
-pub(in crate::cli) fn explaining() -> impl TypedValueParser<Value = Hints> {
-    one_of(&[
+/// Returns the parser for the hints of an explanation, which show at least the likely mistake.
+pub(in crate::cli) fn explanation_hints() -> impl TypedValueParser<Value = Hints> {
+    word_parser(&[
         ("what", Hints::What, "The likely mistake, in one sentence"),
         ("full", Hints::Full, "Also the exact terms and an example: this may give the right formula away"),
     ])
 }
 
-/// Returns a milestone of the course.
+/// Returns the parser for a milestone of the course.
 pub(in crate::cli) fn assignment() -> impl TypedValueParser<Value = Assignment> {
     PossibleValuesParser::new(Assignment::default_first().map(Assignment::key))
         .try_map(|key| Assignment::from_key(&key.to_ascii_lowercase()).ok_or("no such milestone"))
 }
 
-/// Returns the reader of a page.
+/// Returns the parser for the reader of a page.
 pub(in crate::cli) fn reader() -> impl TypedValueParser<Value = Audience> {
-    one_of(&[
+    word_parser(&[
         ("staff", Audience::Staff, "Staff, or a student on their own machine: everything, of every group"),
-        ("student", Audience::Student, "The student: what the suite's hints and its visible groups show"),
+        ("student", Audience::Student, "The student: the visible groups, as far as the suite's hints allow"),
     ])
 }

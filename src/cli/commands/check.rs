@@ -1,4 +1,4 @@
-//! `check`: grades a trace.
+//! The command `check`, which judges a trace.
 use crate::{
     cli::{
         arguments::{CheckArguments, CheckFormat},
@@ -13,7 +13,7 @@ use crate::{
     },
     report::{
         self,
-        check::{StepChoice, WrongSteps, is_wrong, no_verdict, not_read},
+        check::{StepChoice, WrongSteps, describe_no_verdict, describe_unread, is_wrong},
         number::format_count,
         page,
         style::Style,
@@ -30,9 +30,9 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(name)?;
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
-    // An output that can't be written is reported before the work is done, not after.
+    // An output that can't be written is reported before the work is done.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
-    let (shown, lasts) = (ShownParts::from_arguments(arguments), is_lasting(name));
+    let (shown, lasts) = (ShownParts::from_arguments(arguments), is_rereadable(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
     let mut bar = console::Bar::new(scene.scene.steps());
     let (options, heard) = (options(arguments), &mut BothObservers(&mut bar, &mut wrong));
@@ -58,7 +58,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
         console::remark(format!("{}\n", words::STATES_ONLY));
     }
     let evidence = || evidence_of(&examined, name, lasts);
-    write(target, arguments.format, check, &examined, &evidence)?;
+    write_report(target, arguments.format, check, &examined, &evidence)?;
     let disagreements = outcome.searches.disagreements;
     if disagreements > 0 {
         bail!("{disagreements} disagreements between certificates and the root finder; please report this");
@@ -66,8 +66,8 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     Ok(if accepted { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Writes the report in its format.
-fn write(
+/// Writes the report in the requested format.
+fn write_report(
     target: Option<Output>,
     format: CheckFormat,
     check: report::check::Check<'_>,
@@ -88,7 +88,7 @@ fn write(
     }
 }
 
-/// The parts after the verdict that are shown; they decide what is kept of a trace.
+/// The parts of the report after the verdict. They decide which data of a trace are kept.
 struct ShownParts {
     is_explained: bool,
     is_drawn: bool,
@@ -119,7 +119,7 @@ fn options(arguments: &CheckArguments) -> replay::Options {
     }
 }
 
-/// Returns the list for wrong steps, if they are shown.
+/// Returns an empty collection for wrong steps, if they are shown.
 fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
     let steps = scene.scene.steps();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
@@ -134,26 +134,26 @@ fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSt
     }))
 }
 
-/// Ends with an error where the scene has no verdicts, or the trace could not be read to its end.
+/// Returns an error if the scene has no verdicts, or the trace could not be read to its end.
 fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) -> Result<()> {
-    if let Some(why) = no_verdict(outcome, &scene.name) {
+    if let Some(why) = describe_no_verdict(outcome, &scene.name) {
         bail!(why);
     }
     match (&outcome.stop, trace.failure()) {
-        // Further steps may or may not have been read by then: their faults are not used.
+        // It is unknown whether further steps were read by then, so their faults are not used.
         (Some(Stop::Step(_)), _) | (_, None) => Ok(()),
-        // Bytes that are missing inside polynomials do not stop the original, but may be missing only here.
-        (_, Some(message)) => bail!(not_read(outcome, &trace.name, &message)),
+        // Missing bytes within polynomials do not stop the original, but may be missing only in this copy.
+        (_, Some(message)) => bail!(describe_unread(outcome, &trace.name, &message)),
     }
 }
 
-/// Returns the evidence: of the whole trace if the kept part is not all of it and the file can be read again.
+/// Returns the evidence, of the whole trace if only a part was kept and the file can be read again.
 fn evidence_of(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Evidence {
     let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
     examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::BUDGET)
 }
 
-/// Returns whether a trace can be read a second time: then it need not be kept while it is judged.
-fn is_lasting(name: &Path) -> bool {
+/// Returns whether a trace can be read a second time, so that it need not be kept during judging.
+fn is_rereadable(name: &Path) -> bool {
     name != Path::new("-") && !std::fs::metadata(name).is_ok_and(|data| !data.is_file())
 }

@@ -1,4 +1,4 @@
-//! Commands that show more of a scene that is not accepted: the user's own command line, narrowed to that scene.
+//! Commands that show more of a scene that is not accepted: the user's own command line, reduced to that scene.
 use crate::{
     assignments::Assignment,
     cli::arguments::grade::GradeArguments as Arguments,
@@ -7,17 +7,17 @@ use crate::{
 };
 use std::path::{Path, PathBuf};
 
-/// The part of the grading that the commands below a report need.
+/// The parts of the grading that the commands below a report need.
 pub(super) struct Closer<'a> {
     pub(super) arguments: &'a Arguments,
     pub(super) plan: &'a Plan,
     pub(super) submissions: &'a [Submission],
-    /// The place of a scene's trace, if traces are kept.
+    /// A function that returns the file of a scene's trace, if traces are kept.
     pub(super) trace: &'a dyn Fn(&str, &str) -> Option<PathBuf>,
 }
 
 impl Closer<'_> {
-    /// Returns the commands.
+    /// Returns the commands for a scene.
     pub(super) fn advice(&self, grade: &Grade, scene: &SceneGrade) -> Vec<String> {
         let Some(submission) = self.submissions.iter().find(|one| one.name == grade.submission) else {
             return Vec::new();
@@ -47,7 +47,7 @@ impl Closer<'_> {
         lines
     }
 
-    /// Returns the name of a scene for `check`.
+    /// Returns the name of a scene, in the form for `check`.
     fn scene(&self, name: &str) -> Option<String> {
         let task = self.plan.scenes().find(|task| task.name == name)?;
         if library::scene(name).is_some_and(|embedded| embedded == task.xml) {
@@ -57,7 +57,7 @@ impl Closer<'_> {
         file.is_file().then(|| file.to_string_lossy().into_owned())
     }
 
-    /// Returns the command that grades this submission as it was graded.
+    /// Returns the command that grades this submission with the same options.
     fn command(&self, submission: &Submission) -> String {
         let Arguments { suite, rules, program, single, recorded, unsafe_no_sandbox, output, .. } = self.arguments;
         let path = match &submission.program {

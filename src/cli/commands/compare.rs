@@ -1,4 +1,4 @@
-//! `grade --compare`: reads an earlier grading, and compares this one's grades with it.
+//! The option `grade --compare`, which reads an earlier grading and compares its grades with the new ones.
 use crate::{
     cli::{console, input},
     files::Place,
@@ -9,13 +9,13 @@ use anyhow::{Context, Result, bail};
 use serde::Deserialize;
 use std::path::Path;
 
-/// The file of grades in a folder for results.
+/// The name of the file of grades in a folder for results.
 const FILE: &str = "grades.jsonl";
 
-/// The size of the largest file that is read: 10,000 submissions of 120 wrong scenes write less.
-const LARGEST: u64 = 4 << 30;
+/// The maximum size of the file, in bytes; 10,000 submissions of 120 wrong scenes need less.
+const MAX_BYTES: u64 = 4 << 30;
 
-/// The document of `--format json`.
+/// The document that `--format json` writes.
 #[derive(Deserialize)]
 struct GradesFile {
     grades: Vec<EarlierGrade>,
@@ -24,23 +24,24 @@ struct GradesFile {
 /// Reads the grades of an earlier grading, from its folder or from a file of grades.
 ///
 /// # Errors
-/// When it can't be read, or holds no grade.
+///
+/// When the file can't be read, or contains no grade.
 pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     let file = if place.is_dir() { Place::new(place, FILE) } else { Place::new("", place) };
     let shown = input::printable_name(&file.path()).to_string();
-    let text = file.read(LARGEST).with_context(|| format!("cannot read the earlier grading {shown}"))?;
+    let text = file.read(MAX_BYTES).with_context(|| format!("cannot read the earlier grading {shown}"))?;
     let grades = match serde_json::from_slice(&text) {
         Ok(GradesFile { grades }) => grades,
-        // Lines without groups are entries that were no submissions.
+        // Lines without groups are entries that were not submissions.
         Err(_) => text.split(|&byte| byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok()).collect(),
     };
     if grades.is_empty() {
-        bail!("{shown} holds no grades: give --compare an output folder, its {FILE}, or what --format json wrote");
+        bail!("{shown} holds no grades: give --compare an output folder, its {FILE}, or the output of --format json");
     }
     Ok(grades)
 }
 
-/// Adds to each grade the earlier grade of the same name. If there is one of each, names do not matter.
+/// Adds to each grade the earlier grade with the same name. If there is one of each, names do not matter.
 pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     if let ([before], [grade]) = (earlier, &mut *grades) {
         grade.before = Some(before.clone());
@@ -53,6 +54,6 @@ pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     let new: Vec<&str> = grades.iter().filter(|one| one.before.is_none()).map(|one| one.submission.as_str()).collect();
     if let (false, [first, ..]) = (earlier.is_empty(), &new[..]) {
         let new = format_count(new.len() as u64, "submission");
-        console::remark(format!("{new} without an earlier grade; the first is {}\n", plain(first)));
+        console::remark(format!("{new} have no earlier grade, for example {}\n", plain(first)));
     }
 }

@@ -1,4 +1,4 @@
-//! `detect`: one detection call in detail.
+//! The command `detect`, which shows one detection call in detail.
 use crate::files::Identity;
 use crate::{
     cli::{
@@ -38,14 +38,14 @@ fn study(motion: &PairMotion) -> Result<Study> {
 
 fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, inputs: &[Identity]) -> Result<()> {
     let report = Report { study, place };
-    write(arguments, inputs, |style| match arguments.format {
+    write_output(arguments, inputs, |style| match arguments.format {
         DetectFormat::Text => report.text(style),
         DetectFormat::Json => report.json(),
         DetectFormat::Svg => detection::picture(study, &report.title(), PlotTarget::File),
     })
 }
 
-/// Prints the report on a decision of `simple` handling.
+/// Prints the report on a decision of `simple` collision handling.
 fn print(arguments: &DetectArguments, report: &Overlap<'_>, inputs: &[Identity]) -> Result<()> {
     if arguments.format == DetectFormat::Svg {
         bail!("a picture shows polynomials, and this scene's detection has none: use --format text or json");
@@ -53,14 +53,14 @@ fn print(arguments: &DetectArguments, report: &Overlap<'_>, inputs: &[Identity])
     if arguments.pass > 1 {
         bail!("step {} has 1 detection pass; there is no pass {}", report.step, arguments.pass);
     }
-    write(arguments, inputs, |style| match arguments.format {
+    write_output(arguments, inputs, |style| match arguments.format {
         DetectFormat::Json => report.json(),
         _ => report.text(style),
     })
 }
 
-/// Writes a report where it is wanted.
-fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Style) -> String) -> Result<()> {
+/// Writes a report to the requested output.
+fn write_output(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Style) -> String) -> Result<()> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, inputs)).transpose()?;
     let text = text(if target.is_some() { Style::Plain } else { console::style() });
     match target {
@@ -70,11 +70,11 @@ fn write(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Sty
     }
 }
 
-/// Returns the pair whose numbers were typed.
+/// Returns the pair from the typed numbers.
 fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
-    const NOTHING: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in \
+    const NO_PAIR: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in \
                            a scene (--scene, --step, --pair)";
-    let word = arguments.word.as_deref().context(NOTHING)?;
+    let word = arguments.word.as_deref().context(NO_PAIR)?;
     pair::motion(word, arguments.radii.as_deref())
 }
 
@@ -143,7 +143,7 @@ fn simulate_to(scene: &SceneInput, step: u32) -> Result<State> {
 /// The records of a step in a trace.
 struct TracedStep {
     before: State,
-    /// The mid record's state; if the scene has none, the state before the step's end.
+    /// The mid record's state; if the scene has no mid records, the state before the step's end.
     mid: State,
     end: Frame,
     name: String,

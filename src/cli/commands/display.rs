@@ -1,4 +1,4 @@
-//! The progress of a grading, on standard error: bars on a terminal, otherwise a line per finished submission.
+//! The progress display of a grading on standard error: bars on a terminal, otherwise a line per finished submission.
 use crate::{
     cli::{console, screen},
     files::Place,
@@ -11,7 +11,7 @@ use crate::{
 use indicatif::{MultiProgress, ProgressBar};
 use std::{collections::BTreeMap, io, path::Path};
 
-/// The display of one grading, which is removed when it is dropped.
+/// The display of one grading, which disappears when the value is dropped.
 pub(super) struct LiveDisplay<'a> {
     plan: &'a Plan,
     submissions: &'a [Submission],
@@ -26,7 +26,7 @@ struct Bars {
 }
 
 impl<'a> LiveDisplay<'a> {
-    /// Creates a display for these submissions.
+    /// Creates a display for a plan and its submissions.
     pub(super) fn new(plan: &'a Plan, submissions: &'a [Submission]) -> Self {
         let bars = console::wants_bars().then(|| {
             let all = console::show_bars();
@@ -37,7 +37,7 @@ impl<'a> LiveDisplay<'a> {
         Self { plan, submissions, bars, graded: 0 }
     }
 
-    /// Shows what happened.
+    /// Shows an event.
     pub(super) fn event(&mut self, event: &Event<'_>) {
         match *event {
             Event::SceneBegins { submission, scene } => self.begin(submission, scene),
@@ -52,7 +52,7 @@ impl<'a> LiveDisplay<'a> {
                         bar.finish_and_clear();
                     }
                     match cached {
-                        // A result that was taken over does not show how long the rest will take.
+                        // A reused result does not show how long the rest will take.
                         true => bars.overall.set_length(bars.overall.length().unwrap_or(1).saturating_sub(1)),
                         false => bars.overall.inc(1),
                     }
@@ -89,19 +89,20 @@ impl<'a> LiveDisplay<'a> {
     }
 }
 
-/// The number of scenes that have their verdict, in a file for programs that wait.
+/// The file with the number of scenes that have a verdict, for waiting programs.
 pub(super) struct Counter {
     place: Place,
-    /// Whether a scene of the plan counts.
+    /// For each scene of the plan, whether it counts.
     counts: Vec<bool>,
     done: usize,
     all: usize,
 }
 
 impl Counter {
-    /// Creates a display on which none of these scenes is done, for each of these submissions.
+    /// Creates a counter at zero for a number of submissions.
     ///
     /// # Errors
+    ///
     /// When the file can't be written.
     pub(super) fn new(file: &Path, submissions: usize, counts: Vec<bool>) -> io::Result<Self> {
         let all = submissions * counts.iter().filter(|counts| **counts).count();
@@ -115,7 +116,7 @@ impl Counter {
         self.place.write(format!("{}/{}\n", self.done, self.all).as_bytes())
     }
 
-    /// Counts a scene that has its verdict. A file that can't be written any more stops no grading.
+    /// Counts a scene that has its verdict. An error of the file does not stop the grading.
     pub(super) fn event(&mut self, event: &Event<'_>) {
         if let Event::SceneDone { scene, .. } = *event
             && self.counts.get(scene).copied().unwrap_or_default()

@@ -1,12 +1,12 @@
-//! The common end of the commands that grade: exit code, file names, and how much is shown.
+//! The common end of the commands that grade: exit code, file names, and level of detail.
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, exit},
     report::grade::{self, Advice, Text, TextDetail},
     suite::{Grade, PassedOver},
 };
 
-/// The greatest number of scenes and mistakes shown of a class; class.txt has all.
-pub(super) const HARDEST: usize = 5;
+/// The maximum number of scenes and mistakes that are shown of a class; class.txt has all.
+pub(super) const MAX_HARDEST: usize = 5;
 
 /// Returns the exit code of a grading that was not stopped.
 pub(super) fn exit_code(grades: &[Grade]) -> u8 {
@@ -28,24 +28,24 @@ pub(super) fn file_of_scene(name: &str) -> String {
 pub(super) fn file_name(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
     let plain: String = name.chars().map(safe).take(100).collect();
-    // No name that a shell pattern makes an option, and no device's or invalid name on Windows, is kept.
+    // A name that a shell pattern turns into an option, or that Windows reserves, is changed.
     let plain = plain.trim_start_matches(['.', '-']).trim().trim_end_matches('.');
     if !plain.is_empty() && plain == name && !is_device(plain) {
         return plain.to_owned();
     }
     let digest = &blake3::hash(name.as_bytes()).to_hex()[..8];
-    // No raw name contains the mark; otherwise a submission could have the name of another's file.
+    // No raw name contains the mark; otherwise two submissions could have the same file.
     format!("{}{plain}~{digest}", if is_device(plain) { "_" } else { "" })
 }
 
-/// Returns whether Windows takes a name for a device, whatever follows its first dot.
+/// Returns whether a name is reserved for a device on Windows, whatever follows its first dot.
 fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
     let numbered = |device: &str| stem.strip_prefix(device).is_some_and(|number| "0123456789".contains(number));
     matches!(stem.as_str(), "con" | "prn" | "aux" | "nul") || numbered("com") || numbered("lpt")
 }
 
-/// Returns the detail with which each submission is shown.
+/// Returns the level of detail for each submission.
 pub(super) const fn text_detail(arguments: &Arguments, is_class: bool) -> TextDetail {
     match (arguments.quiet, arguments.verbose) {
         (true, _) => TextDetail::Line,
@@ -55,8 +55,8 @@ pub(super) const fn text_detail(arguments: &Arguments, is_class: bool) -> TextDe
     }
 }
 
-/// Renders the report for a terminal. On several submissions it ends with the result of the class, its `hardest` scenes
-/// and mistakes, and the entries that are not graded.
+/// Renders the report for a terminal. For several submissions it ends with the result of the class, the `hardest`
+/// scenes and mistakes, and the entries that are not graded.
 pub(super) fn text(
     grades: &[Grade],
     passed_over: &[PassedOver],

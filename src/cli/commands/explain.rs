@@ -1,4 +1,4 @@
-//! `explain`: the likely mistakes of the program that left a trace, or of a program at hand.
+//! The command `explain`: the likely mistakes of a program, from its trace or by running it.
 use super::{
     probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, report},
     shrink,
@@ -12,7 +12,7 @@ use crate::{
     },
     judge::kept::MAX_KEPT_BYTES,
     report::{case::Case, diagnosis::Diagnosis, page::Card},
-    suite::smallest::QUICK,
+    suite::smallest::QUICK_LIMITS,
 };
 use anyhow::{Result, bail};
 use std::{
@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<u8> {
     Ok(if diagnosis.is_accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Runs a program on scenes that make every term of every formula visible, and on those that are named.
+/// Runs a program on scenes that make every term of every formula visible, and on the given ones.
 fn explain_program(
     program: &Path,
     scenes: &[PathBuf],
@@ -47,11 +47,11 @@ fn explain_program(
     let program = ProgramUnderTest::new(program, suite, arguments.unsafe_no_sandbox)?;
     let mut explained = program.examine(program.tasks(scenes)?, drawing(arguments))?;
     if let Some(explained) = &mut explained {
-        shrink::add_smallest(&program, explained, QUICK, &|_| true, drawing(arguments))?;
+        shrink::add_smallest(&program, explained, QUICK_LIMITS, &|_| true, drawing(arguments))?;
     }
     let is_traceless = |(_, steps): &(_, u32)| *steps == 0;
     if suite.is_some() && explained.as_ref().is_some_and(|all| all.ends.iter().all(is_traceless)) {
-        console::remark("if this program is of another milestone: without --suite that is found out\n");
+        console::remark("if the program is of another milestone, leave out --suite: the milestone is then inferred\n");
     }
     Ok(explained)
 }

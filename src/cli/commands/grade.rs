@@ -1,9 +1,9 @@
-//! `grade`: runs programs on a suite in the sandbox, keeps every result, and writes the reports.
+//! The command `grade`, which runs programs on a suite in the sandbox, stores every result, and writes the reports.
 use super::{
     closer::Closer,
     compare,
     display::{Counter, LiveDisplay},
-    ending::{HARDEST, exit_code, file_name, file_of_scene, text, text_detail},
+    ending::{MAX_HARDEST, exit_code, file_name, file_of_scene, text, text_detail},
     host::backend,
     last_run::LastRun,
     pages::{self, Pages},
@@ -56,11 +56,11 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// The default folder for results when several submissions are graded.
+/// The default folder for results of several submissions.
 const DEFAULT_OUTPUT: &str = "fosssim-grades";
 
-/// The folder for traces on which the grader itself failed, without a folder for results.
-const FAULTS: &str = "fosssim-faults";
+/// The folder for traces on which the grader failed, if there is no folder for results.
+const FAULTS_FOLDER: &str = "fosssim-faults";
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     let times = Timings::default();
@@ -71,14 +71,14 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     Ok(code)
 }
 
-/// Grades, and adds up the times of runs. The sandbox's processes have ended when this returns.
+/// Grades, and adds up the times of runs. The sandbox's processes have ended when this function returns.
 fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let mut plan = plan::find(&arguments.suite)?;
     if let Some(rules) = arguments.rules {
         plan.rules = rules;
     }
     if arguments.recorded && arguments.rules == Some(Rules::Fair) {
-        bail!("the fair rules follow the submission, so they can't judge against recordings: leave --recorded out");
+        bail!("the fair rules follow the submission and can't judge against recordings; leave out --recorded");
     }
     match (arguments.hints, arguments.reader) {
         (None, _) => {}
@@ -86,7 +86,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         (Some(hints), Audience::Student) => plan.tell_students(hints),
     }
     let reports = reports(&arguments.format)?;
-    // Read before anything is written: it may be the folder for results.
+    // Read the earlier grading before anything is written, because it may be in the folder for results.
     let earlier = arguments.compare.as_deref().map(compare::read).transpose()?.unwrap_or_default();
     if arguments.traces {
         return traces::run(arguments, plan, &reports, &earlier);
@@ -109,10 +109,10 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
     refuse_several(&reports, submissions.len(), "; a class's pages go to its --output folder")?;
-    // Before any output is touched, whose own handler would end the program immediately.
+    // Install the signal handler before an output is opened, whose own handler would end the program immediately.
     let cancellation = cancelled_by_signals();
     for file in reports.iter().filter_map(|report| report.file.as_deref()) {
-        // An output that can't be written is reported before the work is done, not after.
+        // An output that can't be written is reported before the work is done.
         drop(output::Output::create(file, &[])?);
     }
     let backend = backend(arguments.unsafe_no_sandbox)?;
@@ -123,7 +123,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let failed = match (arguments.failed, last_run.failed_scenes()) {
         (false, _) => None,
         (true, Some(failed)) => Some(failed),
-        (true, None) => bail!("no earlier run of this is known: run the same command without --failed first"),
+        (true, None) => bail!("there is no earlier run of this grading; run the same command without --failed first"),
     };
     plan = plan.part(|scene| selection.takes(scene) && failed.as_ref().is_none_or(|failed| failed.contains(scene)));
     if arguments.failed {
@@ -144,7 +144,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     session.grade_and_report(&submissions, &reports, &mut last_run, &earlier).map(|(_, code)| code)
 }
 
-/// The data that stay the same between two gradings of `--watch`.
+/// The data that are the same in all gradings of `--watch`.
 struct GradingSession<'a> {
     arguments: &'a Arguments,
     plan: &'a Plan,
@@ -152,13 +152,13 @@ struct GradingSession<'a> {
     cancellation: &'a Cancellation,
     folder: Option<PathBuf>,
     pages: Option<Pages>,
-    /// Whether scenes of the suite were left out on purpose.
+    /// Whether scenes of the suite were left out on request.
     is_part: bool,
-    /// The part of the submissions that this is, if it is a part.
+    /// The shard of the submissions, if `--shard` is given.
     sharding: Option<Sharding>,
-    /// The entries that are no submissions.
+    /// The entries that are not submissions.
     passed_over: Vec<PassedOver>,
-    /// The sum of the processor time of runs, on request.
+    /// The sums of the runs' processor times, for `--timings`.
     times: &'a Timings,
 }
 
@@ -187,14 +187,14 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Prints which results come from earlier runs, and how to continue a grading that was stopped.
+    /// Prints the number of results from earlier runs, and the way to continue a grading that was stopped.
     fn say_what_was_kept(&self, grades: &[Grade]) {
         let taken: usize = grades.iter().map(Grade::taken_over).sum();
         let all = grades.iter().flat_map(Grade::scenes).count();
         if let Some(folder) = &self.folder {
             if taken > 0 {
                 let (folder, all) = (folder.display(), format_count(all as u64, "result"));
-                console::complain(format!("{taken} of {all} taken over from {folder} (--fresh grades all again)\n"));
+                console::complain(format!("reused {taken} of {all} from {folder} (--fresh regrades everything)\n"));
             }
             if self.cancellation.is_cancelled() {
                 let folder = folder.display();
@@ -204,13 +204,13 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Returns the place for the trace of a scene that is not accepted, if traces are kept.
+    /// Returns the file for the trace of a scene that is not accepted, if traces are kept.
     fn trace(&self, submission: &str, scene: &str) -> Option<Place> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
         Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_of_scene(scene))))
     }
 
-    /// Returns the grades, and what kept the rest from being graded or kept.
+    /// Returns the grades, and the error that stopped the grading or the storing of results, if any.
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
         let kept = match &self.folder {
             Some(folder) => {
@@ -226,14 +226,14 @@ impl GradingSession<'_> {
             recorded: self.arguments.recorded,
         };
         let faults =
-            self.folder.as_deref().map_or_else(|| Place::new("", FAULTS), |folder| Place::new(folder, "faults"));
+            self.folder.as_deref().map_or_else(|| Place::new("", FAULTS_FOLDER), |folder| Place::new(folder, "faults"));
         let trace = |submission: &Submission, scene: &SceneTask| {
             self.trace(&submission.name, &scene.name).unwrap_or_else(|| faults.clone())
         };
         if let (Some(pages), true) = (&self.pages, fresh) {
             pages.forget();
         }
-        let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, self.arguments.recorded);
+        let draw = |judged: &JudgedTrace<'_>| pages::draw_card(judged, self.arguments.recorded);
         let program = format!("./{}", self.arguments.program);
         let smallest = |small: &ShrunkScene| {
             let drawing = Drawing { hints: self.plan.staff_hints, has_pictures: self.pages.is_some() };
@@ -250,7 +250,7 @@ impl GradingSession<'_> {
                 let _ = log_error.set(error);
             }
         };
-        // Called as the original, this program does what that does.
+        // This program acts as the original if it is called by that name.
         let reference = std::env::current_exe().ok();
         let grader = Grader {
             plan: self.plan,
@@ -278,11 +278,11 @@ impl GradingSession<'_> {
         let BatchResult { mut grades, fault } =
             batch::run(&grader, submissions, results, self.cancellation, &mut on_event);
         drop(display);
-        grade::warn_of(&mut grades, self.passed_over());
+        grade::add_warnings(&mut grades, self.passed_over());
         Ok((grades, fault.map(anyhow::Error::from).or(log_error.into_inner())))
     }
 
-    /// Returns the counter of scenes for `--progress`: those that the reader of the pages sees.
+    /// Returns the counter of scenes for `--progress`, which counts those that the reader of the pages sees.
     fn counter(&self, file: &Path, submissions: &[Submission]) -> Result<Counter> {
         let sees_all = self.arguments.reader == Audience::Staff;
         let groups = self.plan.groups.iter();
@@ -294,12 +294,12 @@ impl GradingSession<'_> {
             .with_context(|| format!("cannot write the progress to {}", file.display()))
     }
 
-    /// Returns the entries that are no submissions. For shards, `merge` reports them.
+    /// Returns the entries that are not submissions; for shards, `merge` reports them.
     fn passed_over(&self) -> &[PassedOver] {
         if self.sharding.is_some() { &[] } else { &self.passed_over }
     }
 
-    /// Writes the reports and, into the folder, the files that a batch ends with.
+    /// Writes the reports and the files of the output folder.
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
         let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader);
         let passed_over = self.passed_over();
@@ -311,16 +311,16 @@ impl GradingSession<'_> {
         results.write(reports, |grades| self.text(grades, submissions))
     }
 
-    /// Renders the report for a terminal: of a class a table, and its result.
+    /// Renders the report for a terminal; for a class, a table and its result.
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let shown = text_detail(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
         let closer = Closer { arguments: self.arguments, plan: self.plan, submissions, trace: &trace };
         let closer = |grade: &Grade, scene: &_| closer.advice(grade, scene);
-        text(grades, self.passed_over(), shown, HARDEST, Some(&closer))
+        text(grades, self.passed_over(), shown, MAX_HARDEST, Some(&closer))
     }
 
-    /// Grades, waits for a change of any program, grades again; until interrupted.
+    /// Grades whenever a program changes, until interrupted.
     fn watch(
         &self,
         submissions: &[Submission],
@@ -330,21 +330,21 @@ impl GradingSession<'_> {
     ) -> Result<u8> {
         let mut earlier = earlier;
         loop {
-            let seen = stamps(submissions);
+            let seen = change_stamps(submissions);
             let (grades, code) = self.grade_and_report(submissions, reports, last_run, &earlier)?;
             if self.cancellation.is_cancelled() {
                 return Ok(code);
             }
             earlier = grades.iter().map(EarlierGrade::from).collect();
             console::complain("waiting for a change; Ctrl-C ends\n");
-            // A file is graded when it has stopped changing: a linker writes in several steps.
+            // A file is graded after it has stopped changing, because a linker writes in several steps.
             let mut last = seen.clone();
             loop {
                 std::thread::sleep(Duration::from_millis(300));
                 if self.cancellation.is_cancelled() {
                     return Ok(exit::INTERRUPTED);
                 }
-                let now = stamps(submissions);
+                let now = change_stamps(submissions);
                 if now == last && now != seen && now.iter().all(Option::is_some) {
                     break;
                 }
@@ -354,8 +354,8 @@ impl GradingSession<'_> {
     }
 }
 
-/// Signs of a change of a submission: the newest time of a change below it, and its size.
-fn stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
+/// Returns the newest modification time below each submission, and its size, to detect changes.
+fn change_stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
     let program = |submission: &Submission| match &submission.program {
         Some(program) => submission.path.join(program),
         None => submission.path.clone(),
@@ -375,8 +375,8 @@ fn find_newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
     Some(below.fold(own, |(time, size), (newer, more)| (time.max(newer), size + more)))
 }
 
-/// Writes a submission's log: its build, and the verdict, the reasons and the harmless form of the output of each run.
-/// A fault of the submission itself is written once.
+/// Writes a submission's log: its build, and for each run the verdict, the reason and the output without control
+/// characters. A fault of the whole submission is written once.
 fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let mut text = String::new();
     if let Some(build) = &grade.build {
@@ -388,7 +388,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let never_ran = |verdict| matches!(verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError);
     for scene in grade.scenes().filter(|scene| !never_ran(scene.verdict)) {
         text += &format!("\n=== {} ===\n{}: {}\n", plain(&scene.scene), scene.verdict, plain(&words::summary(scene)));
-        let details = grade::difference(scene).into_iter().chain(words::details(scene));
+        let details = grade::describe_difference(scene).into_iter().chain(words::details(scene));
         text.extend(
             details.chain(explain::lines(&scene.settled, Style::Plain)).map(|line| format!("{}\n", plain(&line))),
         );

@@ -1,4 +1,4 @@
-//! `doctor`, `selftest` and `demo`: what this machine can do.
+//! The commands `doctor`, `selftest` and `demo`, which show what this machine can do.
 use super::pages::{self, Pages};
 use crate::{
     cli::{
@@ -23,8 +23,8 @@ use std::{
     path::Path,
 };
 
-/// More bytes than this program ever has.
-const LARGEST_PROGRAM: u64 = 1 << 30;
+/// The maximum size of this program, in bytes.
+const MAX_PROGRAM_BYTES: u64 = 1 << 30;
 
 /// The default mistake of the demo's wrong sample.
 const DEMO_MISTAKE: &str = "pe-square-no-eh";
@@ -60,9 +60,9 @@ pub(super) fn doctor() -> Result<u8> {
 pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     let mistake = arguments.mistake.as_deref().unwrap_or(DEMO_MISTAKE);
     for id in mistake.split(',') {
-        // A variant is right: a program that makes it would be a right submission.
+        // A variant is right, so a program with it would be a right submission.
         if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
-            let meant = near::meant(id, student::all_rows().map(|row| row.id));
+            let meant = near::suggest(id, student::all_rows().map(|row| row.id));
             bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them{meant}");
         }
     }
@@ -79,7 +79,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     let cancellation = cancelled_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
     let pages = Pages::new(None, false)?;
-    let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, false);
+    let draw = |judged: &JudgedTrace<'_>| pages::draw_card(judged, false);
     let (mut verdicts, mut last) = (Vec::new(), None);
     for (name, pinned) in [("right sample".to_owned(), pin::RIGHT), (format!("sample with mistake {mistake}"), mistake)]
     {
@@ -105,7 +105,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
             return Ok(exit::INTERRUPTED);
         }
         verdicts.push(grades.iter().map(|grade| grade.verdict).max());
-        // The last one stays: the wrong sample's.
+        // Keep the last grade, which is that of the wrong sample.
         last = grades.into_iter().next();
     }
     if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
@@ -121,11 +121,11 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     }
 }
 
-/// Writes the sample as a program of its own, with a mistake that it always makes.
+/// Writes the sample as a separate program with a fixed mistake.
 fn write_sample(mistake: &str, program: &Path) -> Result<()> {
-    let this = Path::new("/proc/self/exe").canonicalize().context("where is this program?")?;
-    let bytes = files::read(&this, LARGEST_PROGRAM).with_context(|| format!("cannot read {}", this.display()))?;
-    output::write(program, &pin::write(&bytes, mistake).context("the mistakes are too many for a program")?)?;
+    let this = Path::new("/proc/self/exe").canonicalize().context("cannot find this program")?;
+    let bytes = files::read(&this, MAX_PROGRAM_BYTES).with_context(|| format!("cannot read {}", this.display()))?;
+    output::write(program, &pin::write(&bytes, mistake).context("there are too many mistakes for one program")?)?;
     fs::set_permissions(program, Permissions::from_mode(0o755))
         .with_context(|| format!("cannot make {} executable", program.display()))
 }
@@ -135,11 +135,11 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     for name in &arguments.without {
         let layer = sandbox::Layer::ALL.into_iter().find(|layer| layer.name() == name);
         let names = sandbox::Layer::ALL.into_iter().map(sandbox::Layer::name);
-        let unknown = || format!("doctor shows no layer {name}{}", near::meant(name, names));
+        let unknown = || format!("doctor shows no layer {name}{}", near::suggest(name, names));
         backend = backend.without(layer.with_context(unknown)?)?;
     }
     let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;
-    // The programs run as another user when this is root, who has to reach them.
+    // If this process is root's, the programs run as another user, who has to reach the folder.
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("the temporary folder")?;
     let mut done = 0;
     let chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
@@ -168,15 +168,15 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     Ok(if broken == 0 && table.count_held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Returns the sandbox, or an error that names what is missing.
+/// Returns the sandbox, or an error that names the missing layers.
 pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
     let supervisor = Supervisor::this_program();
     if unsafe_no_sandbox {
         return Backend::without_sandbox(supervisor)
-            .context("programs can't be run on this machine, not even unsafely");
+            .context("programs can't be run on this machine, not even without the sandbox");
     }
     Backend::best(supervisor).context(
-        "programs can't be run safely on this machine; `fosssim-oracle doctor` says what to do, \
-         --unsafe-no-sandbox runs them all the same",
+        "programs can't be run safely on this machine; `fosssim-oracle doctor` says what to do; --unsafe-no-sandbox \
+         runs them anyway",
     )
 }

@@ -1,7 +1,6 @@
 //! The scenes that the last grading of the same submissions did not accept, for `grade --failed`.
 //!
-//! Remembered in the output folder, or where there is none in the user's cache. A convenience: what can't be read or
-//! written is forgotten.
+//! They are stored in the output folder, or without one in the user's cache. Errors of the file are ignored.
 use crate::{
     cli::output,
     files::Place,
@@ -12,16 +11,16 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The run's file in an output folder.
-const FILE: &str = "last-run.json";
+/// The name of the file in an output folder.
+const LAST_RUN_FILE: &str = "last-run.json";
 
-/// The size of the largest file that is read: 10,000 submissions of 85 scenes write a quarter of it.
-const LARGEST: u64 = 256 << 20;
+/// The maximum size of the file, in bytes: four times that of 10,000 submissions of 85 scenes.
+const MAX_BYTES: u64 = 256 << 20;
 
-/// By submission and scene, whether it was accepted.
+/// For each submission and scene, whether it was accepted.
 type AcceptedScenes = BTreeMap<String, BTreeMap<String, bool>>;
 
-/// The verdicts of the last run.
+/// The verdicts of the last grading.
 #[derive(Debug, Default)]
 pub(super) struct LastRun {
     file: Option<Place>,
@@ -29,9 +28,9 @@ pub(super) struct LastRun {
 }
 
 impl LastRun {
-    /// Reads the verdicts of these submissions on this suite.
+    /// Reads the verdicts of the given submissions on a suite.
     pub(super) fn open(folder: Option<&Path>, submissions: &[Submission], suite: &str) -> Self {
-        let file = folder.map(|folder| Place::new(folder, FILE)).or_else(|| {
+        let file = folder.map(|folder| Place::new(folder, LAST_RUN_FILE)).or_else(|| {
             let mut hasher = blake3::Hasher::new();
             for submission in submissions {
                 let path = std::path::absolute(&submission.path).unwrap_or_else(|_| submission.path.clone());
@@ -39,24 +38,24 @@ impl LastRun {
                 hasher.update(submission.name.as_bytes()).update(b"\0");
             }
             let name = hasher.update(suite.as_bytes()).finalize().to_hex();
-            Some(Place::new(cache()?, format!("last-run/{}.json", &name[..16])))
+            Some(Place::new(cache_folder()?, format!("last-run/{}.json", &name[..16])))
         });
-        let text = file.as_ref().and_then(|file| file.read(LARGEST).ok()).unwrap_or_default();
+        let text = file.as_ref().and_then(|file| file.read(MAX_BYTES).ok()).unwrap_or_default();
         Self { file, known: serde_json::from_slice(&text).unwrap_or_default() }
     }
 
-    /// Returns the scenes that were not accepted, of whichever submission; nothing when no run is known.
+    /// Returns the scenes that were not accepted for some submission; `None` if no grading is known.
     pub(super) fn failed_scenes(&self) -> Option<BTreeSet<String>> {
         let scenes = self.known.values().flatten().filter(|(_, accepted)| !**accepted);
         (!self.known.is_empty()).then(|| scenes.map(|(scene, _)| scene.clone()).collect())
     }
 
-    /// Returns whether a scene of this submission was not accepted.
+    /// Returns whether a scene of the submission was not accepted.
     pub(super) fn has_failed(&self, submission: &str) -> bool {
         self.known.get(submission).is_none_or(|scenes| scenes.values().any(|accepted| !accepted))
     }
 
-    /// Stores these grades. Scenes that were not run keep their earlier state.
+    /// Stores the grades. Scenes that were not run keep their earlier state.
     pub(super) fn remember(&mut self, grades: &[Grade]) {
         for grade in grades {
             let scenes = self.known.entry(grade.submission.clone()).or_default();
@@ -74,8 +73,8 @@ impl LastRun {
     }
 }
 
-/// Returns the user's cache of this program.
-fn cache() -> Option<PathBuf> {
+/// Returns the folder for this program in the user's cache.
+fn cache_folder() -> Option<PathBuf> {
     let set = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = set("XDG_CACHE_HOME").or_else(|| set("HOME").map(|home| home.join(".cache")))?;
     Some(cache.join("fosssim-oracle"))

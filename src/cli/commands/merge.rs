@@ -1,4 +1,4 @@
-//! `merge`: puts the shards of a grading together.
+//! The command `merge`, which joins the shards of a grading.
 use super::{
     ending::{exit_code, text},
     last_run::LastRun,
@@ -15,7 +15,7 @@ use crate::{
     },
     suite::{
         Grade,
-        results::{FolderResults, JOURNAL, LARGEST_JOURNAL, Results as _, for_each_line, read_line},
+        results::{FolderResults, JOURNAL, MAX_JOURNAL_BYTES, Results as _, for_each_line, read_line},
     },
 };
 use anyhow::{Context, Result, bail};
@@ -25,14 +25,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Folders of a grading whose files have names of their own, or of their submission's.
-const FOLDERS: [&str; 4] = ["cards", "logs", "traces", "faults"];
+/// The folders of a grading whose files have unique names, or that of their submission.
+const COPIED_FOLDERS: [&str; 4] = ["cards", "logs", "traces", "faults"];
 
-/// Folders within folders are followed so far.
-const DEEPEST: usize = 4;
+/// The maximum depth of folders that are copied.
+const MAX_DEPTH: usize = 4;
 
-/// A larger file is none that a grading leaves.
-const LARGEST_FILE: u64 = 2 << 30;
+/// The maximum size of a file that a grading writes, in bytes.
+const MAX_FILE_BYTES: u64 = 2 << 30;
 
 pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let reports = reports(&arguments.format)?;
@@ -42,13 +42,13 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let names = &first.common.submissions;
     refuse_several(&reports, names.len(), "")?;
     Folder::make(&output).with_context(|| format!("cannot make {}", output.display()))?;
-    // Held to the end: no other process works in this folder.
+    // The lock is held to the end, so that no other process uses the folder.
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
-        for name in FOLDERS {
+        for name in COPIED_FOLDERS {
             let place = Place::new(folder, name);
             match place.folder() {
-                Ok(from) => copy(&from, &Place::new(&output, name), DEEPEST)?,
+                Ok(from) => copy(&from, &Place::new(&output, name), MAX_DEPTH)?,
                 Err(FileError::Missing { .. }) => {}
                 Err(error) => {
                     return Err(error).with_context(|| format!("cannot read {}", place.path().display()));
@@ -63,7 +63,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let place = |grade: &Grade| order.iter().position(|name| *name == grade.submission);
     grades.sort_by_key(place);
     Grade::note_same_programs(&mut grades);
-    grade::warn_of(&mut grades, &passed_over);
+    grade::add_warnings(&mut grades, &passed_over);
     let pages = Pages::new(Some(&output), false)?;
     LastRun::open(Some(&output), &[], &suite).remember(&grades);
     let reader = arguments.reader;
@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     Ok(exit_code(&grades))
 }
 
-/// Finds the shards in these folders, or in their folders.
+/// Finds the shards among the given folders and their subfolders.
 fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
     let mut parts: Vec<(PathBuf, Part)> = Vec::new();
     for folder in folders {
@@ -99,13 +99,13 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
             }
         }
         if parts.len() == before {
-            bail!("{} holds no shard that is done: grade --shard leaves shard.json when it ends", folder.display());
+            bail!("{} has no complete shard: grade --shard writes shard.json at its end", folder.display());
         }
     }
     Ok(parts)
 }
 
-/// Checks that each shard of one grading exists once; returns one of them, and the place of the results.
+/// Checks that each shard of one grading exists once; returns one of them, and the folder for the results.
 fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Result<(&'a Part, PathBuf)> {
     let (place, first) = parts.first().context("there is no shard")?;
     for (other, part) in parts {
@@ -134,7 +134,7 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Res
         match found.len() {
             0 => missing.push(number.to_string()),
             1 => {}
-            _ => bail!("shard {number} of {of} is there more than once: {}", found.join(" and ")),
+            _ => bail!("shard {number} of {of} exists more than once: {}", found.join(" and ")),
         }
     }
     if !missing.is_empty() {
@@ -148,25 +148,25 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Res
     let output = match (&arguments.output, arguments.folders.as_slice()) {
         (Some(output), _) => output.clone(),
         (None, [folder]) if parts.iter().all(|(place, _)| place != folder) => folder.clone(),
-        _ => bail!("say where the results go: --output DIR"),
+        _ => bail!("choose a folder for the results with --output DIR"),
     };
     if parts.iter().any(|(place, _)| *place == output) {
-        bail!("{} is a shard's own folder: give another --output", output.display());
+        bail!("{} is a shard's folder; choose another --output", output.display());
     }
     Ok((first, output))
 }
 
-/// Keeps a shard's results in the merged folder, so that a grading in one go finds them there.
+/// Stores a shard's results in the merged folder, so that a later grading without shards finds them.
 fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     let place = Place::new(folder, JOURNAL);
-    let (file, length) = match place.file(LARGEST_JOURNAL) {
+    let (file, length) = match place.file(MAX_JOURNAL_BYTES) {
         Ok(opened) => opened,
-        // A shard without submissions has none.
+        // A shard without submissions has no journal.
         Err(FileError::Missing { .. }) => return Ok(()),
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", place.path().display())),
     };
     for_each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
-        // A damaged entry is graded again, as in any folder.
+        // A damaged entry is graded again.
         if let Some(entry) = read_line(line) {
             kept.keep(&entry.key, &entry.submission, &entry.result)?;
         }
@@ -175,7 +175,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     .with_context(|| format!("cannot read {}", place.path().display()))
 }
 
-/// Copies the files of a folder. Links are not followed, on neither side.
+/// Copies the files of a folder. Links are not followed on either side.
 fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
     for name in from.names().with_context(|| format!("cannot read {}", from.given_path().display()))? {
         let (source, target) = (from.given_path().join(&name), to.join(&name));
@@ -186,7 +186,7 @@ fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
                 copy().with_context(|| format!("cannot copy {} to {}", source.display(), target.path().display()))?;
             }
             Ok(FolderEntry::Folder(_) | FolderEntry::Other) => {
-                console::complain(format!("passed over {}: it is not a file\n", input::printable_name(&source)));
+                console::complain(format!("skipped {}: it is not a file\n", input::printable_name(&source)));
             }
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", source.display())),
         }
@@ -196,9 +196,9 @@ fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
 
 fn copy_file(file: File, target: &Place) -> io::Result<()> {
     let length = file.metadata()?.len();
-    if length > LARGEST_FILE {
-        return Err(io::Error::other(format!("it has {length} bytes, the limit is {LARGEST_FILE}")));
+    if length > MAX_FILE_BYTES {
+        return Err(io::Error::other(format!("it has {length} bytes, the limit is {MAX_FILE_BYTES}")));
     }
-    // A file that grows meanwhile does not keep us.
+    // Stop at the length, even if the file grows.
     output::copy_at(target, &mut file.take(length))
 }

@@ -1,4 +1,4 @@
-//! The commands: each reads its inputs, lets the rooms below do the work, and prints what a renderer makes.
+//! The commands: each reads its inputs, calls the libraries, and prints the output of a renderer.
 
 mod check;
 mod closer;
@@ -40,7 +40,8 @@ use anyhow::Result;
 /// Runs a command and returns its exit code.
 ///
 /// # Errors
-/// The reason why it can't run: wrong usage, bad input, or our own fault.
+///
+/// The reason why it can't run: wrong usage, bad input, or an error of this program.
 pub(super) fn run(command: &Command) -> Result<u8> {
     console::be_quiet(is_quiet(command));
     let done = match command {
@@ -56,7 +57,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Demo(arguments) => return host::demo(arguments),
         Command::Doctor(_) => return host::doctor(),
         Command::Selftest(arguments) => return host::selftest(arguments),
-        // Never gets here: it has its own way of ending.
+        // This is unreachable, because the command ends the process itself.
         Command::Original(_) => return Ok(exit::FAULT),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Detect(arguments) => detect::run(arguments),

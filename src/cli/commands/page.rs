@@ -1,4 +1,4 @@
-//! `page`: the page that checks traces in a browser.
+//! The command `page`, which writes the page that checks traces in a browser.
 use crate::{
     cli::{arguments::PageArguments, output::Output},
     files::{Identity, open_for_reading, read_limited},
@@ -9,24 +9,24 @@ use anyhow::{Context, Result, anyhow, bail};
 use fosssim_browser::CourseSuite;
 use std::borrow::Cow;
 
-/// The module that was compiled into the program (build.rs).
+/// The WebAssembly module that was compiled into the program (build.rs).
 #[cfg(has_module)]
 const MODULE: Option<&[u8]> = Some(include_bytes!(env!("FOSSSIM_MODULE_FILE")));
 #[cfg(not(has_module))]
 const MODULE: Option<&[u8]> = None;
 
-/// No module is larger.
-const LARGEST: u64 = 64 << 20;
+/// The maximum size of a module, in bytes.
+const MAX_MODULE_BYTES: u64 = 64 << 20;
 
-/// The first bytes of every module.
-const MAGIC: &[u8] = b"\0asm";
+/// The first bytes of every WebAssembly module.
+const MODULE_MAGIC: &[u8] = b"\0asm";
 
 pub(super) fn run(arguments: &PageArguments) -> Result<()> {
     let (module, inputs) = match (&arguments.module, MODULE) {
         (Some(name), _) => {
             let context = || format!("cannot read the module {}", name.display());
             let (file, metadata) = open_for_reading(name).with_context(context)?;
-            let module = read_limited(file, &metadata, LARGEST).with_context(context)?;
+            let module = read_limited(file, &metadata, MAX_MODULE_BYTES).with_context(context)?;
             (Cow::Owned(module), vec![Identity::from_metadata(&metadata)])
         }
         (None, Some(module)) => (Cow::Borrowed(module), Vec::new()),
@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
              FOSSSIM_MODULE (docs/page.md)"
         ),
     };
-    if !module.starts_with(MAGIC) {
+    if !module.starts_with(MODULE_MAGIC) {
         bail!("the module is not WebAssembly; scripts/browser-page makes one");
     }
     let course = arguments.suite.as_deref().map(|name| course_part(name, arguments.reader)).transpose()?;

@@ -1,4 +1,4 @@
-//! Pictures of judged traces, and the HTML pages that are put together of them.
+//! Pictures of judged traces, and the HTML pages with them.
 use super::ending::file_name;
 use crate::{
     cli::output,
@@ -23,11 +23,11 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The greatest number of numbers kept of a graded scene's motion: several scenes are graded at a time. The largest
-/// course scene has 70,444.
-const BUDGET: usize = 1 << 19;
+/// The maximum number of values that are kept of a graded scene's motion, because several scenes are graded in
+/// parallel. The largest course scene has 70,444.
+const MAX_MOTION_VALUES: usize = 1 << 19;
 
-/// The cards of a grading, and where the pages go.
+/// The cards of a grading, and the folder for its pages.
 pub(super) struct Pages {
     cards: Place,
     /// The folder for pages, if there is one.
@@ -38,7 +38,7 @@ pub(super) struct Pages {
 }
 
 impl Pages {
-    /// Pages in the folder for results; without one, cards that live as long as the grading.
+    /// Creates pages in the folder for results; without one, cards that exist as long as the grading.
     pub(super) fn new(folder: Option<&Path>, for_students: bool) -> Result<Self> {
         let (cards, temporary) = match folder {
             Some(folder) => (Place::new(folder, "cards"), None),
@@ -51,28 +51,28 @@ impl Pages {
         Ok(Self { cards, folder: folder.map(Path::to_owned), for_students, _temporary: temporary })
     }
 
-    /// Draws and keeps cards here.
+    /// Returns cards that `draw_card` draws and this folder stores.
     pub(super) fn drawing<'a>(&'a self, draw: &'a Draw<'a>) -> Cards<'a> {
         Cards { folder: &self.cards, draw, for_students: self.for_students }
     }
 
-    /// Forgets the cards of earlier gradings.
+    /// Removes the cards of earlier gradings.
     pub(super) fn forget(&self) {
         let is_card = |name: &OsString| Path::new(name).extension().is_some_and(|extension| extension == "zst");
         for name in self.cards.names().unwrap_or_default().iter().filter(|name| is_card(name)) {
-            // A card that stays behind costs room and nothing else.
+            // A card that can't be removed only takes space.
             drop(self.cards.join(name).remove());
         }
     }
 
-    /// Returns the card of this name.
+    /// Returns the stored card with a name.
     pub(super) fn card(&self, name: Option<&str>) -> Option<Card> {
-        Card::from_kept(&cards::read(&self.cards, name?)?)
+        Card::from_stored(&cards::read(&self.cards, name?)?)
     }
 
-    /// Keeps a card; returns its name. One that can't be kept costs a picture and nothing else.
+    /// Stores a card; returns its name. If a card can't be stored, only the picture is missing.
     pub(super) fn keep(&self, card: Option<Card>) -> Option<String> {
-        cards::store(&self.cards, &card?.to_kept()).ok()
+        cards::store(&self.cards, &card?.to_stored()).ok()
     }
 
     /// Returns the page of one submission.
@@ -80,8 +80,8 @@ impl Pages {
         GradePage { grade, card: &|name| self.card(name), class, reader }.html()
     }
 
-    /// Writes the pages for staff into the folder for results, and next to them those for students: of a class always,
-    /// of one submission on request. Returns the page to begin with.
+    /// Writes the pages for staff into the folder for results, and next to them those for students: always for a class,
+    /// on request for a single submission. Returns the page to begin with.
     pub(super) fn write(
         &self,
         grades: &[Grade],
@@ -106,7 +106,7 @@ impl Pages {
             let name = format!("reports/{}.html", file_name(&grade.submission));
             write(&name, &self.render_one(grade, Some("../index.html"), Audience::Staff)).map(drop)
         })?;
-        // Names of files hold nothing that an address would have to write otherwise, but blanks.
+        // In names of files, an address has to escape only blanks.
         let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
         write("index.html", &ClassPage { grades, passed_over, page: &page }.html())
     }
@@ -114,12 +114,12 @@ impl Pages {
 
 /// The sentence above the card of a trace that was judged against a recording.
 const RECORDED: &str = "The verdict compares with the recording, where nearly everything after the first wrong step \
-                        differs. What follows judges each step from the trace's own state before it: what is wrong by \
-                        itself, and what only follows from that.";
+                        differs. The steps below are judged from the trace's own state before each step, to show \
+                        which ones are wrong by themselves, and which only follow from others.";
 
-/// Draws the card of a graded scene. Of a trace that was judged against a recording each step is judged once more, from
-/// the trace's own state.
-pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
+/// Draws the card of a graded scene. If the trace was judged against a recording, each step is judged again from the
+/// trace's own state.
+pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {
         return None;
     }
@@ -128,26 +128,26 @@ pub(super) fn draw(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
             let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
             examine(judged.scene, judged.trace, KeptPart::Nothing, &options, &mut ())
         });
-        // A failure while drawing costs no points.
+        // A failure of drawing must not cost points.
         let Ok(ExaminedTrace { outcome, rulings, .. }) = again else { return None };
         let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
-        return draw(&own, false)
-            .map(|kept| Card::from_kept(&kept).map_or(kept, |card| card.noting(RECORDED).to_kept()));
+        return draw_card(&own, false)
+            .map(|kept| Card::from_stored(&kept).map_or(kept, |card| card.with_remark(RECORDED).to_stored()));
     }
-    // A picture that can't be made costs no points.
+    // A failure of drawing must not cost points.
     let card = catch_panic(|| card(judged, None, 3)).unwrap_or_else(|fault| {
         Some(Card::from_words(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
     });
-    let cut = "The trace is longer than what the grader keeps of it: the pictures end where that ends.";
-    card.map(|card| if judged.is_cut { card.noting(cut) } else { card }.to_kept())
+    let cut = "The trace is longer than the part that the grader keeps, so the pictures end early.";
+    card.map(|card| if judged.is_cut { card.with_remark(cut) } else { card }.to_stored())
 }
 
-/// Returns the card of a judged trace. `trace_name` is the trace's name for the reader, `depth` the level of the
+/// Returns the card of a judged trace. `trace_name` is the trace's name for the reader, and `depth` is the level of the
 /// heading above.
 pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: usize) -> Option<Card> {
     let JudgedTrace { scene, name, trace, is_cut, outcome, rulings, explanations, rules, hints } = *judged;
     let (fair, focus) = (outcome.fair.is_some(), Focus::from_outcome(outcome));
-    let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, BUDGET);
+    let evidence = evidence::gather(scene, &mut &trace[..], rulings, fair, &focus, MAX_MOTION_VALUES);
     let what_if = match (hints, explanations.first()) {
         (Hints::Full, Some(first)) => WhatIf::for_scene(scene, first, (!is_cut).then_some(trace), &evidence),
         _ => None,

@@ -1,4 +1,4 @@
-//! A program that is run on many small scenes: the faults on each, and the likely mistakes of the program.
+//! A program that is run on many small scenes: its faults on each, and its likely mistakes.
 use super::{host::backend, pages};
 use crate::{
     assignments::{Assignment, Definition},
@@ -37,11 +37,11 @@ use std::{
     time::Duration,
 };
 
-/// The time on the processor and on the clock for a program on scenes of which a right one needs some milliseconds.
-const PATIENT: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
+/// The limits of processor time and wall time on scenes that take a right program some milliseconds.
+const TIME_LIMITS: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
 
-/// The number of runs that may end at a limit: further scenes would show the same.
-const MOST_STOPPED: usize = 4;
+/// The maximum number of runs that end at a limit; further scenes would show the same.
+const MAX_STOPPED: usize = 4;
 
 /// The hints of cards, and whether pictures are drawn.
 #[derive(Debug, Clone, Copy)]
@@ -50,11 +50,11 @@ pub(super) struct Drawing {
     pub(super) has_pictures: bool,
 }
 
-/// A program at hand, and what its runs need.
+/// A program to run, with everything that its runs need.
 pub(super) struct ProgramUnderTest {
     pub(super) program: PathBuf,
     pub(super) assignment: Assignment,
-    /// The suite, as a command names it.
+    /// The name of the suite, as commands accept it.
     pub(super) suite: String,
     pub(super) cancellation: Arc<Cancellation>,
     plan: Plan,
@@ -66,16 +66,16 @@ pub(super) struct ProgramUnderTest {
 /// A program's runs, and the report on them.
 pub(super) struct ExaminedProgram {
     pub(super) diagnosis: Diagnosis,
-    /// The card of each case.
+    /// The cards of the cases, in order.
     pub(super) cards: Vec<Option<Card>>,
-    /// The scene of each case.
+    /// The scenes of the cases, in order.
     pub(super) tasks: Vec<SceneTask>,
-    /// The way the program ended on each, and the number of complete steps.
+    /// The ends of the program on the cases, each with the number of complete steps.
     pub(super) ends: Vec<(RunEnd, u32)>,
 }
 
 impl ProgramUnderTest {
-    /// Creates a program that can be run. Without a suite it belongs to the milestone that it looks like.
+    /// Prepares a program for running. Without a suite, its milestone is inferred.
     pub(super) fn new(program: &Path, suite: Option<&str>, unsafe_no_sandbox: bool) -> Result<Self> {
         let mut ready = Self {
             program: make_absolute(program),
@@ -90,14 +90,14 @@ impl ProgramUnderTest {
         if suite.is_some() {
             ready.assignment = ready.plan.assignment();
         } else {
-            ready.assignment = own_milestone(&ready.runner(&ready.plan.limits), &ready.program)?;
+            ready.assignment = infer_milestone(&ready.runner(&ready.plan.limits), &ready.program)?;
             ready.suite = ready.assignment.key().to_owned();
             ready.plan = plan::find(&ready.suite)?;
         }
         Ok(ready)
     }
 
-    /// Runs the program under these limits.
+    /// Returns a runner with limits.
     pub(super) fn runner<'a>(&'a self, limits: &'a RunLimits) -> Runner<'a> {
         Runner {
             folders: &self.folders,
@@ -116,13 +116,13 @@ impl ProgramUnderTest {
         }
     }
 
-    /// Returns the suite's limits, or less time where a right program needs some milliseconds.
+    /// Returns the suite's limits, or shorter ones for scenes that take a right program some milliseconds.
     pub(super) fn limits(&self) -> RunLimits {
         let limits = self.plan.limits;
-        RunLimits { cpu: limits.cpu.min(PATIENT[0]), wall: limits.wall.min(PATIENT[1]), ..limits }
+        RunLimits { cpu: limits.cpu.min(TIME_LIMITS[0]), wall: limits.wall.min(TIME_LIMITS[1]), ..limits }
     }
 
-    /// Returns the scenes to run: the milestone's probe scenes, its suite's scenes if these show more, and the named
+    /// Returns the scenes to run: the milestone's probe scenes, the suite's scenes if they show more, and the named
     /// ones.
     pub(super) fn tasks(&self, scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
         let mut tasks = Vec::new();
@@ -141,15 +141,15 @@ impl ProgramUnderTest {
         self.plan.scenes().cloned().collect()
     }
 
-    /// Runs the program on these scenes; `None` if that was interrupted.
+    /// Runs the program on scenes; `None` if that was interrupted.
     pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
         let long = self.limits();
-        // After a run that has ended at a limit.
+        // The limits after a run that ended at a limit.
         let short = impatient(&long);
         let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
         let bar = console::Bar::for_runs(tasks.len() as u64);
         for task in &tasks {
-            if stopped >= MOST_STOPPED {
+            if stopped >= MAX_STOPPED {
                 break;
             }
             bar.next_run(&task.name);
@@ -178,8 +178,8 @@ impl ProgramUnderTest {
         if left_out > 0 {
             let scenes = format_count(left_out as u64, "scene");
             console::remark(format!(
-                "the program ran into its limits on {stopped} scenes, so it was not run on {scenes} more: look for \
-                 the loop that does not end\n"
+                "the program ran into its limits on {stopped} scenes, so it was not run on {scenes} more; look for a \
+                 loop that does not end\n"
             ));
         }
         let (common, refuted) = find_likely(self.assignment, &cases, &tasks);
@@ -196,7 +196,7 @@ impl ProgramUnderTest {
     }
 }
 
-/// Judges a trace by the fair rules, and explains it if they reject it; for a page it is drawn as well.
+/// Judges a trace by the fair rules, and explains it if they reject it; for a page it is also drawn.
 pub(super) fn case(
     (name, trace): (String, String),
     has_trace: bool,
@@ -213,7 +213,7 @@ pub(super) fn case(
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| describe_stop(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
-    // A run that breaks off, and is right so far, needs no explanation.
+    // A run that stops early, and is right so far, needs no explanation.
     let is_wrong = outcome.stop.is_none() || fair.findings.first_divergence.is_some();
     let is_explained = fair.verdict != FairVerdict::Accepted && is_wrong && hints.explains();
     let explanations = if is_explained { examined.explain() } else { Vec::new() };
@@ -267,8 +267,8 @@ pub(super) fn named_tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
     scenes.iter().map(read).collect()
 }
 
-/// Returns a program's path from the root, without `..`, which means another folder in a sandbox. Its own name stays,
-/// also that of a link: programs may depend on the name by which they are called.
+/// Returns the absolute path of a program, without `..`, which would be another folder in a sandbox. Its own name
+/// stays, even that of a link, because programs may depend on it.
 fn make_absolute(program: &Path) -> PathBuf {
     let folder = program.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (folder.canonicalize(), program.file_name()) {
@@ -277,7 +277,7 @@ fn make_absolute(program: &Path) -> PathBuf {
     }
 }
 
-/// Returns the remark on how a program ended, unless it ended well.
+/// Returns the remark on the end of a program, unless it ended well.
 pub(super) fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
     match (ended, is_traceless) {
         (RunEnd::Exited(0), false) => None,
@@ -286,8 +286,8 @@ pub(super) fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<
     }
 }
 
-/// Finds the milestone of a program, and reports it if it is not the default.
-fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
+/// Infers the milestone of a program, and reports it if it is not the default.
+fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
     let found = milestone::looks_like(runner, program).map_err(anyhow::Error::msg)?.unwrap_or(Assignment::DEFAULT);
     if found != Assignment::DEFAULT {
         let Definition { title, key, .. } = found.definition();
@@ -296,15 +296,15 @@ fn own_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
     Ok(found)
 }
 
-/// Returns the last line of a program's error output, if it wrote one.
+/// Returns the last line of a program's standard error; empty without one.
 fn last_line(stderr: &[u8]) -> String {
     let text = clean_output(&String::from_utf8_lossy(stderr));
     let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
     last.map(|line| format!("; its standard error ends with: {}", one_line(line))).unwrap_or_default()
 }
 
-/// Returns the properties that the failing scenes have in common, by the end of the program in each and the number of
-/// complete steps.
+/// Returns the common properties of the failing scenes, from the end of the program in each and the number of complete
+/// steps.
 fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<LocatedFailure> {
     let ends: Vec<_> = ends.iter().map(|(ended, steps)| (FailureKind::from_end(ended), *steps)).collect();
     if ends.iter().all(|(failing, _)| failing.is_none()) {
@@ -317,7 +317,7 @@ fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<Locate
     locate(&tried.collect::<Vec<_>>())
 }
 
-/// Returns the likely mistakes of the wrong traces together, and the keys of those that are ruled out.
+/// Returns the likely mistakes of all wrong traces together, and the keys of those that are ruled out.
 fn find_likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explanation>, Vec<String>) {
     let (right, wrong): (Vec<_>, Vec<_>) = cases.iter().zip(tasks).partition(|(case, _)| case.accepted);
     let wrong: Vec<(&Scene, &[Explanation])> =

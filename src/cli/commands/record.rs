@@ -1,4 +1,4 @@
-//! `record`: the recordings of a folder of scenes.
+//! The command `record`, which records a folder of scenes.
 use crate::{
     cli::{arguments::RecordArguments, console, exit, output},
     files::{self, FileError, Place},
@@ -13,11 +13,11 @@ use crate::{
 use anyhow::{Context, Result, bail};
 use std::{io, path::Path};
 
-/// A recording of more bytes is none.
-const LARGEST_RECORDING: u64 = 1 << 30;
+/// The maximum size of a recording, in bytes.
+const MAX_RECORDING_BYTES: u64 = 1 << 30;
 
 pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
-    // A folder that was named is used even if it does not exist.
+    // A folder that was given is used even if it does not exist.
     let defaults = arguments.assets == Path::new("assets") && arguments.references == Path::new("references");
     let embedded = arguments.check && defaults && !arguments.assets.is_dir();
     let scenes = if embedded { list_bundled() } else { scenes(&arguments.assets)? };
@@ -34,23 +34,23 @@ pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
 /// A scene to record.
 struct Input {
     name: String,
-    /// The path of its recording in the folder of recordings, without the extension.
+    /// The path of the recording in the folder of recordings, without the extension.
     stem: String,
     xml: Vec<u8>,
 }
 
-/// Returns the embedded scenes. Their recordings are requested by name.
+/// Returns the embedded scenes, whose recordings are requested by name.
 fn list_bundled() -> Vec<Input> {
     let input =
         |name: &str| Some(Input { name: name.to_owned(), stem: name.to_owned(), xml: library::scene(name)?.into() });
     library::names().filter_map(input).collect()
 }
 
-/// Returns the scenes of a folder by name, in alphabetical order.
+/// Returns the scenes of a folder, in alphabetical order.
 fn scenes(folder: &Path) -> Result<Vec<Input>> {
     let shown = folder.display();
     let files = scene_files::list(folder, ".xml").with_context(|| {
-        format!("cannot read the scenes in {shown}; run this in the checkout, or name a folder with --assets")
+        format!("cannot read the scenes in {shown}; run this command in the checkout, or choose a folder with --assets")
     })?;
     if files.is_empty() {
         bail!("there is no scene in {shown}; scenes are called {shown}/<Group>/<name>.xml");
@@ -75,7 +75,7 @@ struct EarlierRecordings<'a>(Option<&'a Path>);
 impl EarlierRecordings<'_> {
     fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>> {
         let Some(folder) = self.0 else { return Ok(library::reference(path).map(<[u8]>::to_vec)) };
-        match Place::new(folder, path).read(LARGEST_RECORDING) {
+        match Place::new(folder, path).read(MAX_RECORDING_BYTES) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(FileError::Missing { .. }) => Ok(None),
             Err(error) => Err(io::Error::other(error)),
@@ -85,7 +85,7 @@ impl EarlierRecordings<'_> {
     /// Returns the paths of recordings, without their extension.
     fn stems(&self) -> Vec<String> {
         let Some(folder) = self.0 else { return library::recordings().map(str::to_owned).collect() };
-        // Nothing was recorded where there is no folder.
+        // A missing folder has no recordings.
         let files = scene_files::list(folder, ".bin.zst").unwrap_or_default();
         files.into_iter().map(|file| file.stem).collect()
     }
@@ -112,12 +112,11 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
         return Ok(exit::ACCEPTED);
     }
     console::print(&text)?;
-    console::remark("the recordings differ; if that is meant, run `fosssim-oracle record` and look at the change\n");
+    console::remark("the recordings differ; if this is intended, run `fosssim-oracle record` and check the change\n");
     Ok(exit::NOT_ACCEPTED)
 }
 
-/// Writes all files; each appears whole. Recordings that are the same already are left alone, those without a scene are
-/// removed.
+/// Writes all files, each atomically. Unchanged recordings are not written, and those without a scene are removed.
 fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     let mut bytes = 0;
     for (stem, recording) in recordings {
@@ -127,7 +126,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
         replace(&place("bin.zst"), &packed)?;
         replace(&place("steps"), recording.digests.as_bytes())?;
     }
-    // The folder holds only the results of scenes.
+    // The folder contains only files for scenes.
     for stem in EarlierRecordings(Some(folder)).stems() {
         if !recordings.iter().any(|(known, _)| *known == stem) {
             for extension in ["bin.zst", "steps"] {
@@ -141,7 +140,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     Ok(exit::ACCEPTED)
 }
 
-/// Returns the manifest of these scenes, wherever they are.
+/// Returns the manifest of the recordings.
 fn manifest(recordings: &[(String, Recording)]) -> String {
     recording::manifest(recordings.iter().map(|(_, recording)| recording))
 }

@@ -1,4 +1,4 @@
-//! The places for results of a grading: requested reports, and the tables and pages of a folder.
+//! The outputs of a grading: requested reports, and the tables and pages in a folder.
 use super::pages::Pages;
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
@@ -15,21 +15,22 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Lines of class.txt are no wider, in columns.
+/// The maximum width of lines in class.txt, in columns.
 const CLASS_WIDTH: usize = 100;
 
 /// A requested report.
 pub(super) struct Report {
     pub(super) format: Format,
     pub(super) name: String,
-    /// The file for the report; standard output without one.
+    /// The file for the report; `None` for standard output.
     pub(super) file: Option<PathBuf>,
 }
 
 /// Returns the reports that `--format` requests.
 ///
 /// # Errors
-/// Unknown formats, and two formats for one place.
+///
+/// An unknown format, or two formats for one destination.
 pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
     let mut reports = Vec::new();
     for word in words {
@@ -39,7 +40,7 @@ pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
         };
         let Some(format) = Format::from_name(name) else {
             let known: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
-            bail!("no format {name}; there are {}{}", known.join(", "), near::meant(name, known.iter().copied()));
+            bail!("no format {name}; there are {}{}", known.join(", "), near::suggest(name, known.iter().copied()));
         };
         reports.push(Report { format, name: name.to_owned(), file });
     }
@@ -52,29 +53,31 @@ pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
     let place = |file: &PathBuf| file.canonicalize().or_else(|_| std::path::absolute(file)).unwrap_or(file.clone());
     let files: Vec<PathBuf> = reports.iter().filter_map(|report| report.file.as_ref()).map(place).collect();
     if let Some((_, twice)) = files.iter().enumerate().find(|(number, file)| files[..*number].contains(file)) {
-        bail!("two formats go to one file, {}: give each its own", twice.display());
+        bail!("two formats have the same file, {}; give each its own", twice.display());
     }
     Ok(reports)
 }
 
-/// Rejects a format that holds one submission if there are several.
+/// Rejects a format for one submission if there are several.
 ///
 /// # Errors
-/// When one was requested; `of_html` is added for HTML.
+///
+/// When such a format was requested; `of_html` is added to the message for HTML.
 pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &str) -> Result<()> {
     match reports.iter().find(|report| submissions > 1 && !report.format.takes_several()) {
         Some(Report { format, name, .. }) => {
             let hint = if *format == Format::Html { of_html } else { "" };
-            bail!("--format {name} holds one submission, and there are {submissions}{hint}")
+            bail!("--format {name} is for one submission, but there are {submissions}{hint}")
         }
         None => Ok(()),
     }
 }
 
-/// Returns the pages of a grading, if they have a reader: in the folder for results or in a report.
+/// Returns the pages of a grading, if they are written to the folder for results or in a report.
 ///
 /// # Errors
-/// When there is no room for them.
+///
+/// When their folder can't be created.
 pub(super) fn wanted_pages(
     arguments: &Arguments,
     folder: Option<&Path>,
@@ -89,38 +92,39 @@ pub(super) fn wanted_pages(
     (folder.is_some() || is_asked).then(|| Pages::new(folder, for_students)).transpose()
 }
 
-/// The results of a grading, and where they go.
+/// The results of a grading, and their destinations.
 pub(super) struct Results<'a> {
-    /// The folder for results, when there is one.
+    /// The folder for results, if there is one.
     pub(super) folder: Option<&'a Path>,
     pub(super) pages: Option<&'a Pages>,
     /// The reader of the reports. Files in the folder are for staff, except for pages in students/.
     pub(super) reader: Audience,
-    /// Whether the requesting platform keeps hidden groups from the reader.
+    /// Whether the platform that requests the report hides the hidden groups itself.
     pub(super) platform_hides: bool,
-    /// The file for a page that shows staff more than the reader, on request.
+    /// The file for a page that shows staff everything, if requested.
     pub(super) staff_page: Option<&'a Path>,
-    /// The file for the page that students see when hidden groups are published.
+    /// The file for the page that students see after hidden groups are published, if requested.
     pub(super) published_page: Option<&'a Path>,
-    /// Whether scenes of the suite were left out on purpose.
+    /// Whether scenes of the suite were left out on request.
     pub(super) is_part: bool,
     pub(super) grades: &'a [Grade],
-    /// The entries that are no submissions.
+    /// The entries that are not submissions.
     pub(super) passed_over: &'a [PassedOver],
 }
 
 impl Results<'_> {
-    /// Writes the reports and, into the folder, the files at the end of a batch. `text` is the report for a terminal.
+    /// Writes the reports and the files in the folder. `text` renders the report for a terminal.
     ///
     /// # Errors
-    /// The first file that can't be written; the others are written all the same.
+    ///
+    /// The first error; the other files are still written.
     pub(super) fn write(&self, reports: &[Report], text: impl Fn(&[Grade]) -> String) -> Result<()> {
         let (grades, passed_over) = (self.grades, self.passed_over);
-        // One file that can't be written must not cost the others.
+        // An error of one file must not prevent the others.
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if self.is_part && self.folder.is_some() {
-            console::complain("a part of the suite is not a grade: grades.csv and the other tables are not changed\n");
+            console::complain("only a part was graded, so grades.csv and the other tables are not changed\n");
         } else if let Some(folder) = self.folder {
             let by_submission = || grade::csv_of_submissions(grades, passed_over);
             let by_scene = || Format::Csv.render_class(grades, passed_over);
@@ -135,7 +139,7 @@ impl Results<'_> {
                 ("grades.jsonl", &lines),
                 ("class.txt", &class),
             ];
-            // All cores write: for a large class the jobs would wait for this.
+            // All cores write, because for a large class this takes long.
             let written = tables.par_iter().take(if grades.len() > 1 { 4 } else { 3 });
             let write_tables = || written.map(|(name, text)| write_in(folder, name, text)).collect::<Vec<_>>();
             let write_pages = |pages: &Pages| make("the pages", || pages.write(grades, passed_over, self.reader));
@@ -169,7 +173,7 @@ impl Results<'_> {
                 (None, _) => keep(make("the report", render).and_then(|text| console::print(text.as_bytes()))),
                 (Some(file), Format::Markdown) if is_step_summary(file) => keep(append(file, render)),
                 (Some(file), _) => {
-                    keep(write(file, render).map(|()| output::say_where(file, report.format == Format::Html)))
+                    keep(write(file, render).map(|()| output::print_path(file, report.format == Format::Html)))
                 }
             }
         }
@@ -181,7 +185,7 @@ impl Results<'_> {
 }
 
 impl<'a> Results<'a> {
-    /// Returns the grades with only what this format shows the reader.
+    /// Returns the grades, reduced to what this format shows the reader.
     fn visible_grades(&self, format: Format) -> Cow<'a, [Grade]> {
         let told = |grade: &'a Grade| format.visible_part(grade, self.reader, self.platform_hides);
         if self.grades.iter().all(|grade| matches!(told(grade), Cow::Borrowed(_))) {
@@ -196,7 +200,7 @@ fn is_step_summary(file: &Path) -> bool {
     std::env::var_os("GITHUB_STEP_SUMMARY").is_some_and(|summary| Path::new(&summary) == file)
 }
 
-/// Makes a text and appends it to a file.
+/// Renders a text and appends it to a file.
 fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
     let text = make(&file.display().to_string(), text)?;
     let opened = open_for_writing(fs::OpenOptions::new().create(true).append(true), file);
@@ -204,20 +208,20 @@ fn append(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
     written.with_context(|| format!("cannot write {}", file.display()))
 }
 
-/// Makes a text and writes it.
+/// Renders a text and writes it to a file.
 fn write(file: &Path, text: impl FnOnce() -> String) -> Result<()> {
     let text = make(&file.display().to_string(), text)?;
     output::write(file, text.as_bytes())
 }
 
-/// Makes a text and writes it into the folder for results.
+/// Renders a text and writes it to a file in the folder for results.
 fn write_in(folder: &Path, name: &str, text: impl FnOnce() -> String) -> Result<()> {
     let place = Place::new(folder, name);
     let text = make(&place.path().display().to_string(), text)?;
     output::write_at(&place, text.as_bytes())
 }
 
-/// Returns a text, or the fault that the grader had while making it.
+/// Returns the result of `text`, or a panic in it as an error.
 fn make<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
     catch_panic(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
 }

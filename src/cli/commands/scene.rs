@@ -1,4 +1,4 @@
-//! `scene`: lists, prints and exports the scenes that come with the program.
+//! The command `scene`, which lists, prints and exports the built-in scenes.
 use crate::{
     cli::{
         arguments::scenes::{SceneCommand, SceneExportArguments, SceneListArguments, SceneShowArguments},
@@ -20,7 +20,7 @@ pub(super) fn run(command: &SceneCommand) -> Result<()> {
     }
 }
 
-/// Lists the scenes that these patterns name; without patterns, all.
+/// Lists the scenes that match patterns; without patterns, all.
 fn print_list(patterns: &[String], quiet: bool) -> Result<()> {
     let names = matching(patterns)?;
     if quiet {
@@ -42,11 +42,11 @@ fn show(name: &str) -> Result<()> {
     if let Some(xml) = library::scene(name) {
         return console::print(xml);
     }
-    // A name without its group suffices if it is unique.
+    // A name without its group is sufficient if it is unique.
     let same: Vec<_> = library::all_names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
     match (same[..].first().and_then(|only| library::scene(only)), same.len()) {
         (Some(xml), 1) => console::print(xml),
-        _ => bail!("no scene {name} comes with the program; `fosssim-oracle scene list` lists those that do"),
+        _ => bail!("there is no built-in scene {name}; `fosssim-oracle scene list` lists all"),
     }
 }
 
@@ -72,12 +72,12 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
     }
     if let Some(first) = other.first() {
         let more = if other.len() > 1 { format!(" and {} more", other.len() - 1) } else { String::new() };
-        bail!("{}{more}: left alone, because something else is in it; --force replaces it", first.display());
+        bail!("{}{more}: not overwritten, because the content differs; --force overwrites", first.display());
     }
     Ok(())
 }
 
-/// Returns whether a file holds these bytes; nothing when there is none.
+/// Returns whether a file has the given content; `None` if there is no such file.
 fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
     match place.read(MAX_SCENE_BYTES as u64) {
         Ok(old) => Some(old == bytes),
@@ -86,7 +86,7 @@ fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
     }
 }
 
-/// Returns the names of the embedded scenes that these patterns select.
+/// Returns the names of the embedded scenes that match patterns.
 fn matching(patterns: &[String]) -> Result<Vec<&'static str>> {
     let names: Vec<_> = library::all_names().collect();
     let selection = Selection::new(patterns, &names)?;

@@ -1,10 +1,10 @@
-//! `serve`: becomes the program `fosssim-server`, so that users who grade at a terminal carry no server along.
+//! The command `serve`, which becomes the program `fosssim-server`, so that this program contains no server.
 use crate::cli::arguments::ServeArguments;
 use anyhow::{Context, Result, bail};
 use std::{os::unix::process::CommandExt, process::Command};
 
 pub(super) fn run(arguments: &ServeArguments) -> Result<()> {
-    let server = std::env::current_exe().context("where this program is")?.with_file_name("fosssim-server");
+    let server = std::env::current_exe().context("cannot find this program")?.with_file_name("fosssim-server");
     if !server.is_file() {
         bail!(
             "there is no {}: install the package fosssim-server (docs/install.md), or build it next to this program \
@@ -12,7 +12,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<()> {
             server.display()
         );
     }
-    // Returns only when it fails.
+    // This returns only if it fails.
     let error = Command::new(&server).arg("serve").args(&arguments.words).exec();
     Err(error).with_context(|| format!("cannot start {}", server.display()))
 }

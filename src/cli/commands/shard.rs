@@ -1,7 +1,8 @@
-//! A part of a grading that was shared out among machines: its own submissions, and its results for `merge`.
+//! A shard: a part of a grading that is distributed among machines, with its own submissions, and its results for
+//! `merge`.
 use crate::{
     cli::{
-        arguments::grade::{GradeArguments as Arguments, MOST_SHARDS, ShardArgument},
+        arguments::grade::{GradeArguments as Arguments, MAX_SHARDS, ShardArgument},
         console, output,
     },
     files::{FileError, Place},
@@ -14,14 +15,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The file that marks a shard as done, with its exit code.
-const FILE: &str = "shard.json";
+/// The name of the file that marks a shard as complete, and has its exit code.
+const SHARD_FILE: &str = "shard.json";
 
-/// The size of the largest file that is read: ten thousand submissions of 85 scenes that are all wrong leave half of
-/// it.
-const LARGEST: u64 = 4 << 30;
+/// The maximum size of the file, in bytes: twice that of ten thousand submissions of 85 scenes that are all wrong.
+const MAX_BYTES: u64 = 4 << 30;
 
-/// The version of the file's content.
+/// The version of the file's format.
 const SCHEMA: u32 = 1;
 
 /// The inputs that all shards of one grading share.
@@ -30,16 +30,16 @@ pub(super) struct SharedInputs {
     schema: u32,
     /// The grader's version.
     version: String,
-    /// The grader itself, digested: two builds of one version may judge differently.
+    /// The digest of the grader, because two builds of one version may judge differently.
     grader: String,
     /// The number of shards.
     #[serde(rename = "of")]
     pub(super) total: usize,
     /// The suite's name.
     pub(super) suite: String,
-    /// The digest of all that results depend on in addition to the programs.
+    /// The digest of everything that results depend on, except for the programs.
     plan: String,
-    /// The names of all submissions, in the order of an unshared grading.
+    /// The names of all submissions, in the order of a grading without shards.
     pub(super) submissions: Vec<String>,
 }
 
@@ -65,50 +65,50 @@ impl SharedInputs {
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Part {
     pub(super) common: SharedInputs,
-    /// Which one it is, from 1.
+    /// The number of the shard, from 1.
     pub(super) number: usize,
-    /// The grades of its own submissions, in order.
+    /// The grades of the shard's submissions, in order.
     pub(super) grades: Vec<Grade>,
-    /// The entries of the class that are no submissions.
+    /// The entries of the class that are not submissions.
     #[serde(default)]
     pub(super) passed_over: Vec<PassedOver>,
 }
 
 impl Part {
-    /// Reads a shard's results in a folder; `None` if it has none, or is not done.
+    /// Reads a shard's results from a folder; `None` if there are none, or the shard is not complete.
     ///
     /// # Errors
-    /// When it can't be read, or was left by another version.
+    ///
+    /// When the file can't be read, or is from another version.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
-        let file = folder.join(FILE);
-        let opened = match Place::new(folder, FILE).file(LARGEST) {
+        let file = folder.join(SHARD_FILE);
+        let opened = match Place::new(folder, SHARD_FILE).file(MAX_BYTES) {
             Ok((opened, length)) => opened.take(length),
             Err(FileError::Missing { .. }) => return Ok(None),
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
         };
-        // Read as a stream: a file that is not JSON ends at its first byte, however long it is.
+        // Read as a stream, so that a file that is not JSON ends at its first byte, however long it is.
         let part: Self = serde_json::from_reader(BufReader::new(opened))
-            .with_context(|| format!("{} is damaged, or another version's: grade this shard again", file.display()))?;
-        part.check()
-            .with_context(|| format!("{} does not hold what it should: grade this shard again", file.display()))?;
+            .with_context(|| format!("{} is damaged, or of another version; grade this shard again", file.display()))?;
+        part.check().with_context(|| format!("{} has invalid content; grade this shard again", file.display()))?;
         Ok(Some(part))
     }
 
-    /// Checks that it holds the grades of its own submissions, and points that follow from its verdicts.
+    /// Checks that the shard contains the grades of its submissions, and that their points follow from the verdicts.
     fn check(&self) -> Result<()> {
         let common = &self.common;
         if common.schema != SCHEMA {
-            bail!("it is of schema {}, and this program reads {SCHEMA}", common.schema);
+            bail!("it has schema {}, but this program reads {SCHEMA}", common.schema);
         }
-        if !(1..=MOST_SHARDS).contains(&common.total) || !(1..=common.total).contains(&self.number) {
-            bail!("there is no shard {} of {}; there are at most {MOST_SHARDS}", self.number, common.total);
+        if !(1..=MAX_SHARDS).contains(&common.total) || !(1..=common.total).contains(&self.number) {
+            bail!("there is no shard {} of {}; there are at most {MAX_SHARDS}", self.number, common.total);
         }
         let own = select_own(self.number, common.total, &common.submissions);
         if !own.eq(self.grades.iter().map(|grade| &grade.submission)) {
-            bail!("it grades other submissions than its own");
+            bail!("it has grades of other submissions");
         }
         for grade in &self.grades {
-            if let Some(what) = score::contradiction(grade) {
+            if let Some(what) = score::find_contradiction(grade) {
                 bail!("the grade of {}: {what}", grade.submission);
             }
         }
@@ -116,24 +116,24 @@ impl Part {
     }
 }
 
-/// Returns a shard's own entries of a list: every N-th one. Neighbors in the alphabet may have worked together and
-/// share slow programs, so they are sent to different machines.
+/// Returns a shard's entries of a list, which are every N-th one. Neighbors in the alphabet may have worked together
+/// and share slow programs, so they are in different shards.
 fn select_own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
 }
 
-/// A grading that is a shard.
+/// A grading of a shard.
 pub(super) struct Sharding {
     shard: ShardArgument,
     common: SharedInputs,
-    /// The shard's own folder.
+    /// The folder of the shard.
     pub(super) folder: PathBuf,
-    /// The file as a place that no link leads to.
+    /// The shard's file, as a path without links.
     begun: Place,
 }
 
 impl Sharding {
-    /// Creates the shard of a grading of all these submissions.
+    /// Creates the shard of a grading of all submissions.
     pub(super) fn new(
         shard: ShardArgument,
         plan: &Plan,
@@ -147,44 +147,46 @@ impl Sharding {
             grader: this_build().to_owned(),
             total: shard.total,
             suite: plan.name.clone(),
-            plan: digest(plan, arguments),
+            plan: plan_digest(plan, arguments),
             submissions: all.iter().map(|submission| submission.name.clone()).collect(),
         };
         let begun = Place::new(output, format!("shard-{}-of-{}", shard.number, shard.total));
         Self { shard, common, folder: begun.path(), begun }
     }
 
-    /// Returns the shard's own submissions.
+    /// Returns the shard's submissions.
     pub(super) fn part(&self, all: Vec<Submission>) -> Vec<Submission> {
         select_own(self.shard.number, self.shard.total, &all).cloned().collect()
     }
 
-    /// Makes the shard's folder; what an earlier grading left there is not this one's end.
+    /// Creates the shard's folder, and removes the mark of an earlier grading's end.
     ///
     /// # Errors
-    /// When it can't be made.
+    ///
+    /// When the folder can't be created.
     pub(super) fn begin(&self) -> Result<()> {
         self.begun.make_folder().with_context(|| format!("cannot make {}", self.folder.display()))?;
-        let place = Place::new(&self.folder, FILE);
+        let place = Place::new(&self.folder, SHARD_FILE);
         place.remove().with_context(|| format!("cannot remove {}", place.path().display()))
     }
 
-    /// Leaves the grades for `merge`.
+    /// Writes the grades for `merge`.
     ///
     /// # Errors
+    ///
     /// When they can't be written.
     pub(super) fn end(&self, grades: &[Grade], passed_over: &[PassedOver]) -> Result<()> {
         let (common, number, passed_over) = (self.common.clone(), self.shard.number, passed_over.to_vec());
         let part = Part { common, number, grades: grades.to_vec(), passed_over };
-        output::write_at(&Place::new(&self.folder, FILE), &serde_json::to_vec(&part)?)?;
+        output::write_at(&Place::new(&self.folder, SHARD_FILE), &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
         console::remark(format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.total));
         Ok(())
     }
 }
 
-/// Returns the digest of all that results depend on besides the programs.
-fn digest(plan: &Plan, arguments: &Arguments) -> String {
+/// Returns the digest of everything that results depend on, except for the programs.
+fn plan_digest(plan: &Plan, arguments: &Arguments) -> String {
     let mut hasher = blake3::Hasher::new();
     let mut add = |bytes: &[u8]| {
         hasher.update(&(bytes.len() as u64).to_le_bytes());

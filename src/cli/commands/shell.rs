@@ -16,14 +16,14 @@ use clap_complete::{
 };
 use std::ffi::OsStr;
 
-/// The name under which the program is installed.
-const NAME: &str = "fosssim-oracle";
+/// The name of the installed program.
+const PROGRAM_NAME: &str = "fosssim-oracle";
 
-/// The environment variable by which a shell's script asks for completions.
+/// The environment variable with which a shell's script requests completions.
 const VARIABLE: &str = "FOSSSIM_COMPLETE";
 
-/// Parts of the script for bash, which splits `asset:Group/name` into three words, and those that put them together.
-const WORDS_OF_BASH: [(&str, &str); 2] = [
+/// Parts of the script for bash, which splits `asset:Group/name` into three words, with replacements that join them.
+const BASH_REPLACEMENTS: [(&str, &str); 2] = [
     (
         r#"    local words=("${COMP_WORDS[@]}")
     if [[ "${BASH_VERSINFO[0]}" -ge 4 ]]; then
@@ -49,12 +49,12 @@ const WORDS_OF_BASH: [(&str, &str); 2] = [
     ),
 ];
 
-/// Answers a shell that asks for completions, and ends the program then.
+/// Answers a shell that requests completions, and ends the program after that.
 pub(in crate::cli) fn complete_if_asked() {
-    CompleteEnv::with_factory(|| with_names(Arguments::command())).var(VARIABLE).bin(NAME).complete();
+    CompleteEnv::with_factory(|| with_names(Arguments::command())).var(VARIABLE).bin(PROGRAM_NAME).complete();
 }
 
-/// Returns a command whose suites, scenes, traces and mistakes are completed by name.
+/// Returns a command in which suites, scenes, traces and mistakes are completed by name.
 fn with_names(command: Command) -> Command {
     let completed = command.mut_args(|argument| match argument.get_id().as_str() {
         "suite" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
@@ -80,10 +80,10 @@ fn beginning(typed: &OsStr, names: impl Iterator<Item = String>) -> Vec<Completi
 pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
     let (shells, mut script) = (Shells::builtins(), Vec::new());
     let shell = shells.completer(&arguments.shell.to_string()).context("no script for this shell")?;
-    shell.write_registration(VARIABLE, NAME, NAME, NAME, &mut script)?;
+    shell.write_registration(VARIABLE, PROGRAM_NAME, PROGRAM_NAME, PROGRAM_NAME, &mut script)?;
     let mut script = String::from_utf8(script)?;
     if arguments.shell == Shell::Bash {
-        for (split, whole) in WORDS_OF_BASH {
+        for (split, whole) in BASH_REPLACEMENTS {
             script = script.replace(split, whole);
         }
     }
@@ -92,12 +92,12 @@ pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
 
 pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
     let mut command = Arguments::command().disable_help_subcommand(true);
-    // Sets the full names of the commands.
+    // This sets the full names of the commands.
     command.build();
     for name in &arguments.command {
         let Some(found) = command.find_subcommand(name) else {
             let known: Vec<_> = command.get_subcommands().map(clap::Command::get_name).collect();
-            let whole = command.get_bin_name().unwrap_or(NAME);
+            let whole = command.get_bin_name().unwrap_or(PROGRAM_NAME);
             if known.is_empty() {
                 bail!("{whole} has no commands of its own, and so no `{name}`");
             }
@@ -106,8 +106,8 @@ pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
         command = found.clone();
     }
     let mut page = Vec::new();
-    // The foot of a page has the version; clap knows none for a command.
-    let source = format!("{NAME} {}", env!("CARGO_PKG_VERSION"));
+    // The foot of a page contains the version, which clap does not set for subcommands.
+    let source = format!("{PROGRAM_NAME} {}", env!("CARGO_PKG_VERSION"));
     clap_mangen::Man::new(command).source(source).manual("Manual of fosssim-oracle").render(&mut page)?;
     let page = String::from_utf8_lossy(&page).replace("\n.SH EXTRA\n", "\n.SH EXAMPLES AND NOTES\n");
     console::print(&page)

@@ -22,7 +22,7 @@ use crate::{
     suite::{
         config::Hints,
         located::FailureKind,
-        smallest::{MOST_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, impatient},
+        smallest::{MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, impatient},
     },
     together::told::cut,
 };
@@ -40,9 +40,9 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
         (None, Some(scene)) => named_tasks(std::slice::from_ref(scene))?,
         (named, _) => named.unwrap_or_default(),
     };
-    tasks.retain(|task| task.scene.particles.len() <= MOST_BODIES);
+    tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
     if tasks.is_empty() {
-        bail!("`shrink` needs a scene with at most {MOST_BODIES} bodies");
+        bail!("`shrink` needs a scene with at most {MAX_BODIES} bodies");
     }
     let drawing = Drawing { hints: Hints::Full, has_pictures: false };
     let Some(mut examined) = program.examine(tasks, drawing)? else { return Ok(exit::INTERRUPTED) };
@@ -161,7 +161,7 @@ fn lead(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
     }
 }
 
-/// Returns the values that differ, and the first finding.
+/// Returns the differing values as text, and the first finding.
 fn differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);

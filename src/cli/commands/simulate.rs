@@ -1,4 +1,4 @@
-//! `simulate`: simulates a scene and records its trace.
+//! The command `simulate`, which simulates a scene and records its trace.
 use crate::{
     cli::{
         arguments::{SimulateArguments, values::TextOrJson},

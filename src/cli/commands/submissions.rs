@@ -1,4 +1,4 @@
-//! Finds the submissions that the arguments of `grade` mean.
+//! The search for the submissions that the arguments of `grade` name.
 use crate::{
     cli::{arguments::grade::GradeArguments, console, input},
     files::{Folder, Identity},
@@ -15,55 +15,56 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Files that mark a folder as one of results, under any name.
-const RESULTS: [&str; 2] = [".lock", "journal.jsonl"];
+/// The files that mark a folder as one of results.
+const RESULT_FILES: [&str; 2] = [".lock", "journal.jsonl"];
 
-/// The folders in it.
-const OWN: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
+/// The names of folders in a folder of results.
+const RESULT_FOLDERS: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 
-/// The reason why a folder of results is no submission.
+/// The reason why a folder of results is not a submission.
 const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
 
-/// The greatest number of a class's entries.
-const MOST_ENTRIES: usize = 100_000;
+/// The maximum number of entries of a class's folder.
+const MAX_ENTRIES: usize = 100_000;
 
-/// The submissions of a command line, and entries that are none.
+/// The submissions of a command line, and the entries that are not submissions.
 pub(super) struct FoundSubmissions {
     pub(super) submissions: Vec<Submission>,
     pub(super) passed_over: Vec<PassedOver>,
 }
 
-/// A submission that has no name yet.
+/// A submission before it gets its name.
 struct Entry {
-    /// The place of the submission.
+    /// The path of the submission.
     path: PathBuf,
-    /// The folder, or the file itself.
+    /// The submission's folder, or its file.
     folder: PathBuf,
-    /// The program in the folder.
+    /// The name of the program in the folder.
     program: Option<String>,
-    /// Whether the folder is the submission's own.
+    /// Whether the folder belongs only to the submission.
     is_folder: bool,
 }
 
-/// A search for submissions, with the entries that are none.
+/// A search for submissions; also collects entries that are not submissions.
 pub(super) struct Search<'a> {
     arguments: &'a GradeArguments,
-    /// The build of the suite.
+    /// The build of the suite, if it has one.
     build: Option<&'a BuildStep>,
     /// The folder for results.
     output: &'a Path,
 }
 
 impl<'a> Search<'a> {
-    /// Creates a search among these arguments.
+    /// Creates a search among the arguments.
     pub(super) const fn new(arguments: &'a GradeArguments, build: Option<&'a BuildStep>, output: &'a Path) -> Self {
         Self { arguments, build, output }
     }
 
-    /// Returns the submissions, each with a name of its own.
+    /// Returns the submissions, each with a unique name.
     ///
     /// # Errors
-    /// Paths that are not there, folders without any submission.
+    ///
+    /// A missing path, or a folder without submissions.
     pub(super) fn run(&self) -> Result<FoundSubmissions> {
         let (mut found, mut passed_over) = (Vec::new(), Vec::new());
         for path in &self.arguments.programs {
@@ -74,7 +75,7 @@ impl<'a> Search<'a> {
             } else if self.arguments.single {
                 found.push(self.folder(path));
             } else if self.arguments.programs.len() > 1 && self.is_results(path) {
-                pass_over(&mut passed_over, path, RESULTS_OF_A_GRADING);
+                skip_entry(&mut passed_over, path, RESULTS_OF_A_GRADING);
             } else if self.is_one(path) {
                 found.push(self.folder(path));
             } else {
@@ -82,11 +83,11 @@ impl<'a> Search<'a> {
             }
         }
         if found.is_empty() {
-            bail!("there is no submission: neither programs nor folders");
+            bail!("there is no submission: the folder has neither programs nor folders");
         }
         let paths: Vec<&Path> = found.iter().map(|entry| entry.path.as_path()).collect();
         let names = distinct_names(&paths);
-        let files = one_files(&found, &names);
+        let files = file_identities(&found, &names);
         let submissions = found.into_iter().zip(names).zip(files);
         let submissions = submissions
             .map(|((entry, name), file)| Submission { name, path: entry.folder, program: entry.program, file })
@@ -94,14 +95,15 @@ impl<'a> Search<'a> {
         Ok(FoundSubmissions { submissions, passed_over })
     }
 
-    /// Returns the submission in a folder: its sources if the suite builds them, else the program inside. A missing
-    /// program is the submission's fault: its grade says so.
+    /// Returns the submission in a folder: its sources if the suite builds them, otherwise the program inside. A
+    /// missing program is the submission's fault, which its grade reports.
     fn folder(&self, path: &Path) -> Entry {
         let program = self.build.is_none().then(|| self.arguments.program.clone());
         Entry { path: path.to_owned(), folder: path.to_owned(), program, is_folder: true }
     }
 
-    /// Returns whether a folder is a submission itself: it holds the program, or the first file of the suite's build.
+    /// Returns whether a folder is a single submission, because it contains the program or the first file of the
+    /// suite's build.
     fn is_one(&self, path: &Path) -> bool {
         let holds = |name: &str| fs::symlink_metadata(path.join(name)).is_ok_and(|data| data.is_file());
         let Some(build) = self.build else { return holds(&self.arguments.program) };
@@ -116,24 +118,24 @@ impl<'a> Search<'a> {
         usual.iter().copied().chain(words).any(holds)
     }
 
-    /// Returns whether a folder is the one for results, or holds those of an earlier grading.
+    /// Returns whether a folder is the one for results, or contains those of an earlier grading.
     fn is_results(&self, path: &Path) -> bool {
         let same = |one: &Path, other: &Path| matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other);
-        same(path, self.output) || RESULTS.iter().all(|name| path.join(name).is_file())
+        same(path, self.output) || RESULT_FILES.iter().all(|name| path.join(name).is_file())
     }
 
     /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are reported
     /// and skipped: hidden ones, results of gradings, and links, which could lead to another's submission.
     fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
-        let paths = list_entries(folder, MOST_ENTRIES)?;
+        let paths = list_entries(folder, MAX_ENTRIES)?;
         let holds_results = self.is_results(folder);
         let before = found.len();
         for path in &paths {
             let is = |own: &&str| path.file_name().is_some_and(|name| name == *own);
             let why = match fs::symlink_metadata(path) {
-                _ if holds_results && OWN.iter().any(is) => RESULTS_OF_A_GRADING.to_owned(),
+                _ if holds_results && RESULT_FOLDERS.iter().any(is) => RESULTS_OF_A_GRADING.to_owned(),
                 _ if path.file_name().is_some_and(fosssim_intake::is_litter) => {
-                    "a file manager or a build tool put it there".to_owned()
+                    "it is from a file manager or a build tool".to_owned()
                 }
                 _ if path.file_name().is_some_and(|name| name.as_encoded_bytes().starts_with(b".")) => {
                     "its name begins with a dot; name it to grade it".to_owned()
@@ -146,17 +148,17 @@ impl<'a> Search<'a> {
                 Ok(data) if data.is_symlink() => {
                     "it is a link, which may lead to another's submission; name it to grade it".to_owned()
                 }
-                Ok(data) if data.is_file() => match refusal(folder, path, &data) {
+                Ok(data) if data.is_file() => match rejection(folder, path, &data) {
                     Some(why) => why,
                     None => {
-                        found.push(entry(folder, path));
+                        found.push(program_entry(folder, path));
                         continue;
                     }
                 },
                 Ok(_) => "it is neither a file nor a folder".to_owned(),
                 Err(error) => error.to_string(),
             };
-            pass_over(passed_over, path, &why);
+            skip_entry(passed_over, path, &why);
         }
         if found.len() == before {
             bail!(
@@ -186,9 +188,9 @@ fn list_entries(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Returns why a file in a class's folder is no submission. Executable files are submissions, and so are files that
-/// begin as programs or archives: learning platforms keep no permissions.
-fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
+/// Returns the reason why a file in a class's folder is not a submission, if so. Executable files are submissions, and
+/// so are files that begin like programs or archives, because learning platforms lose permissions.
+fn rejection(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     if data.permissions().mode() & 0o111 != 0 {
         return None;
     }
@@ -200,7 +202,7 @@ fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
         file.take(fosssim_intake::START as u64).read_to_end(&mut start).map_err(|error| error.to_string())
     });
     match (read, FileKind::from_start(&start)) {
-        // Its grade reports why it can't be read.
+        // The grade reports why the file can't be read.
         (Err(_), _) | (_, FileKind::Program | FileKind::Archive(_)) => None,
         (Ok(_), FileKind::Other) => {
             let found = fosssim_intake::describe(&start);
@@ -209,14 +211,14 @@ fn refusal(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     }
 }
 
-/// Returns a program among others. It is opened beneath the folder, where no link is followed.
-fn entry(folder: &Path, path: &Path) -> Entry {
+/// Returns a program among others. It is opened below the folder, without following links.
+fn program_entry(folder: &Path, path: &Path) -> Entry {
     let program = path.file_name().and_then(OsStr::to_str).map(str::to_owned);
     let folder = if program.is_some() { folder } else { path };
     Entry { path: path.to_owned(), folder: folder.to_owned(), program, is_folder: false }
 }
 
-/// Rejects a scene in the place of the program, which is a slip of the user.
+/// Rejects a scene in the place of the program, which is a user's mistake.
 fn refuse_scene(path: &Path) -> Result<()> {
     if input::is_scene(path) {
         let name = input::printable_name(path);
@@ -228,13 +230,13 @@ fn refuse_scene(path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn pass_over(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
+fn skip_entry(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
     let name = names::printable(path.file_name().unwrap_or(path.as_os_str()));
     console::complain(format!("passed over {name}: {why}\n"));
     passed_over.push(PassedOver { name, why: why.to_owned() });
 }
 
-/// Returns the last name of a path.
+/// Returns the last component of a path.
 fn last_name(path: &Path) -> OsString {
     if let Some(name) = path.file_name() {
         return name.to_owned();
@@ -243,9 +245,9 @@ fn last_name(path: &Path) -> OsString {
     absolute.file_name().unwrap_or(absolute.as_os_str()).to_owned()
 }
 
-/// Returns distinct names for these paths: the last names. If several of these look the same, names that only look
-/// equal are shown exactly, equal names get as many of their folders as needed, and names that still look the same get
-/// a number.
+/// Returns unique names for paths, by default their last components. If several look the same, names that only look
+/// equal are shown exactly, equal names get as many parent folders as needed, and names that still look the same get a
+/// number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
@@ -256,7 +258,7 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let mut name = |(path, own): (&&Path, &OsString)| {
         let shown = names::printable(own);
         let plain = match &alike[&shown] {
-            same if same[own.as_os_str()] > 1 => names::printable(end_of(path, paths).as_os_str()),
+            same if same[own.as_os_str()] > 1 => names::printable(unique_end(path, paths).as_os_str()),
             same if same.len() > 1 => names::exact(own),
             _ => shown,
         };
@@ -271,16 +273,16 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     paths.iter().zip(&own).map(&mut name).collect()
 }
 
-/// Returns the shortest end of a path that none of the others has.
-fn end_of<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
+/// Returns the shortest end of a path that is unique among the paths.
+fn unique_end<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
     let mut ends = path.ancestors().skip(1).filter_map(|folder| path.strip_prefix(folder).ok());
     let is_own = |end: &&Path| all.iter().filter(|other| other.ends_with(end)).count() == 1;
     ends.find(is_own).unwrap_or(path)
 }
 
-/// Returns which file each program is. Where several are one file, who owns it has handed it in: the owner of a folder,
-/// in which alone an entry of a class has an owner of its own.
-fn one_files(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
+/// Returns the identity of the file behind each program. If several submissions link to one file, its owner submitted
+/// it. The owner of a submission is that of its folder, because in a class only folders have different owners.
+fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
     let file = |entry: &Entry| {
         let program = entry.program.as_ref()?;
         let (identity, owner) = Folder::to_write(&entry.folder).ok()?.identity(OsStr::new(program))?;
@@ -294,7 +296,7 @@ fn one_files(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
     }
     for same in owners.values().filter(|same| same.len() > 1) {
         let names: Vec<&str> = same.iter().map(|&number| names[number].as_str()).collect();
-        console::complain(format!("one file under several names (hard links): {}\n", names.join(", ")));
+        console::complain(format!("one file with several names (hard links): {}\n", names.join(", ")));
     }
     let of = |(identity, is_owner): (Identity, Option<bool>)| {
         let same = &owners[&identity];

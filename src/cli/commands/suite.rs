@@ -1,4 +1,4 @@
-//! `suite`: writes, checks and explains suites.
+//! The command `suite`, which writes, checks and explains suites.
 use super::{
     suite_report::{SuiteContents, UndecidedScene, list, list_json, text},
     suite_sight::seen_parts,
@@ -21,7 +21,7 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
             let text = template(name.as_deref())?;
             match output {
                 Some(file) if file.is_file() => {
-                    bail!("{} exists, and may hold your changes; name another file, or remove it", file.display())
+                    bail!("{} exists, and may contain your changes; choose another file, or remove it", file.display())
                 }
                 Some(file) => Output::create(file, &[])?.finish_and_tell(text.as_bytes(), false),
                 None => console::print(&text),
@@ -40,29 +40,29 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
     }
 }
 
-/// Returns a commented suite with the groups of an embedded one.
+/// Returns a commented suite with the groups of a built-in one.
 fn template(name: Option<&str>) -> Result<String> {
     let name = name.map_or_else(plan::default_name, str::to_owned);
     config::template(&name).with_context(|| {
         let known: Vec<_> = plan::built_in_names().collect();
-        format!("no suite {name} comes with the program; there are {}{}", known.join(", "), plan::meant(&name))
+        format!("there is no built-in suite {name}; choose {}{}", known.join(", "), plan::suggest(&name))
     })
 }
 
-/// Returns the suites that come with the program, and what each is called by.
+/// Returns the built-in suites with their names.
 fn built_in() -> Result<Vec<(String, plan::Plan)>> {
     plan::built_in_names().map(|name| plan::find(&name).map(|plan| (name, plan)).map_err(Into::into)).collect()
 }
 
-/// Runs the reference on every scene, on all cores, and keeps those with undecided ones.
+/// Runs the reference on every scene, on all cores, and returns the scenes with undecided decisions.
 fn find_undecided(plan: &plan::Plan) -> Vec<UndecidedScene> {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().map(|task| (task.name.clone(), borderline(&task.scene)));
     all.filter(|(_, found)| !matches!(found, Ok(found) if found.is_empty())).collect()
 }
 
-/// Returns the coverage of the scenes, measured on all cores. `undecided` names a scene that can't be simulated to its
-/// end.
+/// Returns the coverage of the scenes, measured on all cores. A scene that can't be simulated to its end is in
+/// `undecided`.
 fn coverage(plan: &plan::Plan) -> Coverage {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().filter_map(|task| Coverage::for_scene(&task.scene).ok());

@@ -1,5 +1,5 @@
-//! The text of `suite check`: the contents of a suite, and facts to know before it grades. Also the list of suites.
-use super::suite_sight::{ENOUGH, SeenPart};
+//! The text of `suite check`: the contents of a suite, and facts to know before grading. Also the list of suites.
+use super::suite_sight::{ENOUGH_SCENES, SeenPart};
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},
     report::{
@@ -19,24 +19,24 @@ use crate::{
 use serde_json::json;
 use std::{collections::BTreeSet, fmt::Write};
 
-/// A scene and those of the reference's decisions that round-off may flip, or the reason why it has no run.
+/// A scene with the reference's decisions that round-off may flip, or the reason why it has no run.
 pub(super) type UndecidedScene = (String, Result<Vec<Borderline>, StepError>);
 
-/// The greatest number of decisions listed of a scene.
-const LISTED: usize = 3;
+/// The maximum number of listed decisions per scene.
+const MAX_LISTED: usize = 3;
 
-/// The contents of a suite's scenes, with or without a list of the missing ones.
+/// The contents of a suite's scenes, and the selected lists.
 #[derive(Debug)]
 pub(super) struct SuiteContents {
     /// The measured coverage.
     pub(super) coverage: Coverage,
-    /// Whether each missing pair of properties has a line.
+    /// Whether missing pairs of properties are listed.
     pub(super) lists_missing: bool,
-    /// The mistakes that no scene shows, by parts of a program's work; empty unless requested.
+    /// The mistakes that no scene shows, by area of the assignment; empty unless requested.
     pub(super) parts: Vec<SeenPart>,
 }
 
-/// Renders the whole report; `undecided` holds the scenes with borderline decisions.
+/// Renders the whole report; `undecided` are the scenes with borderline decisions.
 pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[UndecidedScene], style: Style) -> String {
     let mut text = head(plan, style);
     for group in &plan.groups {
@@ -47,7 +47,7 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
     let unknown = notes_on_unknown(plan, style);
     text += &unknown.concat();
     for (scene, found) in undecided {
-        text += &note(scene, found, style);
+        text += &describe_note(scene, found, style);
     }
     let notes = match undecided.len() + unknown.len() {
         0 => String::new(),
@@ -57,10 +57,10 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
     text
 }
 
-/// The version of the JSON list; it changes when a field's meaning does.
+/// The version of the JSON list, which changes if a field's meaning changes.
 const SCHEMA: u32 = 2;
 
-/// Returns the suites that come with the program, a line on each.
+/// Returns the built-in suites, with one line each.
 pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, plan): &(String, Plan)| {
@@ -71,8 +71,8 @@ pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     suites.iter().map(line).collect()
 }
 
-/// Renders the list as one JSON object: `name` is what `--suite` takes, `default` is the suite that counts where none
-/// is named.
+/// Renders the list as one JSON object: `name` is the value for `--suite`, and `default` is the suite that is used by
+/// default.
 pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
     let entry = |(name, plan): &(String, Plan)| {
         let (suite, version) = name.split_once('@').unwrap_or((name, "1"));
@@ -91,20 +91,20 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
 }
 
-/// Returns `12 scenes, 100 points`.
+/// Returns the size of a plan, such as `12 scenes, 100 points`.
 fn describe_size(plan: &Plan) -> String {
     format!("{}, {}", format_count(plan.scenes().count() as u64, "scene"), counted_points(plan.max_points()))
 }
 
-/// Returns `1 point`, `12.5 points`.
+/// Returns points as text, such as `1 point` or `12.5 points`.
 fn counted_points(value: f64) -> String {
     let words = points(value);
     let plural = if words == "1" { "" } else { "s" };
     format!("{words} point{plural}")
 }
 
-/// Returns the meaning of the choice of rule books.
-const fn rules(rules: Rules) -> &'static str {
+/// Returns the meaning of the choice of rule books, as text.
+const fn describe_rules(rules: Rules) -> &'static str {
     match rules {
         Rules::Parity => "parity: the original's verdict counts, the fair rules are not applied",
         Rules::Fair => "fair: the fair rules' verdict counts",
@@ -112,8 +112,8 @@ const fn rules(rules: Rules) -> &'static str {
     }
 }
 
-/// Returns the meaning of partial credit.
-const fn credit(credit: Credit) -> &'static str {
+/// Returns the meaning of partial credit, as text.
+const fn describe_credit(credit: Credit) -> &'static str {
     match credit {
         Credit::Scenes => "credit per scene",
         Credit::Steps => "credit per step",
@@ -146,7 +146,7 @@ fn head(plan: &Plan, style: Style) -> String {
         limits.trace >> 20,
     );
     let _ = writeln!(text, "programs: {}", plan.assignment().definition().title);
-    let _ = writeln!(text, "rules: {}", rules(plan.rules));
+    let _ = writeln!(text, "rules: {}", describe_rules(plan.rules));
     let levels: BTreeSet<Hints> = plan.groups.iter().map(|group| group.marking.hints).collect();
     let several = levels.len() > 1;
     for level in levels {
@@ -163,7 +163,7 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     let marking = &group.marking;
     let (points, visibility) = (counted_points(marking.points), key(&marking.visibility).replace('_', " "));
     let name = style.paint(Look::Strong, &one_line(&group.name));
-    let (credit, hints) = (credit(marking.credit), marking.hints.describe().0);
+    let (credit, hints) = (describe_credit(marking.credit), marking.hints.describe().0);
     let extra = if marking.extra { " extra" } else { "" };
     let mut text = format!("\n{name}: {points}{extra}, {credit}, {visibility}, hints {hints}\n");
     if let Some(SpeedMarking { points, full_at, none_at, runs }) = marking.speed {
@@ -181,13 +181,13 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     text
 }
 
-/// Returns the share of possible events in steps that the scenes contain; nothing for scenes of earlier assignments.
+/// Returns the share of possible events that the scenes contain; empty for scenes of earlier assignments.
 fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     let coverage = &contents.coverage;
     if coverage.is_empty() {
         return String::new();
     }
-    let title = style.paint(Look::Strong, "What happens in the scenes' steps, by pairs of properties");
+    let title = style.paint(Look::Strong, "Events in the scenes' steps, by pairs of properties");
     let mut text = format!("\n{title}\n");
     let width = FAMILIES.iter().map(|family| family.name.len()).max().unwrap_or(0);
     let (mut all_seen, mut all) = (0, 0);
@@ -204,12 +204,12 @@ fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     text
 }
 
-/// Returns the known mistakes that no scene shows.
+/// Returns the known mistakes that no scene shows, as text.
 fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
     if parts.is_empty() {
         return String::new();
     }
-    let title = style.paint(Look::Strong, "Known mistakes that a scene shows, by parts of the work");
+    let title = style.paint(Look::Strong, "Known mistakes that a scene shows, by area");
     let mut text = format!("\n{title}\n");
     let width = parts.iter().map(|part| key(&part.area).len()).chain(["together".len()]).max().unwrap_or(0);
     let (mut all_seen, mut together) = (0, 0);
@@ -220,14 +220,14 @@ fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
             let _ = writeln!(text, "    not shown: {}", unseen.join(", "));
         }
         if !rare.is_empty() {
-            let _ = writeln!(text, "    shown by fewer than {ENOUGH} scenes: {}", rare.join(", "));
+            let _ = writeln!(text, "    shown by fewer than {ENOUGH_SCENES} scenes: {}", rare.join(", "));
         }
     }
     let _ = writeln!(text, "  {:width$}  {all_seen:4} of {together:4}", "together");
     text
 }
 
-/// Returns a note for each scene that programs of the suite's milestone do not know to the end.
+/// Returns a note for each scene that programs of the suite's milestone cannot run completely.
 fn notes_on_unknown(plan: &Plan, style: Style) -> Vec<String> {
     let milestone = plan.assignment();
     let note = style.paint(Look::Notice, "note");
@@ -238,8 +238,8 @@ fn notes_on_unknown(plan: &Plan, style: Style) -> Vec<String> {
     scenes.map(|(scene, unknown)| format!("\n{note}: {scene}: {unknown}\n")).collect()
 }
 
-/// Returns a note that is no error, but worth knowing before a class is graded.
-fn note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
+/// Returns a note on a scene that is not an error, but worth knowing before a class is graded.
+fn describe_note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
     let (note, scene) = (style.paint(Look::Notice, "note"), one_line(scene));
     let found = match found {
         Ok(found) => found,
@@ -249,13 +249,13 @@ fn note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -
     let mut text = format!(
         "\n{note}: {scene} has {plural} that round-off may flip; by the original's rules correct programs may fail\n"
     );
-    for decision in found.iter().take(LISTED) {
+    for decision in found.iter().take(MAX_LISTED) {
         let word = if decision.collides { "collide" } else { "do not collide" };
         let (pair, pass) = (PairWords(decision.pair), PassWords(decision.pass));
         let _ = writeln!(text, "  step {}: {pair} {word} ({pass})", decision.step);
     }
-    if found.len() > LISTED {
-        let _ = writeln!(text, "  and {} more", found.len() - LISTED);
+    if found.len() > MAX_LISTED {
+        let _ = writeln!(text, "  and {} more", found.len() - MAX_LISTED);
     }
     text
 }

@@ -1,4 +1,4 @@
-//! `suite check --mistakes`: the known mistakes that no scene of a suite shows.
+//! The option `suite check --mistakes`: the known mistakes that no scene of a suite shows.
 use crate::{
     diagnose::{can_show, is_written},
     scene::Scene,
@@ -8,42 +8,42 @@ use crate::{
 };
 use rayon::prelude::*;
 
-/// The number of polynomials in a step after which a program counts as endless.
+/// The number of polynomials in a step above which a program counts as endless.
 const MAX_POLYNOMIALS: usize = 1 << 20;
 
-/// Larger scenes, which exist for timing, are left out: smaller ones show the same.
-const MOST_PARTICLES: usize = 2_000;
+/// The maximum number of particles of a scene that is used; larger ones, which exist for timing, show nothing more.
+const MAX_PARTICLES: usize = 2_000;
 
-/// A part of a program's work, of which the scenes show something.
+/// An area of the assignment, with the mistakes that the scenes show.
 #[derive(Debug)]
 pub(super) struct SeenPart {
-    /// The part.
+    /// The area of the assignment.
     pub(super) area: Area,
-    /// The number of its mistakes that a scene of the suite could show.
+    /// The number of the area's mistakes that a scene of the suite could show.
     pub(super) all: usize,
-    /// Mistakes with which the sample program writes the same traces as without, on every scene.
+    /// The mistakes with which the sample program writes the same traces as without, on every scene.
     pub(super) unseen: Vec<&'static str>,
-    /// Mistakes that fewer than [`ENOUGH`] scenes show: a small change of one scene could hide them.
+    /// The mistakes that fewer than [`ENOUGH_SCENES`] scenes show, so that a small change of one scene could hide them.
     pub(super) rare: Vec<&'static str>,
 }
 
-/// The number of scenes that are enough to show a mistake.
-pub(super) const ENOUGH: usize = 3;
+/// The number of scenes that are sufficient to show a mistake.
+pub(super) const ENOUGH_SCENES: usize = 3;
 
-/// Returns the parts in the order of the catalogue.
+/// Returns the areas in the order of the catalogue.
 pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     let written = |scene: &Scene, student: Student| {
         student::trace_within(scene, student, MAX_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
     };
     let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
-    scenes.retain(|scene| scene.particles.len() <= MOST_PARTICLES);
-    // Small scenes first: most mistakes show in the first scenes.
+    scenes.retain(|scene| scene.particles.len() <= MAX_PARTICLES);
+    // Small scenes first, because most mistakes show in the first scenes.
     scenes.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
     let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written(row, scene.assignment()));
     let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_theirs).collect();
     let logs_polynomials = scenes.iter().any(|scene| Layout::for_scene(scene).polynomials);
-    // Most mistakes of writing a trace are about what logs of states do not hold.
+    // Most mistakes of writing a trace concern lists that logs of states lack.
     let concerns =
         |row: &Row| (logs_polynomials || row.area != Area::Trace) && scenes.iter().any(|scene| can_show(scene, row));
     let seen: Vec<usize> = rows
@@ -51,7 +51,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
         .map(|row| {
             let student = Student::new(Some(row.mistake));
             let showing = scenes.iter().zip(&right).filter(|(scene, right)| written(scene, student) != **right);
-            showing.take(ENOUGH).count()
+            showing.take(ENOUGH_SCENES).count()
         })
         .collect();
     let mut parts: Vec<SeenPart> = Vec::new();
@@ -66,7 +66,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
         parts[place].all += 1;
         match seen {
             0 => parts[place].unseen.push(row.id),
-            ENOUGH.. => {}
+            ENOUGH_SCENES.. => {}
             _ => parts[place].rare.push(row.id),
         }
     }

@@ -1,4 +1,4 @@
-//! The table of `grade --timings`: the processor time of each part of a grading.
+//! The table of `grade --timings`, with the processor time of each part of a grading.
 use crate::{
     cli::console,
     report::{
@@ -9,13 +9,13 @@ use crate::{
     suite::timings::{RunPart, Timings},
 };
 
-/// Prints the table. The sandbox's processes must have ended, or their time is not in it.
+/// Prints the table. The sandbox's processes must have ended, otherwise their time is missing.
 pub(super) fn print(timings: &Timings) {
     let own = processor_time(TimeOf::Process);
     let others = processor_time(TimeOf::Children);
     let (programs, runs) = timings.total(RunPart::Program);
     let mut rows = vec![("programs", programs), ("the sandbox's processes", others.saturating_sub(programs))];
-    rows.extend(RunPart::OWN.map(|(part, name)| (name, timings.total(part).0)));
+    rows.extend(RunPart::OWN_PARTS.map(|(part, name)| (name, timings.total(part).0)));
     let rest = own.saturating_sub(rows[2..].iter().map(|(_, time)| *time).sum());
     rows.extend([("reports and all else", rest), ("together", own + others)]);
     let mut table = Table::new([Align::Left, Align::Right, Align::Right]);

@@ -1,4 +1,4 @@
-//! `trace info`, `trace show`: what traces hold.
+//! The commands `trace info` and `trace show`, which show the contents of traces.
 use crate::{
     cli::{
         arguments::{TraceInfoArguments, TraceShowArguments},
@@ -12,7 +12,7 @@ use crate::{
 };
 use anyhow::{Result, bail};
 
-/// Prints the contents of a trace. Exit code 1 when it can't be read to its end.
+/// Prints the contents of a trace. The exit code is 1 if it can't be read to its end.
 pub(super) fn info(arguments: &TraceInfoArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;

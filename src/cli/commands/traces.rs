@@ -1,8 +1,8 @@
-//! `grade --traces`: judges existing traces, a folder of them for each submission. No program runs, so that no sandbox
-//! is needed; the program's time, and whether it ended well, are unknown.
+//! The option `grade --traces`, which judges existing traces, a folder of them for each submission. No program runs, so
+//! no sandbox is needed; the program's time and end are unknown.
 use super::{
     compare,
-    ending::{HARDEST, exit_code, text, text_detail},
+    ending::{MAX_HARDEST, exit_code, text, text_detail},
     pages::{self, Pages},
     results::{Report, Results, refuse_several, wanted_pages},
     submissions::distinct_names,
@@ -49,7 +49,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
     let mut grades: Vec<Grade> = named.map(|(folder, name)| grade(&plan, folder, name, pages.as_ref())).collect();
     compare::add(earlier, &mut grades);
     for folder in &paths {
-        if let Some(strays) = Folder::open(folder).ok().and_then(|folder| strays(&folder, &names)) {
+        if let Some(strays) = Folder::open(folder).ok().and_then(|folder| describe_strays(&folder, &names)) {
             console::remark(format!("warning: {}\n", one_line(&format!("{}: {strays}", folder.display()))));
         }
     }
@@ -67,25 +67,25 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
         grades: &grades,
         passed_over: &[],
     };
-    results.write(reports, |grades| text(grades, &[], text_detail(arguments, grades.len() > 1), HARDEST, None))?;
+    results.write(reports, |grades| text(grades, &[], text_detail(arguments, grades.len() > 1), MAX_HARDEST, None))?;
     Ok(exit_code(&grades))
 }
 
 /// Returns the grade of a folder of traces.
 fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
-    // In the plan's order, whatever the number of threads.
+    // The order is the plan's, whatever the number of threads.
     let opened = Folder::open(folder);
-    let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| scene(plan, task, &opened, pages)).collect();
+    let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| judge_scene(plan, task, &opened, pages)).collect();
     let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
     traces::grade(plan, submission, results, passed_over.into_iter().flatten().collect())
 }
 
-/// Traces that are named in a warning.
-const NAMED: usize = 5;
+/// The maximum number of traces that a warning names.
+const MAX_NAMED: usize = 5;
 
-/// Returns the traces in a folder and in the folders within it that belong to no scene, in words.
-fn strays(folder: &Folder, scenes: &[String]) -> Option<String> {
+/// Returns a sentence about the traces in a folder and its subfolders that belong to no scene, if there are any.
+fn describe_strays(folder: &Folder, scenes: &[String]) -> Option<String> {
     let texts = |folder: &Folder| -> Vec<String> {
         let names = folder.names().unwrap_or_default();
         names.iter().map(|name| name.to_string_lossy().into_owned()).collect()
@@ -102,18 +102,18 @@ fn strays(folder: &Folder, scenes: &[String]) -> Option<String> {
     };
     let mut strays: Vec<&String> = found.iter().filter(is_stray).collect();
     strays.sort_unstable();
-    let named: Vec<&str> = strays.iter().take(NAMED).map(|name| name.as_str()).collect();
-    let more = if strays.len() > NAMED { ", ..." } else { "" };
+    let named: Vec<&str> = strays.iter().take(MAX_NAMED).map(|name| name.as_str()).collect();
+    let more = if strays.len() > MAX_NAMED { ", ..." } else { "" };
     let verb = if strays.len() == 1 { "belongs" } else { "belong" };
     let count = format_count(strays.len() as u64, "trace");
     (!strays.is_empty()).then(|| format!("{count} {verb} to no scene of the suite: {}{more}", named.join(", ")))
 }
 
-/// The result of one scene, and what of it was passed over.
+/// The result of one scene, and a warning about skipped files.
 type JudgedScene = (SceneResult, Option<String>);
 
-/// Returns the result of one scene. A panic is its judge error.
-fn scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> JudgedScene {
+/// Returns the result of one scene; a panic becomes its judge error.
+fn judge_scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> JudgedScene {
     let failure = match folder.as_ref().map(|folder| catch_panic(|| judge(plan, task, folder, pages))) {
         Ok(Ok(Ok(judged))) => return judged,
         Ok(Ok(Err(error))) => Failure::Machine(error.to_string()),
@@ -140,15 +140,15 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
             rules: plan.rules,
             hints: plan.staff_hints,
         };
-        let draw = |judged: &JudgedTrace<'_>| pages::draw(judged, false);
+        let draw = |judged: &JudgedTrace<'_>| pages::draw_card(judged, false);
         (result.card, result.card_for_students) = pages.drawing(&draw).keep(&judged, plan.student_hints(&task.name))?;
     }
     Ok((result, passed_over))
 }
 
-/// Reads the trace of a scene, under its whole name or the name behind its group, plain or packed. Without a usable
-/// trace it describes what is there instead: something else than a file, a damaged file, or one that is reached by a
-/// link, as another's may be. No more than `most` bytes are read: a longer trace is cut, and bad.
+/// Reads the trace of a scene, under its full name or its name without group, plain or packed. If there is no usable
+/// trace, the result describes the entry in its place: something other than a file, a damaged file, or a link, which
+/// may lead to another's trace. At most `most` bytes are read; a longer trace is cut, and bad.
 fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
     let mut passed_over = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);
@@ -161,7 +161,7 @@ fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<
             },
             Err(FileError::Missing { .. }) => {}
             Err(FileError::System { source, .. }) => return Err(source),
-            Err(error) => passed_over = passed_over.or_else(|| Some(format!("a trace is passed over: {error}"))),
+            Err(error) => passed_over = passed_over.or_else(|| Some(format!("a trace was skipped: {error}"))),
         }
     }
     Ok((Vec::new(), passed_over))

@@ -1,7 +1,7 @@
 //! Inputs: scenes and traces by path, from standard input, or from the embedded library.
 //!
-//! Nothing here waits forever: a named pipe without a writer is rejected. Only scenes are read whole, and their size is
-//! limited; traces are streams, decompressed on the way when they are zstd files.
+//! No function waits forever: a named pipe without a writer is rejected. Only scenes are read completely, and their
+//! size is limited; traces are streams, decompressed while they are read.
 
 pub(super) mod pair;
 mod scene;
@@ -22,7 +22,7 @@ use std::{
     path::Path,
 };
 
-/// Returns a file's name as typed, fit for printing: a stranger's file may be called by codes that a terminal obeys.
+/// Returns a file's name as typed, in printable form: another's file may have a name with terminal codes.
 pub(super) fn printable_name(name: &Path) -> String {
     one_line(&name.display().to_string())
 }
@@ -38,13 +38,13 @@ fn no_asset(what: &str, name: &str) -> String {
     format!("no embedded {what} is called `{name}`; the nearest are {near} (`fosssim-oracle scene list` lists all)")
 }
 
-/// Returns an error for a missing file whose name with `asset:` before it is that of an embedded one.
+/// Returns an error for a missing file; if an embedded file has that name, the message suggests `asset:`.
 fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
     let known = name.to_str().map(|name| name.strip_suffix(".xml").unwrap_or(name));
     match known
         .filter(|known| error.kind() == io::ErrorKind::NotFound && library::all_names().any(|name| name == *known))
     {
-        Some(known) => anyhow::anyhow!("there is no such file; the scene that comes with the program is asset:{known}"),
+        Some(known) => anyhow::anyhow!("there is no such file; the built-in scene is asset:{known}"),
         None => error.into(),
     }
 }

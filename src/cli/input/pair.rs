@@ -1,4 +1,4 @@
-//! Pairs as typed: their points and radii, or their names in a scene.
+//! Typed pairs: their points and radii, or their names in a scene.
 use crate::{
     num::vector::Vec2,
     scene::Scene,
@@ -7,15 +7,16 @@ use crate::{
 };
 use anyhow::{Context, Result, anyhow, bail};
 
-/// Returns a pair and how it moves from its word: `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
+/// Parses a pair with its motion, such as `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
 ///
 /// # Errors
-/// When it is no such pair.
+///
+/// When the text is not such a pair.
 pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMotion> {
     let mut points = word.split(':').collect::<Vec<_>>();
     let word = points.remove(0);
     let kind = kind_of(word)?;
-    let moving = |index: usize| moving(points[index]);
+    let moving = |index: usize| parse_moving(points[index]);
     let fixed = |index: usize| vector(points[index]);
     let expect = |count: usize, what: &str| {
         if points.len() == count {
@@ -37,7 +38,7 @@ pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMoti
         PairKind::ParticleHalfPlane => {
             expect(3, "the particle's center, a point on the boundary, the normal")?;
             let radii = radii()?;
-            let radius = number(radii).with_context(|| format!("the radius `{radii}`"))?;
+            let radius = parse_number(radii).with_context(|| format!("the radius `{radii}`"))?;
             let normal = fixed(2)?;
             if normal == Vec2::zeros() {
                 bail!("the half-plane's normal is zero");
@@ -47,9 +48,10 @@ pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMoti
     })
 }
 
-/// Returns a pair of a scene: `pe:3,1`.
+/// Parses a pair of a scene, such as `pe:3,1`.
 ///
 /// # Errors
+///
 /// When the scene has no such pair, or detection never checks it.
 pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     let (kind, indices) = word.split_once(':').context("write pp:I,J, pe:I,J or ph:I,J")?;
@@ -70,7 +72,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     };
     let second = index(second, count, kind.second())?;
     match kind {
-        PairKind::ParticleParticle if first == second => bail!("a particle makes no pair with itself"),
+        PairKind::ParticleParticle if first == second => bail!("a particle cannot form a pair with itself"),
         // Detection checks each pair once, the lower index first.
         PairKind::ParticleParticle => Ok(Pair { kind, first: first.min(second), second: first.max(second) }),
         PairKind::ParticleEdge => {
@@ -87,7 +89,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
 fn kind_of(word: &str) -> Result<PairKind> {
     PairKind::ALL.into_iter().find(|kind| [kind.short(), kind.name()].contains(&word)).with_context(|| {
         let names = PairKind::ALL.into_iter().flat_map(|kind| [kind.short(), kind.name()]);
-        let meant = near::meant(word, names);
+        let meant = near::suggest(word, names);
         format!(
             "`{word}` is not a kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and \
              half-plane){meant}"
@@ -95,13 +97,14 @@ fn kind_of(word: &str) -> Result<PairKind> {
     })
 }
 
-/// Returns a point with its motion: `X,Y+DX,DY`, `X,Y..X,Y`, or `X,Y` at rest.
+/// Parses a point with its motion: `X,Y+DX,DY`, `X,Y..X,Y`, or `X,Y` at rest.
 ///
 /// # Errors
-/// When it has none of these forms.
-fn moving(word: &str) -> Result<PointMotion> {
+///
+/// When the text has none of these forms.
+fn parse_moving(word: &str) -> Result<PointMotion> {
     if let Some((start, end)) = word.split_once("..") {
-        // The displacement is the difference of the ends, as the course's code takes it.
+        // The displacement is the difference of the ends, computed as in the course's code.
         let (start, end) = (vector(start)?, vector(end)?);
         return Ok(PointMotion { start, shift: end - start });
     }
@@ -116,20 +119,21 @@ fn moving(word: &str) -> Result<PointMotion> {
     }
 }
 
-/// Returns `X,Y`
+/// Parses `X,Y`.
 ///
 /// # Errors
-/// When it is no point with finite coordinates.
+///
+/// When the text is not a point with finite coordinates.
 fn vector(word: &str) -> Result<Vec2> {
     let advice = || format!("`{word}` is not a point; write X,Y as in 3,-1.5");
     let (x, y) = word.split_once(',').with_context(advice)?;
-    Ok(Vec2::new(number(x).with_context(advice)?, number(y).with_context(advice)?))
+    Ok(Vec2::new(parse_number(x).with_context(advice)?, parse_number(y).with_context(advice)?))
 }
 
 fn radii_of(word: &str) -> Result<[f64; 2]> {
-    let advice = || format!("`{word}` are not two radii; write R,R as in 1,0.5");
+    let advice = || format!("`{word}` is not a pair of radii; write R,R as in 1,0.5");
     let (first, second) = word.split_once(',').with_context(advice)?;
-    let radius = |text| number(text).and_then(not_negative).with_context(advice);
+    let radius = |text| parse_number(text).and_then(not_negative).with_context(advice);
     Ok([radius(first)?, radius(second)?])
 }
 
@@ -140,7 +144,7 @@ fn not_negative(radius: f64) -> Result<f64> {
     Ok(radius)
 }
 
-fn number(text: &str) -> Result<f64> {
+fn parse_number(text: &str) -> Result<f64> {
     let value: f64 = text.trim().parse().map_err(|_| anyhow!("`{text}` is not a number"))?;
     if !value.is_finite() {
         bail!("`{text}` is not finite");
@@ -153,7 +157,7 @@ mod tests {
     use super::*;
 
     fn numbers(word: &str) -> [f64; 4] {
-        let PointMotion { start, shift } = moving(word).unwrap();
+        let PointMotion { start, shift } = parse_moving(word).unwrap();
         [start.x, start.y, shift.x, shift.y]
     }
 
@@ -170,7 +174,7 @@ mod tests {
     #[test]
     fn what_is_no_point_is_refused_with_advice() {
         for word in ["", "3", "3;1", "3,x", "3,1+4", "3,1,2", "nan,0", "3,1..", "1e999,0", "3,1+4,1+2,2"] {
-            let error = format!("{:#}", moving(word).unwrap_err());
+            let error = format!("{:#}", parse_moving(word).unwrap_err());
             assert!(error.contains("is not a point"), "{word}: {error}");
         }
     }

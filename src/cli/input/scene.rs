@@ -1,4 +1,4 @@
-//! Scenes as inputs: strict reading, all problems together.
+//! Scenes as inputs, with strict reading that reports all problems together.
 use super::{asset, no_asset, open, printable_name, trace::ZSTD_MAGIC};
 use crate::files::{Identity, read_limited};
 use crate::{
@@ -13,18 +13,19 @@ use std::path::Path;
 /// A scene that has been read.
 #[derive(Debug)]
 pub(in crate::cli) struct SceneInput {
-    /// The name as typed, fit for printing.
+    /// The name as typed, in printable form.
     pub(in crate::cli) name: String,
-    /// The scene.
+    /// The parsed scene.
     pub(in crate::cli) scene: scene::Scene,
-    /// The file, if there is one.
+    /// The identity of the file, if there is one.
     pub(in crate::cli) identity: Option<Identity>,
 }
 
-/// Reads a scene and warns of oddities in it.
+/// Reads a scene and prints warnings about it.
 ///
 /// # Errors
-/// When it can't be read, or has errors: all of them, with their places.
+///
+/// When the scene can't be read or has errors: all of them, with their places.
 pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     let shown = printable_name(name);
     if name == Path::new("-") {
@@ -42,7 +43,7 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     }
     match scene::read(&shown, &bytes) {
         Ok(LoadedScene { scene, warnings, .. }) => {
-            // Embedded scenes are as they are meant to be.
+            // Embedded scenes need no warnings.
             if identity.is_some() {
                 console::remark(problems::warnings(&shown, &bytes, &warnings));
             }
@@ -52,14 +53,14 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     }
 }
 
-/// Returns whether these bytes are no text at all: the reader's messages about them would not help. No XML in UTF-8
-/// holds a NUL; UTF-16, which does, begins with its mark and gets the reader's own message.
+/// Returns whether the bytes are not text, so that the reader's messages would not help. XML in UTF-8 contains no NUL;
+/// UTF-16, which does, begins with a byte order mark and gets the reader's own message.
 fn is_binary(bytes: &[u8]) -> bool {
     let is_utf_16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
     bytes.starts_with(&ZSTD_MAGIC) || (!is_utf_16 && !bytes.starts_with(b"<") && bytes.contains(&0))
 }
 
-/// Returns the bytes of a scene file, which may not be larger than any sensible scene.
+/// Returns the bytes of a scene file, up to a generous limit of its size.
 fn scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
     let (file, metadata) = open(name)?;
     let bytes = read_limited(file, &metadata, MAX_SCENE_BYTES as u64)?;

@@ -1,9 +1,9 @@
-//! Traces as inputs: streams, decompressed on the way.
+//! Traces as inputs, which are streams and are decompressed while they are read.
 use super::{asset, no_asset, open, printable_name};
 use crate::files::{Identity, patient};
 use crate::{
     cli::output::has_extension,
-    report::check::{LOOKED_AT, looks_like},
+    report::check::{SNIFFED_BYTES, looks_like},
     scene::Scene,
     suite::library,
     trace::{Layout, Reader},
@@ -15,13 +15,13 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// A trace that is about to be read.
+/// A trace before it is read.
 pub(in crate::cli) struct TraceInput {
-    /// The name as typed, fit for printing.
+    /// The name as typed, in printable form.
     pub(in crate::cli) name: String,
     /// The trace's bytes, decompressed.
     pub(in crate::cli) reader: Box<dyn Read + Send>,
-    /// The file, if there is one.
+    /// The identity of the file, if there is one.
     pub(in crate::cli) identity: Option<Identity>,
     /// The kind of file that it seems to be, if it can't be a trace.
     pub(in crate::cli) looks_like: Option<&'static str>,
@@ -29,8 +29,8 @@ pub(in crate::cli) struct TraceInput {
 }
 
 impl TraceInput {
-    /// Returns the message of the operating system or the decoder when reading failed: not the fault of the trace's
-    /// author.
+    /// Returns the message of the operating system or the decoder if reading failed, which is not the fault of the
+    /// trace's author.
     pub(in crate::cli) fn failure(&self) -> Option<String> {
         self.failure.get()
     }
@@ -38,7 +38,8 @@ impl TraceInput {
     /// Returns an error if reading failed.
     ///
     /// # Errors
-    /// As for [`TraceInput::failure`].
+    ///
+    /// The error of [`TraceInput::failure`].
     pub(in crate::cli) fn ensure_not_failed(&self) -> Result<()> {
         match self.failure() {
             Some(message) => bail!("cannot read the trace {}: {message}", self.name),
@@ -46,13 +47,13 @@ impl TraceInput {
         }
     }
 
-    /// Reads its records, as a trace of this scene.
+    /// Reads the records as those of a trace of `scene`.
     pub(in crate::cli) fn records(&mut self, scene: &Scene) -> Reader<&mut Box<dyn Read + Send>> {
         Reader::new(&mut self.reader, Layout::for_scene(scene)).with_scene(scene)
     }
 }
 
-/// The first thing that went wrong while reading.
+/// The first error while reading.
 #[derive(Clone, Default)]
 struct Failure(Arc<Mutex<Option<String>>>);
 
@@ -67,17 +68,18 @@ impl Failure {
 }
 
 /// Opens a trace: a path, `-` for standard input, `asset:Group/name` for an embedded recording, or
-/// `asset:Group/name/flawed` for the wrong trace that comes with one scene.
+/// `asset:Group/name/flawed` for the built-in wrong trace of one scene.
 ///
 /// # Errors
-/// When it can't be opened. Damage shows only while it is read.
+///
+/// When it can't be opened. Damage is detected only while it is read.
 pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let shown = printable_name(name);
     let failure = Failure::default();
     let watched = |reader| WatchedReader { reader, failure: failure.clone() };
-    let is_flawed = |asset: &&str| asset.strip_suffix("/flawed") == Some(library::FLAWED.0);
+    let is_flawed = |asset: &&str| asset.strip_suffix("/flawed") == Some(library::FLAWED_TRACE.0);
     let (mut reader, identity): (Box<dyn Read + Send>, _) = if asset(name).filter(is_flawed).is_some() {
-        (Box::new(library::FLAWED.1), None)
+        (Box::new(library::FLAWED_TRACE.1), None)
     } else if let Some(asset) = asset(name) {
         let recording = library::recording(asset).with_context(|| no_asset("recording", asset))?;
         (decompress(Box::new(Cursor::new(recording)), &[], &failure)?, None)
@@ -85,7 +87,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         let reader = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
         (reader.context("cannot read the trace from standard input")?, None)
     } else {
-        // A slip of the user, and no wrong trace: rejected if name and content agree.
+        // A scene instead of a trace is a user's mistake, not a wrong trace: reject it if name and content agree.
         if is_scene(name) {
             bail!("{shown} is a scene, not a trace: SCENE comes first, then TRACE");
         }
@@ -97,13 +99,13 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     };
     let mut start = Vec::new();
     // The second reading reports bytes that can't be read.
-    let _ = reader.by_ref().take(LOOKED_AT).read_to_end(&mut start);
+    let _ = reader.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = if failure.get().is_none() { looks_like(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));
     Ok(TraceInput { name: shown, reader, identity, looks_like, failure })
 }
 
-/// Returns whether a file is a scene by its name and by how it begins.
+/// Returns whether a file is a scene, by its name and its beginning.
 pub(in crate::cli) fn is_scene(name: &Path) -> bool {
     if has_extension(name, "xml")
         && let Ok((file, metadata)) = open(name)
@@ -116,7 +118,7 @@ pub(in crate::cli) fn is_scene(name: &Path) -> bool {
     false
 }
 
-/// Remembers the operating system's error when reading failed.
+/// A reader that stores the operating system's error if reading fails.
 struct WatchedReader {
     reader: Box<dyn Read + Send>,
     failure: Failure,
@@ -135,17 +137,16 @@ impl Read for WatchedReader {
 /// The first bytes of every zstd frame.
 pub(super) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// Frames that need a larger window than 8 MiB are rejected: memory stays bounded. The window is the packer's choice
-/// and most of what unpacking needs: 2 MiB at zstd's usual level 3, 8 MiB at level 19. A smaller bound would refuse the
-/// latter, with which recordings are packed.
+/// The maximum window size of zstd frames, as a power of two (8 MiB), which limits the memory for unpacking. The packer
+/// chooses the window: 2 MiB at zstd's default level 3, and 8 MiB at level 19, which recordings use.
 const ZSTD_WINDOW: u32 = 23;
 
-/// Returns whether a file begins as gzip files do, whose flags are below 32.
+/// Returns whether a file begins like a gzip file, whose flags are below 32.
 const fn is_gzip(start: &[u8]) -> bool {
     matches!(start, [0x1f, 0x8b, 8, 0..32])
 }
 
-/// Returns the reader, decompressed when it starts like a zstd or gzip file.
+/// Returns the reader, with decompression if it starts like a zstd or gzip file.
 fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
@@ -162,10 +163,10 @@ fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure)
     Ok(Box::new(Cursor::new(start).chain(reader)))
 }
 
-/// Returns the bytes of a trace that may be packed, at most this number of them, or why its zstd data can't be
-/// unpacked.
+/// Returns at most `most` bytes of a trace that may be packed, or the reason why its zstd data can't be unpacked.
 ///
 /// # Errors
+///
 /// When the file can't be read.
 pub(in crate::cli) fn unpack(file: impl Read + Send + 'static, most: u64) -> io::Result<Result<Vec<u8>, String>> {
     let failure = Failure::default();
@@ -187,8 +188,8 @@ fn decompress(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -> 
     Ok(Box::new(UnpackedReader { decoder, format: "zstd", failure: failure.clone() }))
 }
 
-/// A decoder whose errors describe the fault of the file, and are remembered: a damaged copy proves nothing about the
-/// trace. Bytes behind the last zstd frame that do not begin another one are damage, too.
+/// A decoder whose errors describe the fault of the file, and are stored: a damaged copy proves nothing about the
+/// trace. Bytes after the last zstd frame that do not begin another one are damage, too.
 struct UnpackedReader<R> {
     decoder: R,
     format: &'static str,
@@ -198,7 +199,7 @@ struct UnpackedReader<R> {
 impl<R: Read> Read for UnpackedReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.decoder.read(buffer).map_err(|error| {
-            // The operating system's words have been remembered already, and are the better explanation.
+            // The operating system's message is stored already, and explains more.
             if error.kind() == io::ErrorKind::Interrupted || self.failure.get().is_some() {
                 return error;
             }

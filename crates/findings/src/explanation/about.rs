@@ -11,32 +11,32 @@ use serde::{Deserialize, Serialize};
 /// The subject of an explanation.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum About {
-    /// A mistake of the catalogue, with this key.
+    /// A known mistake; its id is the explanation's key.
     Mistake,
     /// Stages that are not written yet; their keys are in [`Explanation::same_as`](super::Explanation::same_as).
     Unfinished,
-    /// The question whether the trace is of its scene.
+    /// The trace seems to belong to another scene.
     Scene {
-        /// Whether at least the number of records is right.
+        /// Whether the trace has the right number of records.
         has_length: bool,
     },
     /// Wrong polynomials.
     Polynomials {
-        /// Which ones.
+        /// The polynomials that are wrong.
         subjects: Vec<Subject>,
-        /// The facts that are found out about them.
+        /// The facts that are known about the wrong polynomials.
         found: OfPolynomials,
     },
-    /// A stage of a step: its results are wrong, and everything before is right.
+    /// A stage of a step. Its results are wrong, and all earlier stages are right.
     Stage(StageFault),
-    /// Near pairs that a contest's search leaves out or reports twice: an observation.
+    /// Near pairs that a contest's search misses or reports twice; an observation, not a guess.
     Pairs(WrongPairs),
-    /// Values that are not finite numbers: an observation, which comes before all guesses.
+    /// Values that are not finite numbers; an observation, listed before all guesses.
     NotFinite(NotFinite),
 }
 
 impl About {
-    /// Returns the kinds of pairs whose polynomials it is about, each once.
+    /// Returns the kinds of pairs that the wrong polynomials belong to, without repetition.
     #[must_use]
     pub fn kinds(&self) -> Vec<PairKind> {
         let Self::Polynomials { subjects, .. } = self else { return Vec::new() };
@@ -44,15 +44,15 @@ impl About {
     }
 }
 
-/// The facts that are found out about wrong polynomials.
+/// The facts that are known about wrong polynomials.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OfPolynomials {
-    /// A guess that reproduces them, or a part.
+    /// A guess that reproduces all or some of the polynomials.
     Guess(Guess),
-    /// The polynomials are not handed over.
+    /// The program does not hand the polynomials to the root finder.
     Missing,
     /// The polynomials are right except for too much round-off.
     NearlyRight,
-    /// Nothing.
+    /// No fact is known.
     Nothing,
 }

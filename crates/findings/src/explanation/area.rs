@@ -2,7 +2,7 @@
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The part of the assignment to which a mistake belongs. Listings print its name in JSON.
+    /// The part of the assignment that a mistake belongs to. Listings in JSON contain its name.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum Area {
@@ -10,12 +10,12 @@ fosssim_num::closed_set! {
         Forces = "Forces", "Look at what each force adds to the gradient, for each of its particles.";
         /// Derivatives of forces by positions and velocities, for implicit integrators.
         Jacobians = "Derivatives of forces", "Look at what each force adds to the second derivatives, block by block.";
-        /// The change of velocities by forces, and of positions by velocities.
+        /// The update of velocities by forces, and of positions by velocities.
         Integrator = "Integrator",
-            "Look at the order in which a step changes velocities and positions, and at what it reads.";
+            "Look at the order in which a step changes velocities and positions, and at the values that it uses.";
         /// The force between near bodies.
         Penalty = "Penalty force", "Look at what the penalty force adds to the gradient, for each kind of pair.";
-        /// Which pairs reach the force between near bodies.
+        /// The selection of the pairs for the force between near bodies.
         NearPairs = "Search for near pairs", "Look at which pairs the search for near bodies finds, and how often.";
         /// Polynomials of two particles.
         ParticleParticle = "Particle-particle",
@@ -25,15 +25,15 @@ fosssim_num::closed_set! {
         /// Polynomials of a particle and a half-plane.
         ParticleHalfPlane = "Particle-half-plane",
             "Look at the coefficients that the particle-half-plane detection computes.";
-        /// The common part of all three detections: how polynomials reach the root finder.
+        /// The common part of all three detections, which hands polynomials to the root finder.
         Handover = "Hand-over to the root finder",
             "Look at how the coefficients are put into the polynomials for the root finder: order, sign, type.";
-        /// The vector between the objects at the time of impact.
-        ContactVector = "Contact vector", "Look at what the detection returns once the time of impact is known.";
-        /// The choice of the times that count, and of the pairs that are checked.
+        /// The contact vector between the objects at the time of impact.
+        ContactVector = "Contact vector", "Look at the vector that the detection returns for the time of impact.";
+        /// The choice of valid times of impact, and of the pairs that are checked.
         Decision = "Detection",
-            "Look at which pairs are tested, and at what is done with the time that the root finder returns.";
-        /// The condition under which bodies that overlap at the end of a step collide, and the vector between them.
+            "Look at which pairs are tested, and at how the time from the root finder is used.";
+        /// The condition for a collision of bodies that overlap at the end of a step, and their contact vector.
         SimpleDetection = "Detection",
             "Look at when the detection of this kind of pair finds a collision, and at the vector that it returns.";
         /// The impulse of one contact.
@@ -43,17 +43,17 @@ fosssim_num::closed_set! {
             "Look at the loop over the pairs in the single pass of continuous-time.";
         /// The impulse rounds of `hybrid`.
         ImpulseLoop = "Impulse loop",
-            "Look at the loop over the impulse rounds: its start, its end, and what it carries over.";
-        /// Impact zones and their growth.
+            "Look at the loop over the impulse rounds: its start, its end, and the values that it passes on.";
+        /// The impact zones and their growth.
         ImpactZones = "Impact zones",
             "Look at how impact zones are made, merged and compared, and when their loop ends.";
         /// The rigid motion of one zone.
         Failsafe = "Rigid failsafe", "Look at how one zone is moved as a rigid body, and when it stops instead.";
-        /// The trace that is written.
-        Trace = "Trace", "Look at what is written to the trace, and when; the simulation itself may be right.";
+        /// The output of the trace.
+        Trace = "Trace", "Look at when the trace is written, and with which values; the simulation may be right.";
         /// The behavior of the program as a process.
         Process = "Program", "Look at how the program starts and ends.";
     }
-    /// Returns one sentence with the place of the mistake in the program, without the right formula.
+    /// Returns a sentence that says where in the program to look, without giving the right formula.
     advice
 }

@@ -1,4 +1,4 @@
-//! The exact form of a fault, as values. It may give a right formula away.
+//! The exact form of a fault, as values, which may give a right formula away.
 use super::{area::Area, fault::ChangedQuantity, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
@@ -7,11 +7,11 @@ use std::borrow::Cow;
 /// One line of the exact form.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Detail {
-    /// The exact form of the catalogue's mistake with this key.
+    /// The exact form of a known mistake, given by its id.
     Term(Cow<'static, str>),
-    /// The place to check for mistakes of this part of the assignment.
+    /// A hint to check the code of one area of the assignment.
     Look(Area),
-    /// The meanings of the letters in the lines before, which speak of pairs of these kinds. There is none if no letter
+    /// The meanings of the letters in the preceding lines, for pairs of these kinds. The line is left out if no letter
     /// needs it.
     Letters(Vec<PairKind>),
     /// A fault of polynomials.
@@ -23,95 +23,95 @@ pub enum Detail {
 /// The exact form of a fault of polynomials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum PolynomialDetail {
-    /// Each detection logs another number of polynomials than it should.
+    /// Each detection logs a wrong number of polynomials.
     Logged {
-        /// The number that it logs.
+        /// The number of polynomials that the detection logs.
         logged: usize,
-        /// The expected number.
+        /// The number of polynomials that a detection should log.
         of: usize,
     },
-    /// The polynomials are right up to this error, relative to the size of their terms.
+    /// The polynomials are right up to a round-off error, given relative to the size of their terms.
     RightUpTo(#[serde(with = "fosssim_num::written")] f64),
     /// A coefficient differs in some samples.
     Differs {
-        /// The polynomial, where there are several.
+        /// The polynomial, if the detection has several.
         subject: Option<Subject>,
-        /// The coefficient's power of t.
+        /// The power of t that the coefficient belongs to.
         power: usize,
-        /// The number of samples.
+        /// The number of samples in which the coefficient differs.
         count: usize,
-        /// The number of all.
+        /// The number of compared samples.
         of: usize,
     },
-    /// The list holds this number alone.
+    /// The list holds a single number.
     Holds(#[serde(with = "fosssim_num::written")] f64),
-    /// Every coefficient is this number.
+    /// Every coefficient is the same number.
     Every(#[serde(with = "fosssim_num::written")] f64),
     /// Every coefficient is a number of single precision.
     SinglePrecision,
     /// One polynomial is used instead of another.
     InPlaceOf {
-        /// The polynomial that is used.
+        /// The polynomial that is used, although it is wrong.
         stands: Subject,
-        /// The polynomial that must be used.
+        /// The polynomial that should be used.
         belongs: Subject,
     },
     /// The coefficients of two powers of t are exchanged.
     Exchanged {
-        /// The powers.
+        /// The two powers of t.
         powers: [usize; 2],
     },
-    /// Only the last coefficients are there, this number of them.
+    /// Only the last coefficients are there; the value is their number.
     LastOnly(usize),
-    /// Only the first coefficients are there, this number of them.
+    /// Only the first coefficients are there; the value is their number.
     FirstOnly(usize),
-    /// Every displacement carries this factor.
+    /// Every displacement is multiplied by a factor.
     Displacements(#[serde(with = "fosssim_num::written")] f64),
-    /// The exact form of the change with this key.
+    /// A named change of the formula.
     Named {
-        /// The key.
+        /// The key of the change.
         key: Cow<'static, str>,
-        /// Whether all these pairs are a particle's and an edge's, whose radii have names of their own.
+        /// Whether all pairs are particle-edge pairs, whose radii have their own names.
         of_edges: bool,
     },
     /// Another quantity is used for a letter of a formula.
     StandsFor {
-        /// The formula.
+        /// The form in which the formula is written.
         reading: Reading,
-        /// The letter.
+        /// The letter whose value is replaced.
         letter: Cow<'static, str>,
-        /// The thing in its place.
+        /// The quantity that is used instead.
         stand: Substitute,
     },
-    /// A coefficient carries a factor.
+    /// A coefficient is multiplied by a factor.
     Factor {
-        /// The coefficient's power of t.
+        /// The power of t that the coefficient belongs to.
         power: usize,
-        /// The factor.
+        /// The factor of the coefficient.
         #[serde(with = "fosssim_num::written")]
         factor: f64,
     },
     /// No simple change explains a coefficient.
     Unknown {
-        /// The coefficient's power of t.
+        /// The power of t that the coefficient belongs to.
         power: usize,
     },
     /// A product has the wrong weight.
     Weight(Weight),
-    /// These weights together would have the same effect.
+    /// Other weights that would have the same effect together.
     Alternative(Vec<Weight>),
 }
 
-/// The value in place of a letter of a formula.
+/// The value that is used instead of a letter of a formula.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Substitute {
-    /// The letter itself with this factor.
+    /// The letter itself, multiplied by a factor.
     Scaled(#[serde(with = "fosssim_num::written")] f64),
     /// Another letter of the formula.
     Letter(Cow<'static, str>),
-    /// A dot product of vectors that a detection has at hand.
+    /// A dot product of vectors that the detection uses.
     Dot {
-        /// The vectors' names.
+        /// The names of the two vectors.
         vectors: [Cow<'static, str>; 2],
         /// Whether its sign is wrong.
         negated: bool,
@@ -123,16 +123,16 @@ pub enum Substitute {
 /// A product of letters in a coefficient, with a wrong weight.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Weight {
-    /// The formula whose letters it takes, besides some that do not belong there.
+    /// The form in which the formula is written; it may lack some of the letters.
     pub reading: Reading,
-    /// The coefficient's power of t.
+    /// The power of t that the coefficient belongs to.
     pub power: usize,
-    /// The names of its letters.
+    /// The names of the product's letters.
     pub letters: Vec<Cow<'static, str>>,
-    /// The weight that it should have.
+    /// The right weight of the product.
     #[serde(with = "fosssim_num::written")]
     pub expected: f64,
-    /// The weight that it has.
+    /// The weight in the submission.
     #[serde(with = "fosssim_num::written")]
     pub actual: f64,
 }
@@ -140,89 +140,89 @@ pub struct Weight {
 /// The exact form of a fault of a stage.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum StageDetail {
-    /// The order of the pairs.
+    /// The pairs are checked in the wrong order.
     Order,
-    /// The factor of all changes.
+    /// All changes are multiplied by a factor.
     Factor(#[serde(with = "fosssim_num::written")] f64),
-    /// Between which fractions of the step contacts have their times of impact.
+    /// The range of the times of impact, as fractions of the step.
     Impacts {
-        /// Whether these are the contacts that are right.
+        /// Whether the range is that of the right contacts.
         right: bool,
         /// The number of contacts.
         count: usize,
-        /// The first time.
+        /// The earliest time of impact.
         #[serde(with = "fosssim_num::written")]
         low: f64,
-        /// The number of the last.
+        /// The latest time of impact.
         #[serde(with = "fosssim_num::written")]
         high: f64,
     },
-    /// The ratios of contact vectors to the right ones, along these.
+    /// The ratios of contact vectors to the right ones, measured along the right ones.
     Vectors(Ratios),
-    /// By how much of their length contact vectors are off at most.
+    /// The largest error of the contact vectors, relative to their length.
     VectorsOff(#[serde(with = "fosssim_num::written")] f64),
     /// The ratios of times of impact to the expected ones.
     Times(Ratios),
-    /// By how much times of impact are off, in steps.
+    /// The largest error of the times of impact, in steps.
     TimesOff(#[serde(with = "fosssim_num::written")] f64),
     /// The use of times of impact.
     TimesUsed,
-    /// Detection passes of impulse rounds.
+    /// The number of detection passes in the impulse rounds.
     Passes {
-        /// The number that is expected.
+        /// The expected number of passes.
         expected: usize,
-        /// The number of them.
+        /// The actual number of passes.
         actual: usize,
         /// The number of rounds that the scene allows.
         most: i32,
     },
     /// The changes by isolated contacts.
     Change {
-        /// The quantity, and its owner.
+        /// The quantity that changes, and its owner.
         changed: ChangedQuantity,
-        /// By how much.
+        /// The amount of the change.
         amount: Amount,
-        /// Whether across the contact vector, too.
+        /// Whether the quantity also changes across the contact vector.
         across: bool,
-        /// The number of them in which it is wrong.
+        /// The number of contacts that change the quantity wrongly.
         wrong: usize,
-        /// The number of all.
+        /// The number of compared contacts.
         of: usize,
     },
-    /// The number of zones to which it applies.
+    /// The number of zones that have the fault.
     OfZones {
-        /// The number.
+        /// The number of zones with the fault.
         count: usize,
         /// The number of zones that could be compared.
         of: usize,
     },
-    /// Velocities of zones that must stop, divided by those before.
+    /// The velocities of zones that must stop, divided by their velocities before.
     Stopped(Ratios),
     /// The ratio of the motion of the center of mass to the expected one.
     CenterMoves(Ratios),
     /// The direction of the center's motion.
     CenterDirection,
-    /// The ratio of the rotation of zones to the expected one.
+    /// The ratio of the rotation of zones to the expected rotation.
     Turns(Ratios),
-    /// Velocities of zones over their motion per step size.
+    /// The velocities of zones, divided by their motion per step size.
     Velocities(Ratios),
 }
 
-/// By how much a contact changes something.
+/// The amount by which a contact changes a quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Amount {
     /// The quantity should not change.
     Unwanted,
-    /// As it should along the contact vector.
+    /// The change along the contact vector is right.
     Right,
-    /// The ratio to the expected value along the contact vector.
+    /// The ratio to the expected value, along the contact vector.
     Ratio(Ratios),
 }
 
 /// Ratios of actual to expected values.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Ratios {
-    /// All ratios are this number.
+    /// All ratios equal one number.
     All(#[serde(with = "fosssim_num::written")] f64),
     /// The ratios are between the first number and the second.
     Between(#[serde(with = "fosssim_num::written")] f64, #[serde(with = "fosssim_num::written")] f64),

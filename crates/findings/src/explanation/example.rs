@@ -4,14 +4,14 @@ use crate::finding::Role;
 use fosssim_model::sim::{Pair, PairKind};
 use serde::{Deserialize, Serialize};
 
-/// A small instance of the mistake.
+/// A small instance of a mistake.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Example {
-    /// Step, from 1.
+    /// The step number, from 1.
     pub step: u32,
     /// The place in the step.
     pub place: ExamplePlace,
-    /// The inputs, in the assignment's notation.
+    /// The inputs of the computation, in the assignment's notation.
     pub given: Vec<ExampleValue>,
     /// The expected result.
     #[serde(with = "fosssim_num::written")]
@@ -21,52 +21,52 @@ pub struct Example {
     pub actual: Vec<f64>,
 }
 
-/// The place of an example in its step, which decides what its numbers are.
+/// The place of an example in its step, which decides the meaning of its numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ExamplePlace {
-    /// A polynomial whose inputs are given: its coefficients.
+    /// The coefficients of a polynomial whose inputs are given.
     Given {
-        /// The pair.
+        /// The pair that the polynomial belongs to.
         pair: Pair,
         /// The detection pass within the step, from 0.
         pass: u32,
-        /// Which of its polynomials.
+        /// The polynomial of the pair.
         subject: Subject,
     },
-    /// A polynomial: its coefficients.
+    /// The coefficients of a polynomial.
     Polynomial {
-        /// The pair.
+        /// The pair that the polynomial belongs to.
         pair: Pair,
         /// The detection pass within the step, from 0.
         pass: u32,
-        /// Which of its polynomials.
+        /// The role of the polynomial.
         role: Role,
     },
-    /// The polynomial with this number in the step's list, of which the reference has none.
+    /// A surplus polynomial of the step's list, given by its index.
     NumberedPolynomial(usize),
-    /// The number of polynomials.
+    /// The number of polynomials in the step.
     PolynomialCount,
-    /// A contact, as the trace names it: normal and time.
+    /// The normal and the time of a contact of the trace.
     Contact {
-        /// The kind of its pair, if there is such a kind.
+        /// The kind of the pair, if the objects form one.
         kind: Option<PairKind>,
-        /// The particle.
+        /// The particle's number in the trace.
         first: i32,
-        /// The other object.
+        /// The other object's number in the trace.
         second: i32,
     },
-    /// The number of contacts.
+    /// The number of contacts in the step.
     ContactCount,
-    /// A particle in a record: position and velocity.
+    /// The position and the velocity of a particle in a record.
     Particle {
-        /// Which.
+        /// The particle's index.
         particle: usize,
-        /// In which record of the step.
+        /// The record of the step.
         record: StepRecord,
     },
-    /// A particle in the mid record, of which nothing is known.
+    /// A particle of the mid record, given by its index; only the mid record of the trace is known.
     MidParticle(usize),
-    /// The lists of the mid record.
+    /// The polynomial and impulse lists of the mid record.
     MidLists,
 }
 
@@ -75,17 +75,17 @@ pub enum ExamplePlace {
 pub enum StepRecord {
     /// The mid record.
     Mid,
-    /// The one at the end.
+    /// The record at the end of the step.
     End,
 }
 
 /// An input of an example.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExampleValue {
-    /// Which.
+    /// The input that has the value.
     #[serde(rename = "name")]
     pub input: Input,
-    /// The value's components.
+    /// The components of the value.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "Vec<fosssim_num::written::Number>")]
     pub value: Vec<f64>,

@@ -1,17 +1,17 @@
-//! Faults of a stage of a step that no known mistake explains, without their measured values
-//! ([`StageDetail`](super::StageDetail)).
+//! Faults of a stage of a step that no known mistake explains. Their measured values are in
+//! [`StageDetail`](super::StageDetail).
 use super::area::Area;
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 
-/// The stages of a step that can be distinguished, in their order.
+/// The stages of a step that can be distinguished, in the order of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum StepStage {
-    /// Which pairs collide, and when.
+    /// The decisions whether and when pairs collide.
     Detection,
     /// The vectors between colliding objects.
     ContactVectors,
-    /// Responses and impulse rounds.
+    /// Collision responses and impulse rounds.
     Responses,
     /// Impact zones and the rigid failsafe.
     Zones,
@@ -20,103 +20,104 @@ pub enum StepStage {
 /// The fault of a stage whose inputs are right.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StageFault {
-    /// The pairs are checked in another order.
+    /// The pairs are checked in the wrong order.
     Order,
-    /// Polynomials are right, decisions are not.
+    /// Polynomials are right, but decisions are wrong.
     Decisions {
-        /// The kind of all these pairs, if they have one.
+        /// The kind of all affected pairs, if they have one.
         kind: Option<PairKind>,
-        /// Which decisions.
+        /// The way in which the decisions are wrong.
         wrong: WrongDecisions,
     },
-    /// Which bodies that overlap at the end of a step collide.
+    /// The choice of colliding bodies is wrong among those that overlap at the end of a step.
     Overlaps {
-        /// The kind of all these pairs, if they have one.
+        /// The kind of all affected pairs, if they have one.
         kind: Option<PairKind>,
-        /// Which decisions.
+        /// The way in which the decisions are wrong.
         wrong: WrongDecisions,
     },
-    /// The change of a state, where traces log states.
+    /// A state changes wrongly, in a trace that logs only states.
     Change(WrongChange),
-    /// Times of impact.
+    /// Times of impact are wrong.
     ContactTimes,
-    /// Contact vectors.
+    /// Contact vectors are wrong.
     ContactVectors {
-        /// The kind of all these pairs, if they have one.
+        /// The kind of all affected pairs, if they have one.
         kind: Option<PairKind>,
         /// The fault of the vectors.
         wrong: WrongVectors,
     },
-    /// The changes by isolated contacts.
+    /// The changes by isolated contacts are wrong.
     Responses {
-        /// The kind of all these pairs, if they have one and others are right.
+        /// The kind of all affected pairs, if they have one and other kinds are right.
         kind: Option<PairKind>,
         /// The fault of the changes.
         wrong: WrongResponses,
-        /// Whether it is seen in impulse rounds only, which hand on what contacts change.
+        /// Whether the fault occurs only in impulse rounds, which hand the changed values on.
         in_rounds: bool,
     },
-    /// The state behind several contacts that are right.
+    /// The state after several contacts is wrong, although isolated contacts are right.
     ManyContacts,
-    /// Contacts of the first impulse round change nothing.
+    /// Contacts of the first impulse round have no effect.
     Unresolved {
-        /// No ratio does.
+        /// All ratios are wrong.
         all: bool,
     },
-    /// The number of impulse rounds.
+    /// The number of impulse rounds is wrong.
     Rounds(WrongNumber),
-    /// The values that the impulse rounds hand over; the rounds themselves are right.
+    /// The impulse rounds are right, but hand over wrong values.
     HandedOver {
-        /// Positions or velocities; `None` for both.
+        /// The wrong quantity: positions or velocities; `None` for both.
         quantity: Option<Quantity>,
-        /// The end of the loop at which it is wrong; `None` if it is always wrong.
+        /// The loop end after which the values are wrong; `None` if they are always wrong.
         when: Option<LoopEnd>,
-        /// Whether contacts could change it so.
+        /// Whether wrong changes by contacts could also cause the fault.
         or_response: bool,
     },
-    /// The changes by the contacts of the first impulse round.
+    /// The changes by the contacts of the first impulse round are wrong.
     FirstRound,
-    /// The changes by several contacts of the first impulse round, although isolated contacts change them rightly.
+    /// The changes by several contacts of the first impulse round are wrong, although isolated contacts are right.
     LaterRounds,
-    /// Rounds behind the first one detect on the prediction again.
+    /// Rounds after the first one detect on the predicted positions again.
     RoundsOfPrediction,
-    /// Rounds behind the second detection, which is right.
+    /// Rounds after the second detection are wrong; that detection is right.
     BehindFirstRound,
-    /// Whether the geometric part follows.
+    /// The geometric part runs, or does not run, at the wrong time.
     Geometric(WrongGeometric),
-    /// The positions of a detection pass of the geometric part.
+    /// A detection pass of the geometric part uses wrong positions.
     ZonePositions(WrongPositions),
-    /// The part of the step behind the impulse rounds.
+    /// The part of the step after the impulse rounds is wrong.
     AfterRounds,
-    /// Zones in later rounds.
+    /// Zones are wrong in later rounds.
     ZoneRounds(WrongZoneRounds),
-    /// Which zones are moved, and which are stopped.
+    /// The choice of the zones that are moved or stopped is wrong.
     Zones(WrongZones),
-    /// The motion of zones.
+    /// The motion of zones is wrong.
     Motion {
-        /// The faults of the motion.
+        /// The faults of the zones' motion.
         wrong: Vec<WrongMotion>,
-        /// Whether zones of other particles could move so, too.
+        /// Whether wrongly chosen zones could also cause the fault.
         or_zones: bool,
     },
 }
 
-/// The features that wrong changes of states have in common.
+/// The properties that wrong changes of states have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongChange {
-    /// The quantity: of positions, the velocities are right, and of velocities, positions follow from them.
+    /// The wrong quantity. If it is the position, velocities are right; if it is the velocity, positions follow from
+    /// it.
     pub quantity: Quantity,
-    /// The only component that is wrong, 0 or 1.
+    /// The only wrong component: 0 for x or 1 for y; `None` for both.
     pub axis: Option<usize>,
-    /// The particles.
+    /// The particles whose state changes wrongly.
     pub particles: ChangedParticles,
     /// The ratio to the expected changes.
     pub ratio: ChangeRatio,
-    /// The student's code that makes such changes.
+    /// The code of the student that makes the changes.
     pub cause: ChangeCause,
 }
 
-/// The code of a student of a milestone that changes states.
+/// The part of a student's code that changes states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ChangeCause {
     /// Responses to simple collisions.
@@ -134,10 +135,10 @@ pub enum ChangeCause {
 }
 
 fosssim_num::closed_set! {
-    /// The particles that change as they should not.
+    /// The particles whose state changes wrongly.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum ChangedParticles {
-        /// Any.
+        /// Some particles, without a common property.
         Any = "",
         /// Only fixed particles.
         Fixed = " of fixed particles only",
@@ -149,14 +150,14 @@ fosssim_num::closed_set! {
 }
 
 fosssim_num::closed_set! {
-    /// The one factor of all wrong changes.
+    /// The common factor of all wrong changes.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum ChangeRatio {
         /// There is no change.
         Nothing = "stay as they were",
-        /// The opposite change.
+        /// The change has the opposite direction.
         Opposite = "change the opposite way",
-        /// Another factor.
+        /// The change is multiplied by another factor.
         Factor = "change by a wrong factor, which is always the same",
         /// The changes have no ratio in common.
         Other = "change wrongly",
@@ -164,18 +165,18 @@ fosssim_num::closed_set! {
 }
 
 fosssim_num::closed_set! {
-    /// Which decisions about contacts are wrong.
+    /// The way in which decisions about contacts are wrong.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongDecisions {
         /// Contacts are missed.
         Missed = "contacts that its polynomials show are not counted",
             "collisions of bodies that overlap and approach each other are missed";
-        /// There are contacts that there should not be.
+        /// Contacts are found that do not exist.
         Superfluous = "contacts are counted that its polynomials do not show",
             "collisions are found between bodies that do not overlap, or do not approach each other";
-        /// Both.
+        /// Some contacts are missed, and others do not exist.
         Both = "the polynomials are right, the decisions are not: contacts are missed, others are superfluous",
-            "some collisions are missed, and others are found where there are none";
+            "some collisions are missed, and others are found that do not exist";
     }
     /// Returns the sentence about bodies that overlap at the end of a step.
     of_overlaps
@@ -185,17 +186,17 @@ fosssim_num::closed_set! {
     /// A fault of contact vectors.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongVectors {
-        /// The vectors are perpendicular to the expected vectors.
-        Perpendicular = "it is perpendicular to what it should be",
-        /// The vectors have another direction.
+        /// The vectors are perpendicular to the expected ones.
+        Perpendicular = "it is perpendicular to the right vector",
+        /// The vectors have the wrong direction.
         Direction = "it has the wrong direction",
-        /// The vectors have no length.
+        /// The vectors have length zero.
         Zero = "it has no length",
         /// The vectors are right except for their last digits.
         Inexact = "it is right except for its last digits",
-        /// The vectors point the other way round.
-        Reversed = "it points the other way round",
-        /// The length is wrong.
+        /// The vectors point in the opposite direction.
+        Reversed = "it points in the opposite direction",
+        /// The vectors have the right direction and the wrong length.
         Length = "it has the right direction, but not the right length",
     }
 }
@@ -205,11 +206,11 @@ fosssim_num::closed_set! {
 pub enum WrongResponses {
     /// The responses change nothing.
     Nothing,
-    /// The responses leave these as they are.
+    /// The responses do not change some quantities.
     Unchanged(Vec<ChangedQuantity>),
-    /// The responses change these also across the contact vector.
+    /// The responses also change some quantities across the contact vector.
     Across(Vec<ChangedQuantity>),
-    /// The responses change these along the contact vector by another amount.
+    /// The responses change some quantities along the contact vector by a wrong amount.
     Amount(Vec<ChangedQuantity>),
 }
 
@@ -225,10 +226,10 @@ pub struct ChangedQuantity {
     pub quantity: Quantity,
 }
 
-/// A quantity of a body in a state.
+/// A quantity of a body's state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Quantity {
-    /// The place where it is.
+    /// The position of the body.
     Position,
     /// The velocity of the body.
     Velocity,
@@ -238,37 +239,37 @@ fosssim_num::closed_set! {
     /// The way in which a number of rounds is wrong.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongNumber {
-        /// Too few.
+        /// The loop makes too few rounds.
         Fewer = "the loop makes fewer rounds than it should",
-        /// Too many.
+        /// The loop makes too many rounds.
         More = "the loop makes more rounds than it should",
-        /// Sometimes this, sometimes that.
-        Other = "the loop makes another number of rounds than it should",
+        /// The loop makes too few rounds in some steps, and too many in others.
+        Other = "the loop makes a wrong number of rounds",
     }
 }
 
-/// Whether the geometric part follows where it should not, or does not where it should.
+/// The way in which the geometric part runs at the wrong time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongGeometric {
     /// The geometric part makes no pass although the rounds have run out.
     Left {
-        /// Never; else it does in other steps.
+        /// Whether the geometric part is always missing; otherwise only in some steps.
         always: bool,
     },
-    /// The geometric part makes passes although nothing collides any more.
+    /// The geometric part makes passes although nothing collides.
     Superfluous,
 }
 
 fosssim_num::closed_set! {
-    /// The wrong positions that the geometric part uses.
+    /// The positions that the geometric part uses by mistake.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongPositions {
-        /// The predicted positions of the integrator, in the first round.
+        /// The first round uses the predicted positions of the integrator.
         Prediction =
-            "the first zones are searched on the predicted positions, not on those that the impulse rounds leave",
-        /// First of all at others than those that the impulse rounds leave.
-        First = "the first zones are searched on other positions than those that the impulse rounds leave",
-        /// Behind the failsafe at those before it.
+            "the first zones are searched on the predicted positions, not on those after the impulse rounds",
+        /// The first round uses other positions than those after the impulse rounds.
+        First = "the first zones are searched on wrong positions, not on those after the impulse rounds",
+        /// The detection after the failsafe uses the positions before it.
         BeforeFailsafe = "the detection after the failsafe uses the positions before it",
     }
 }
@@ -276,9 +277,9 @@ fosssim_num::closed_set! {
 /// The reason why impulse rounds end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopEnd {
-    /// The greatest number of rounds was made.
+    /// The maximum number of rounds was made.
     RanOut,
-    /// Nothing collides any more.
+    /// No pair collides.
     Settled,
 }
 
@@ -286,14 +287,14 @@ fosssim_num::closed_set! {
     /// A fault of the rounds in which zones grow.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongZoneRounds {
-        /// The zones themselves.
+        /// The zones are wrong.
         Growth = "zones are right in the first round, but not as they grow",
         /// There are too few rounds.
         Fewer = "the zones make fewer rounds than they should",
-        /// There are too many.
+        /// There are too many rounds.
         More = "the zones make more rounds than they should",
-        /// The zones, or the number of rounds.
-        Later = "the zones are right at first, but not in later rounds, or there are not as many as there should be",
+        /// The zones or the number of rounds are wrong, from a later round on.
+        Later = "the zones are right in the first round, but later rounds are wrong or too few",
     }
 }
 
@@ -314,10 +315,10 @@ fosssim_num::closed_set! {
         /// Zones that share no particle are moved as one zone.
         Joined = "zones that share no particle are moved as one",
         /// Particles are moved that belong to no zone.
-        Others = "zones move particles that are not theirs",
+        Others = "zones move particles that do not belong to them",
         /// Zones that have to stop move on as rigid bodies.
         MoveOn = "zones that must stop move on as rigid bodies",
-        /// Zones that have to stop do not go back.
+        /// Zones that have to stop keep their new positions.
         KeepPositions = "zones that must stop do not go back to their start",
         /// Zones that have to stop keep some velocity.
         KeepVelocities = "zones that must stop do not lose their velocity",
@@ -330,27 +331,27 @@ fosssim_num::closed_set! {
     pub enum WrongMotion {
         /// The motion of the zones' center of mass.
         Center = "the center of mass of a zone does not move as it should",
-        /// The distances of their particles.
-        Distances = "the particles of a zone do not keep their distances",
-        /// The zones do not turn.
+        /// The distances between particles of a zone change.
+        Distances = "the distances between particles of a zone change",
+        /// The zones do not rotate.
         NoTurn = "zones do not turn",
-        /// The zones turn less than they should.
+        /// The zones rotate less than they should.
         LessTurn = "zones do not turn as far as they should",
-        /// The zones turn further than they should.
+        /// The zones rotate further than they should.
         MoreTurn = "zones turn further than they should",
-        /// The zones turn in the opposite direction.
-        TurnBack = "zones turn the other way round",
-        /// The zones turn by another angle.
-        Turn = "zones do not turn by the angle that they should",
+        /// The zones rotate in the opposite direction.
+        TurnBack = "zones turn in the opposite direction",
+        /// The zones rotate by a wrong angle.
+        Turn = "zones turn by a wrong angle",
         /// The zones' velocities are wrong.
-        Velocities = "velocities in a zone are not those of its motion from start to end",
-        /// The size of their velocities.
-        Speeds = "velocities in a zone are not those of its motion from start to end, though along it",
+        Velocities = "velocities in a zone do not match its motion from start to end",
+        /// The speeds in the zones are wrong.
+        Speeds = "velocities in a zone have the direction of its motion from start to end, but the wrong size",
     }
 }
 
 impl StageFault {
-    /// Returns the stage in which it is.
+    /// Returns the stage that the fault is in.
     #[must_use]
     pub const fn stage(&self) -> StepStage {
         match self {
@@ -389,7 +390,7 @@ impl StageFault {
             },
             Self::ContactVectors { .. } => &[Area::ContactVector],
             Self::Responses { in_rounds: false, .. } | Self::ManyContacts => &[Area::Response],
-            // A hybrid step's trace holds no contact vector.
+            // The trace of a hybrid step holds no contact vector.
             Self::Responses { wrong: WrongResponses::Across(_), .. } => {
                 &[Area::ContactVector, Area::Response, Area::ImpulseLoop]
             }
@@ -409,7 +410,7 @@ impl StageFault {
             | Self::Zones(WrongZones::Partly | WrongZones::NotMerged | WrongZones::Joined | WrongZones::Others) => {
                 &[Area::ImpactZones]
             }
-            // The effects of a larger zone may be the fault of what moves it.
+            // Wrong effects of a larger zone may also come from the code that moves it.
             Self::AfterRounds
             | Self::ZoneRounds(WrongZoneRounds::Growth | WrongZoneRounds::Later)
             | Self::Motion { or_zones: true, .. }
@@ -421,7 +422,7 @@ impl StageFault {
         }
     }
 
-    /// Returns the kind of pair that alone it concerns.
+    /// Returns the kind of pair, if the fault concerns only one.
     #[must_use]
     pub const fn kind(&self) -> Option<PairKind> {
         match self {
@@ -472,31 +473,31 @@ impl StageFault {
 pub struct NotFinite {
     /// The step, from 1; 0 is the first record. `None` for several traces.
     pub step: Option<u32>,
-    /// The stage that makes them from numbers.
+    /// The stage that computes such a value from finite ones.
     pub stage: NanStage,
     /// Whether the first such value is NaN, and not infinite.
     pub is_nan: bool,
-    /// Whether all numbers of a later step are finite again.
+    /// Whether all values of a later step are finite again.
     #[serde(default)]
     pub ends: bool,
 }
 
-/// The first stage of a step whose input is numbers and whose output is not.
+/// The first stage of a step that has finite inputs and an output that is not finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NanStage {
-    /// None: it is in the first record.
+    /// The first record already holds such a value.
     FirstRecord,
-    /// The step itself, before any contact.
+    /// The motion of the step, before any contact.
     Motion,
-    /// The integrator, where it solves a system of equations.
+    /// The integrator, when it solves a system of equations.
     ImplicitMotion,
-    /// The detection of this kind of pair, if that is known: its coefficients.
+    /// The coefficients of the detection; the value is the kind of pair, if it is known.
     Detection(Option<PairKind>),
-    /// Contact vectors and times.
+    /// Contact vectors and times of impact.
     ContactVectors,
     /// The changes by a contact.
     Responses,
-    /// The impulse rounds; their contacts are not in the trace.
+    /// The impulse rounds, whose contacts are not in the trace.
     ImpulseRounds,
     /// Impact zones and the rigid failsafe.
     Zones,

@@ -1,4 +1,4 @@
-//! Guesses about wrong polynomials, without the parts that would give a formula away
+//! Guesses about wrong polynomials, without the values that would give a formula away
 //! ([`PolynomialDetail`](super::PolynomialDetail)).
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -8,7 +8,7 @@ use std::borrow::Cow;
 pub enum Guess {
     /// A guess about the whole list of coefficients.
     List(ListGuess),
-    /// Other inputs or another formula are used: the change of this key, for which the assignment has words.
+    /// Other inputs or another formula are used; the value is the key of a change that the assignment describes.
     Named(Cow<'static, str>),
     /// A guess about one quantity of the formula.
     Quantity(QuantityGuess),
@@ -16,19 +16,19 @@ pub enum Guess {
     Coefficients {
         /// The powers of these coefficients, the highest first.
         powers: Vec<usize>,
-        /// The guess about them.
+        /// The guess about the coefficients.
         wrong: CoefficientGuess,
     },
 }
 
 impl Guess {
-    /// Returns the guess's key as claims have it, which may be the name of a formula: a digest.
+    /// Returns the key of the guess as claims contain it: a digest, because the key may name a formula.
     #[must_use]
     pub fn word(&self) -> String {
         format!("{:08x}", digest(self.key()) >> 32)
     }
 
-    /// Returns whether it may be made of several polynomials, as one mistake.
+    /// Returns whether the guess may be made of several polynomials, as one mistake.
     #[must_use]
     pub const fn is_general(&self) -> bool {
         matches!(self, Self::List(_) | Self::Named(_))
@@ -47,7 +47,7 @@ impl Guess {
     }
 }
 
-/// Returns a digest of a text, the same on every machine (FNV-1a).
+/// Returns a digest of a text (FNV-1a), which is the same on every machine.
 #[must_use]
 pub fn digest(text: &str) -> u64 {
     text.bytes().fold(0xcbf2_9ce4_8422_2325, |digest, byte| (digest ^ u64::from(byte)).wrapping_mul(0x0100_0000_01b3))
@@ -57,17 +57,17 @@ fosssim_num::closed_set! {
     /// A guess about a whole list of coefficients.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum ListGuess {
-        /// All coefficients are zero, or there are none.
+        /// All coefficients are zero or missing.
         AllZero = "all-zero", "All coefficients are zero, or none is logged";
-        /// The list holds the same single number everywhere.
+        /// The list holds the same single number in every sample.
         Constant = "constant", "A constant is used instead of the polynomial";
-        /// All coefficients are the same number everywhere.
+        /// All coefficients are the same number in every sample.
         AllEqual = "all-equal", "All coefficients are the same constant";
         /// The coefficients are rounded to single precision.
-        SinglePrecision = "single-precision", "The coefficients have single precision only";
-        /// The coefficients are divided by the leading coefficient, whatever its sign.
-        Monic = "monic", "The polynomial is divided by its leading coefficient, whose sign gets lost";
-        /// There are more of them than there should be.
+        SinglePrecision = "single-precision", "The coefficients have only single precision";
+        /// The coefficients are divided by the leading coefficient, even if it is negative.
+        Monic = "monic", "The polynomial is divided by its leading coefficient, which loses its sign";
+        /// There are too many coefficients.
         TooLong = "too-long", "The polynomial has too high a degree";
         /// The lowest power comes first.
         Reversed = "reversed", "The coefficients are in the wrong order, lowest power first";
@@ -77,39 +77,39 @@ fosssim_num::closed_set! {
         ReversedNegated = "reversed-negated", "The coefficients are in the wrong order and have the wrong sign";
         /// Two coefficients are exchanged.
         TwoExchanged = "two-exchanged", "Two coefficients are exchanged";
-        /// A zero follows them.
+        /// A zero follows the coefficients.
         TrailingZero = "trailing-zero", "A zero is appended, which raises the degree by one";
         /// The coefficients are those of another polynomial of the pair.
         OtherPolynomial = "other-polynomial", "Polynomials of a pair are exchanged";
         /// The coefficients are those of another polynomial of the pair, with the wrong sign.
         OtherPolynomialNegated = "other-polynomial-negated",
             "A polynomial of the pair is used instead of another one, with the wrong sign";
-        /// Only the constant coefficient is there.
+        /// All coefficients except the constant one are missing.
         ConstantOnly = "cut",
-            "The polynomial is cut to its constant coefficient: it is tested at the start of the step only";
+            "The polynomial is cut to its constant coefficient, so it is tested only at the start of the step";
         /// The leading coefficients are missing.
         Cut = "cut", "The polynomial is cut: leading coefficients are missing";
         /// The last coefficients are missing.
         CutEnd = "cut-end", "The polynomial is cut: its last coefficients are missing";
-        /// Every displacement in them carries the same factor.
+        /// Every displacement is multiplied by the same factor.
         DisplacementScale = "displacement-scale",
-            "All displacements carry the same factor, as velocities or those of another time step do";
+            "All displacements have the same factor, as if they were velocities or had another time step";
     }
-    /// Returns the guess in words.
+    /// Returns the text of the guess.
     words
 }
 
 fosssim_num::closed_set! {
-    /// A guess about one quantity of a formula, in all its places.
+    /// A guess about one quantity of a formula, wherever it occurs.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum QuantityGuess {
-        /// The sign is wrong.
+        /// The sign of the quantity is wrong.
         Sign = "A dot product of the formula has the wrong sign",
         /// The quantity is zero.
         Zero = "A quantity of the formula is zero",
-        /// The quantity carries a factor.
+        /// The quantity is multiplied by a factor.
         Factor = "A quantity of the formula has a wrong factor",
-        /// The coefficient is another number.
+        /// Another quantity is used.
         Other = "Another quantity is used instead of a dot product of the formula",
     }
 }
@@ -118,25 +118,25 @@ fosssim_num::closed_set! {
     /// A guess about coefficients.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum CoefficientGuess {
-        /// Several are wrong, each for itself.
+        /// Several coefficients are wrong, without a common cause.
         Several = "coefficients", "Several coefficients are wrong ({})";
         /// The coefficient is zero.
         Zero = "coefficient-zero", "The {} coefficient is zero";
-        /// The sign is wrong.
+        /// The sign of the coefficient is wrong.
         Sign = "coefficient-sign", "The {} coefficient has the wrong sign";
-        /// The coefficient carries a factor.
+        /// The coefficient is multiplied by a factor.
         Factor = "coefficient-factor", "The {} coefficient has a wrong factor";
-        /// The coefficient has a term too many.
+        /// The coefficient has a surplus term.
         TermForeign = "term-foreign", "The {} coefficient has a term too many";
-        /// A term is missing.
+        /// The coefficient lacks a term.
         TermMissing = "term-missing", "A term of the {} coefficient is missing";
-        /// A term's sign.
+        /// The sign of a term is wrong.
         TermSign = "term-sign", "A term of the {} coefficient has the wrong sign";
-        /// A term's factor.
+        /// The factor of a term is wrong.
         TermFactor = "term-factor", "A term of the {} coefficient has a wrong factor";
         /// Several terms are wrong.
         Terms = "terms", "Several terms of the {} coefficient are wrong";
     }
-    /// Returns the guess in words, with braces for the names of the powers.
+    /// Returns the text of the guess, with braces for the names of the powers.
     words
 }

@@ -1,21 +1,21 @@
-//! The inputs of a detection, as the assignment's notation calls them.
+//! The inputs of a detection, in the assignment's notation.
 use serde::{Deserialize, Serialize};
 
 /// An input of a detection; its name in JSON is its letter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Input {
-    /// The position of the first body at the start of the step; for an edge and a particle, the particle's.
+    /// The position of the first body at the start of the step; in a particle-edge pair, the particle's.
     X1,
-    /// The position of the second body; for an edge and a particle, that of the edge's first endpoint.
+    /// The position of the second body; in a particle-edge pair, the edge's first endpoint.
     X2,
     /// The position of the edge's second endpoint.
     X3,
-    /// The motion of the first body within the step.
+    /// The displacement of the first body within the step.
     Dx1,
-    /// The motion of the second body.
+    /// The displacement of the second body.
     Dx2,
-    /// The motion of the edge's second endpoint.
+    /// The displacement of the edge's second endpoint.
     Dx3,
     /// The first particle's radius.
     R1,
@@ -25,7 +25,7 @@ pub enum Input {
     Re,
     /// The position of the particle near a half-plane at the start of the step.
     X,
-    /// The motion of the particle within the step.
+    /// The displacement of the particle within the step.
     Dx,
     /// A point on the half-plane's boundary.
     P,

@@ -1,4 +1,4 @@
-//! Explanations as values: sentences are made of them where reports are.
+//! Explanations, as values; reports turn them into sentences.
 pub mod about;
 mod area;
 pub mod detail;
@@ -32,51 +32,53 @@ use std::collections::BTreeMap;
 /// A likely mistake, with the evidence for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Explanation {
-    /// A stable key for machines: the id of a known mistake (`pe-square-no-eh`) or of a general finding (`reversed`).
+    /// A stable key for machines: the id of a known mistake (such as `pe-square-no-eh`) or of a general finding (such
+    /// as `reversed`).
     pub key: String,
-    /// The mistake, with what a sentence to the student can say of it without giving a formula away.
+    /// The subject of the explanation, with the facts that a sentence can state without giving a formula away.
     pub about: About,
-    /// The exact form, a line each: which term of which coefficient has which weight. May give the right formula away.
+    /// The exact form, one line each: which term of which coefficient has which weight. It may give the right formula
+    /// away.
     pub details: Vec<Detail>,
-    /// The number of checked samples that it reproduces to round-off.
+    /// The number of checked samples that the mistake reproduces to round-off.
     pub reproduced: u64,
-    /// The number of samples that were examined: polynomials, or steps.
+    /// The number of checked samples, which are polynomials or steps.
     pub samples: u64,
     /// One small example.
     pub example: Option<Example>,
-    /// Keys of other known mistakes that reproduce the same samples, so that this trace can't distinguish them.
+    /// Keys of other known mistakes that reproduce the same samples; this trace cannot distinguish them.
     pub same_as: Vec<String>,
-    /// Keys of mistakes that the trace contradicts: it does what a program with these mistakes never does.
+    /// Keys of mistakes that the trace contradicts, because no program with one of them could write it.
     pub denies: Vec<String>,
-    /// All guesses that would make its polynomials as they are, one word each. A word has the polynomial, then the
-    /// known mistake, or a digest of the guess and one of its exact form, which give nothing away. The guess of the
-    /// explanation comes first. A polynomial that nothing makes has a word without a guess.
+    /// All guesses that would produce the polynomials, one word each. A word consists of the polynomial and the known
+    /// mistake, or of the polynomial, a digest of the guess and a digest of its exact form. Digests do not give a
+    /// formula away. The explanation's own guess comes first. A polynomial without a guess has a word of its name only.
     pub claims: Vec<String>,
 }
 
 impl Explanation {
-    /// The key of the question whether a trace is of its scene, which is no explanation: then there is no other.
+    /// The key of the doubt whether a trace belongs to its scene. It is reported without other explanations.
     pub const OTHER_SCENE: &'static str = "other-scene";
 
-    /// The key of stages that are still empty, reported as one.
+    /// The key of unwritten stages, which are reported together.
     pub const UNFINISHED: &'static str = "unfinished";
 
-    /// The key of pairs that are checked in another order.
+    /// The key of pairs that are checked in the wrong order.
     pub const ORDER: &'static str = StageFault::Order.key();
 
-    /// The key of near pairs that a contest's search leaves out or reports twice.
+    /// The key of near pairs that a contest's search misses or reports twice.
     pub const PAIRS: &'static str = "near-pairs";
 
     /// The key of values that are not finite numbers.
     pub const NOT_FINITE: &'static str = "not-a-number";
 
-    /// The key of what nothing is known to explain.
+    /// The key of faults without any explanation.
     pub const UNEXPLAINED: &'static str = "unexplained";
 
     /// The key of polynomials that are right except for too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
-    /// Returns an explanation without any evidence for it yet.
+    /// Creates an explanation without evidence.
     #[must_use]
     pub fn about(key: impl Into<String>, about: About) -> Self {
         Self {
@@ -92,57 +94,57 @@ impl Explanation {
         }
     }
 
-    /// Returns the question whether a trace is of its scene; `has_length` states that at least the number of records is
+    /// Creates the doubt whether a trace belongs to its scene; `has_length` says whether the number of records is
     /// right.
     #[must_use]
     pub fn for_other_scene(has_length: bool) -> Self {
         Self::about(Self::OTHER_SCENE, About::Scene { has_length })
     }
 
-    /// Creates the explanation that these polynomials are wrong, without an exact form that holds in most traces.
+    /// Creates an explanation of wrong polynomials, without an exact form.
     #[must_use]
     pub fn for_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
         Self::about(Self::UNEXPLAINED, About::Polynomials { subjects, found })
     }
 
-    /// Returns whether this is the question whether the trace is of its scene.
+    /// Returns whether the explanation is the doubt whether the trace belongs to its scene.
     #[must_use]
     pub fn is_other_scene(&self) -> bool {
         matches!(self.about, About::Scene { .. })
     }
 
-    /// Returns whether it reports the first value that is not a finite number, which is shown at every level of hints
-    /// but the lowest.
+    /// Returns whether the explanation reports the first value that is not finite; every level of hints except the
+    /// lowest shows it.
     #[must_use]
     pub const fn is_not_finite(&self) -> bool {
         matches!(self.about, About::NotFinite(_))
     }
 
-    /// Returns whether it is a mistake that reproduces all tried samples.
+    /// Returns whether the explanation is a known mistake that reproduces every sample.
     #[must_use]
     pub fn is_proven(&self) -> bool {
         self.about == About::Mistake && self.reproduced > 0 && self.is_complete()
     }
 
-    /// Returns whether it names stages that are still empty.
+    /// Returns whether the explanation names stages that the student has not written.
     #[must_use]
     pub fn is_unfinished(&self) -> bool {
         self.about == About::Unfinished
     }
 
-    /// Returns whether it reports wrong polynomials and has no exact form for them.
+    /// Returns whether the explanation reports wrong polynomials without an exact form.
     #[must_use]
     pub fn is_unexplained(&self) -> bool {
         self.key == Self::UNEXPLAINED
     }
 
-    /// Returns whether it reports polynomials that are not handed over.
+    /// Returns whether the explanation reports polynomials that are not handed over.
     #[must_use]
     pub fn is_of_missing(&self) -> bool {
         matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
     }
 
-    /// Returns the statement in one word: equal for explanations in the same words, and different for others.
+    /// Returns a key of the statement: equal for explanations with the same text, different for others.
     #[must_use]
     pub fn statement(&self) -> String {
         match &self.about {
@@ -156,7 +158,7 @@ impl Explanation {
         }
     }
 
-    /// Returns the polynomials that it is about, if it is about polynomials.
+    /// Returns the wrong polynomials, if the explanation is about polynomials.
     #[must_use]
     pub fn subjects(&self) -> Vec<Subject> {
         if let About::Polynomials { subjects, .. } = &self.about {
@@ -167,11 +169,11 @@ impl Explanation {
         all.filter(|subject| claims.contains_key(format!("{subject:?}").as_str())).collect()
     }
 
-    /// Lists for each of its polynomials all that would make it: the guess or the known mistake, and the whole word.
+    /// Returns the claims of each polynomial: the guess or known mistake, and the whole word.
     #[must_use]
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
-        // A guess that reproduces only a part makes none of the polynomials.
+        // A guess that reproduces only a part does not produce any whole polynomial.
         let is_part =
             matches!(self.about, About::Polynomials { found: OfPolynomials::Guess(_), .. }) && !self.is_complete();
         for (number, claim) in self.claims.iter().enumerate() {
@@ -185,19 +187,19 @@ impl Explanation {
         all
     }
 
-    /// Returns whether it reports which stage of a step is wrong, which is an observation and no guess.
+    /// Returns whether the explanation names a wrong stage of a step, which is an observation and not a guess.
     #[must_use]
     pub fn is_of_stage(&self) -> bool {
         self.stage().is_some()
     }
 
-    /// Returns whether it only reports that something is wrong with a stage.
+    /// Returns whether the explanation only states that a stage is wrong.
     #[must_use]
     pub const fn is_vague(&self) -> bool {
         matches!(self.about, About::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts))
     }
 
-    /// Returns the stage of a step that it reports as wrong.
+    /// Returns the stage of a step that the explanation reports as wrong.
     #[must_use]
     pub fn stage(&self) -> Option<StepStage> {
         match &self.about {
@@ -206,13 +208,13 @@ impl Explanation {
         }
     }
 
-    /// Returns whether it reproduces everything that was examined.
+    /// Returns whether the explanation reproduces every sample.
     #[must_use]
     pub const fn is_complete(&self) -> bool {
         self.reproduced == self.samples && self.samples > 0
     }
 
-    /// Returns whether it describes the program, so that other traces may confirm it.
+    /// Returns whether the explanation describes the program, so that other traces may confirm it.
     #[must_use]
     pub fn is_vote(&self) -> bool {
         use OfPolynomials::{NearlyRight, Nothing};
@@ -220,7 +222,7 @@ impl Explanation {
         !is_nothing && !self.is_other_scene() && !self.is_not_finite()
     }
 
-    /// Returns whether it explains all that it is about, if that is possible.
+    /// Returns whether the explanation covers all its polynomials or stages.
     #[must_use]
     pub fn is_settled(&self) -> bool {
         self.is_complete() || self.is_of_stage()

@@ -2,10 +2,10 @@
 use fosssim_model::sim::{Pair, PairKind};
 use serde::{Deserialize, Serialize};
 
-/// The near pairs that a search leaves out or reports twice, and the others.
+/// The near pairs that a search misses or reports twice, and the others.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongPairs {
-    /// The first wrong pair and its step, of one trace.
+    /// The first wrong pair and its step, in one trace.
     pub first: Option<(Pair, u32)>,
     /// The numbers of pairs, by kind.
     pub kinds: Vec<PairCounts>,
@@ -16,14 +16,14 @@ pub struct WrongPairs {
 pub struct PairCounts {
     /// The kind.
     pub kind: PairKind,
-    /// The numbers of pairs that are reported never, once and twice.
+    /// The numbers of pairs that are reported zero times, once and twice.
     pub times: [u64; 3],
-    /// The numbers of these pairs with each trait, in the order of the table of traits.
+    /// The numbers of pairs with each trait, in the order of the table of traits.
     pub traits: Vec<[u64; 3]>,
 }
 
 impl WrongPairs {
-    /// Counts the pairs of another trace, too.
+    /// Adds the counts of another trace.
     pub fn add(&mut self, other: &Self) {
         let add = |one: &mut [u64; 3], other: &[u64; 3]| one.iter_mut().zip(other).for_each(|(one, more)| *one += more);
         self.first = None;

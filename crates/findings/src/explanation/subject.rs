@@ -12,7 +12,7 @@ fosssim_num::closed_set! {
         ParticleApproach = "particle-particle approach",
         /// A particle overlaps an edge's line.
         EdgeOverlap = "particle-edge overlap",
-        /// The closest point is behind the edge's first end.
+        /// The closest point is beyond the edge's first end.
         AlphaLow = "particle-edge alpha > 0",
         /// The closest point is before the edge's second end.
         AlphaHigh = "particle-edge alpha < 1",
@@ -36,7 +36,7 @@ impl Subject {
         }
     }
 
-    /// Returns the kind of pair to which it belongs.
+    /// Returns the kind of pair that the polynomial belongs to.
     #[must_use]
     pub const fn kind(self) -> PairKind {
         match self {
@@ -46,7 +46,7 @@ impl Subject {
         }
     }
 
-    /// Returns the degree of its polynomial.
+    /// Returns the degree of the polynomial.
     #[must_use]
     pub const fn degree(self) -> usize {
         match self {

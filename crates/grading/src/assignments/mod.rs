@@ -1,5 +1,5 @@
-//! The parts of grading that are bound to an assignment of the course: the versions of its suite, and the template of
-//! suites. One folder each.
+//! The parts of grading that depend on an assignment: the versions of its suite, and the template of suites. Each
+//! assignment has a folder.
 use super::near;
 use fosssim_model::assignments::{Assignment, Definition};
 
@@ -11,7 +11,7 @@ pub use timing::{MadeScene, TIMING};
 /// The settings of a suite, with comments, up to its groups.
 const SETTINGS: &str = include_str!("settings.toml");
 
-/// Returns a commented suite to start from: the settings, and the groups of a built-in suite.
+/// Returns a commented suite file to start from: the settings, and the groups of a built-in suite.
 #[must_use]
 pub fn template(name: &str) -> Option<String> {
     let (assignment, Version { suite, .. }) = version(name)?;
@@ -20,25 +20,25 @@ pub fn template(name: &str) -> Option<String> {
     Some(SETTINGS.replace("TITLE", title).replace("MILESTONE", key) + groups)
 }
 
-/// A version of an assignment's suite. More scenes change the points of all, so they make a new version; published
-/// versions stay.
+/// A version of an assignment's suite. More scenes change the points of all scenes, so they make a new version;
+/// published versions stay.
 #[derive(Debug, Clone, Copy)]
 pub struct Version {
-    /// The suite, as a text.
+    /// The suite file's text.
     pub suite: &'static str,
-    /// The names of its scenes, a line each; `None` for a version that has all of the assignment's folder.
+    /// The names of its scenes, one per line; `None` for a version with all scenes of the assignment's folder.
     scenes: Option<&'static str>,
 }
 
 impl Version {
-    /// Returns whether a scene of the assignment belongs to it.
+    /// Returns whether the version has a scene of the assignment.
     #[must_use]
     pub fn has(&self, scene: &str) -> bool {
         self.scenes.is_none_or(|scenes| scenes.lines().any(|line| line == scene))
     }
 }
 
-/// The milestones before t2m2 in one suite, under the name by which servers and courses may know it.
+/// The suite of the milestones before t2m2, under the name that existing servers and courses may use.
 const EARLIER: Version = Version { suite: include_str!("earlier/suite.toml"), scenes: None };
 
 /// The two versions in an assignment's folder.
@@ -57,7 +57,7 @@ macro_rules! two_versions {
     };
 }
 
-/// Returns the versions of an assignment's suite: 1 comes first, the newest last.
+/// Returns the versions of an assignment's suite, the oldest first.
 #[must_use]
 pub const fn versions(assignment: Assignment) -> &'static [Version] {
     match assignment {
@@ -70,7 +70,7 @@ pub const fn versions(assignment: Assignment) -> &'static [Version] {
     }
 }
 
-/// Returns the assignment and the version of a name such as `t2m2@1`, in letters of any case; `t2m2` is the newest
+/// Returns the assignment and the version of a suite name such as `t2m2@1`, ignoring case; `t2m2` is the newest
 /// version.
 #[must_use]
 pub fn version(name: &str) -> Option<(Assignment, Version)> {
@@ -87,22 +87,22 @@ pub fn version(name: &str) -> Option<(Assignment, Version)> {
     Some((assignment, all[number]))
 }
 
-/// Returns the names of the built-in suites, each with its version, such as `t2m2@2`: the newest version for the
-/// default assignment first.
+/// Returns the names of the built-in suites with their versions, such as `t2m2@2`, beginning with the newest version
+/// for the default assignment.
 pub fn names() -> impl Iterator<Item = String> {
     Assignment::default_first().into_iter().flat_map(|assignment| {
         (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))
     })
 }
 
-/// Returns the end of a message about a suite that does not come with the program, as [`near::meant`].
+/// Returns the end of a message about an unknown suite, like [`near::suggest`].
 #[must_use]
-pub fn meant(name: &str) -> String {
+pub fn suggest(name: &str) -> String {
     let known: Vec<String> = names().collect();
-    near::meant(name, known.iter().filter_map(|known| known.split('@').next()))
+    near::suggest(name, known.iter().filter_map(|known| known.split('@').next()))
 }
 
-/// Returns the name of the suite that is meant where none is named.
+/// Returns the name of the default suite.
 #[must_use]
 pub fn default_name() -> String {
     format!("{}@{}", Assignment::DEFAULT.key(), versions(Assignment::DEFAULT).len())

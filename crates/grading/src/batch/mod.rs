@@ -1,7 +1,7 @@
-//! Shares the scenes of submissions out among jobs, and reports the progress.
+//! Distributes the scenes of submissions among jobs, and reports the progress.
 //!
-//! Events are the interface to reports and progress displays. They arrive on the caller's thread, one after the other,
-//! and a result is kept before its event is sent. What a grading consists of is in [`grader`](super::grader).
+//! Events are the interface to reports and progress displays. They arrive on the caller's thread, one at a time, and a
+//! result is stored before its event is sent. The steps of a grading are in [`grader`](super::grader).
 use super::{
     cancellation::Cancellation,
     grade::Grade,
@@ -16,23 +16,23 @@ use std::sync::{
     mpsc,
 };
 
-/// An event of a grading.
+/// A progress event of a grading.
 #[derive(Debug)]
 pub enum Event<'a> {
-    /// A scene begins to run.
+    /// A run of a scene begins.
     SceneBegins {
         /// The submission's number.
         submission: usize,
         /// The scene's number in the plan.
         scene: usize,
     },
-    /// Steps of a running scene have been judged up to this one; not every step is reported.
+    /// A running scene has been judged up to a step; not every step is reported.
     Step {
         /// The submission's number.
         submission: usize,
         /// The scene's number in the plan.
         scene: usize,
-        /// The step.
+        /// The last judged step.
         step: u32,
     },
     /// A scene has its verdict.
@@ -41,7 +41,7 @@ pub enum Event<'a> {
         submission: usize,
         /// The scene's number in the plan.
         scene: usize,
-        /// Whether it was taken from an earlier run.
+        /// Whether the verdict was reused from an earlier run.
         cached: bool,
     },
     /// A submission has its grade.
@@ -58,23 +58,23 @@ pub enum Event<'a> {
 pub struct BatchResult {
     /// The grades, in the order of the submissions.
     pub grades: Vec<Grade>,
-    /// A fault outside the grades.
+    /// An error outside the grades, if there was one.
     pub fault: Option<GradeFault>,
 }
 
-/// A fault outside the scenes' own results; always ours or the machine's.
+/// An error outside the results of scenes; its cause is the grader or the machine.
 #[derive(Debug, thiserror::Error)]
 pub enum GradeFault {
-    /// Results could no longer be kept, for example because the disk is full: grading was stopped then.
+    /// Results could not be stored, for example because the disk is full, so grading was stopped.
     #[error(transparent)]
     Keeping(#[from] KeepError),
-    /// A report of an event failed; grading continued.
+    /// An event could not be reported; grading continued.
     #[error("reporting the progress of grading failed: {0}; please report this")]
     Telling(Fault),
 }
 
 /// Grades all submissions, and returns the grades in the same order. After a cancellation, scenes that were not run are
-/// marked. Without `results` nothing is looked up or kept.
+/// marked. Without `results`, nothing is reused or stored.
 pub fn run(
     grader: &Grader<'_>,
     submissions: &[Submission],
@@ -92,18 +92,18 @@ pub fn run(
             telling.get_or_insert(panic);
         }
     };
-    let mut grades = share_out(grader, &gradings, &mut tell);
+    let mut grades = distribute(grader, &gradings, &mut tell);
     Grade::note_same_programs(&mut grades);
     drop(gradings);
-    // Once more: what killed graders had begun may have needed a moment to end.
+    // Sweep again: the processes of killed graders may have needed a moment to end.
     temporary::sweep();
     let fault = shared.full.into_inner().map(GradeFault::Keeping).or(telling.map(GradeFault::Telling));
     BatchResult { grades, fault }
 }
 
-/// Lets each job take scene after scene. The job with a submission's last result makes its grade, and this thread
-/// receives all events.
-fn share_out(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
+/// Lets each job process one scene after the other. The job with a submission's last result makes its grade; this
+/// thread receives all events.
+fn distribute(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
     let scenes: Vec<&SceneTask> = grader.plan.scenes().collect();
     let tasks = gradings.len() * scenes.len();
     let next = AtomicUsize::new(0);

@@ -5,7 +5,7 @@
 pub struct Axis {
     /// The name of the property.
     pub name: &'static str,
-    /// The values, in words.
+    /// The possible values, as text.
     pub values: &'static [&'static str],
 }
 

@@ -1,4 +1,4 @@
-//! The properties of an observer's events: a detection call, and a zone that is about to be moved.
+//! The properties of an observer's events: of a detection call, and of a zone before it is moved.
 use super::axes::{
     EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Found, Integrator, Kind, Likeness, Limit, Motion, Normal,
     Place, Radii, Restitution, Side, SomeFixed, When, Why,
@@ -12,10 +12,10 @@ use fosssim_num::{
     vector::{Vec2, at, over},
 };
 
-/// Positions closer to an end of an edge than this part of it are near it.
-const NEAR: f64 = 0.05;
+/// The part of an edge, from each end, within which positions count as near the end.
+const NEAR_END: f64 = 0.05;
 
-/// Returns the place at which a pair is checked.
+/// Returns the stage in which a pair is checked, as a property.
 pub(super) const fn place_of_stage(stage: Stage) -> Found {
     match stage {
         Stage::Simple | Stage::ContinuousTime => Found::Continuous,
@@ -26,7 +26,7 @@ pub(super) const fn place_of_stage(stage: Stage) -> Found {
     }
 }
 
-pub(super) fn when(time: f64) -> When {
+pub(super) fn time_range(time: f64) -> When {
     match time {
         0.0 => When::Start,
         1.0 => When::End,
@@ -64,7 +64,7 @@ pub(super) const fn limit(scene: &Scene) -> Limit {
     }
 }
 
-/// Returns the particles of a pair: one and the other, or one and the two ends.
+/// Returns the particles of a pair: both particles, or the particle and both endpoints of the edge.
 pub(super) fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
     let (one, other) = (pair.first as usize, pair.second as usize);
     match pair.kind {
@@ -113,7 +113,7 @@ pub(super) fn masses(scene: &Scene, bodies: &[usize]) -> Likeness {
     if bodies.iter().all(|&body| scene.particles[body].mass == first) { Likeness::Equal } else { Likeness::Unequal }
 }
 
-/// Returns whether all radii are the same: those of the particles; for an edge only its own and the particle's.
+/// Returns whether all radii are the same: those of the particles, or for an edge its own and the particle's.
 pub(super) fn radii(scene: &Scene, bodies: &[usize], edge: Option<&Edge>) -> Radii {
     let first = scene.particles[bodies[0]].radius;
     let equal = match edge {
@@ -140,7 +140,7 @@ pub(super) const fn ends(edge: &Edge) -> Ends {
     }
 }
 
-/// Returns the position of a body at a time, as a part of the step.
+/// Returns a body's position at `time`, a fraction of the step.
 fn position(detection: &Detection<'_>, body: usize, time: f64) -> Vec2 {
     let start = at(detection.q_start, body);
     start + time * (at(detection.q_end, body) - start)
@@ -149,8 +149,8 @@ fn position(detection: &Detection<'_>, body: usize, time: f64) -> Vec2 {
 pub(super) fn place(detection: &Detection<'_>, bodies: &[usize], time: f64) -> Place {
     let [one, two, three] = [0, 1, 2].map(|index| position(detection, bodies[index], time));
     match (one - two).dot(&(three - two)) / (three - two).dot(&(three - two)) {
-        ..NEAR => Place::First,
-        alpha if alpha > 1.0 - NEAR => Place::Second,
+        ..NEAR_END => Place::First,
+        alpha if alpha > 1.0 - NEAR_END => Place::Second,
         _ => Place::Inside,
     }
 }
@@ -178,9 +178,9 @@ pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
     if (normal.dot(&normal) - 1.0).abs() < 1e-6 { Normal::Unit } else { Normal::Other }
 }
 
-/// Returns the reason why a pair does not collide, by the signs of its polynomials at a few times of this step and of
-/// the next one.
-pub(super) fn why(kind: PairKind, polynomials: &[Polynomial]) -> Why {
+/// Returns the reason why a pair does not collide, from the signs of its polynomials at a few times of this step and
+/// the next.
+pub(super) fn miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Why {
     const TIMES: u32 = 8;
     let positive = |polynomial: &Polynomial, time: f64| polynomial.evaluate(time) > 0.0;
     let holds_but = |left_out: usize, range: std::ops::RangeInclusive<u32>| {
@@ -199,9 +199,9 @@ pub(super) fn why(kind: PairKind, polynomials: &[Polynomial]) -> Why {
     }
 }
 
-/// Returns the motion of a zone from the start of the step to the place at which the failsafe finds it, in the
-/// arithmetic of collisions.md 5: a zone that does not turn has no angular momentum to the last bit.
-pub(super) fn motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
+/// Returns the motion of a zone from the start of the step to its positions before the failsafe. The arithmetic is that
+/// of collisions.md 5: a zone that does not turn has exactly zero angular momentum.
+pub(super) fn zone_motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
     let mass = |particle: usize| scene.particles[particle].mass;
     let moved = |particle| at(q_end, particle) - at(q_start, particle);
     if particles.iter().all(|&particle| moved(particle) == Vec2::zeros()) {

@@ -1,26 +1,25 @@
-//! The events in a step, by their properties: the kinds that are counted, and which properties exclude each
-//! other.
+//! The kinds of events in a step that are counted, with their properties and the values that exclude each other.
 use super::axes::{
     Age, Axis, Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Forces, Found, Held, Hits, Integrator,
     Kind, Likeness, Limit, Links, LoopEnd, Motion, Normal, Penalty, Place, Position, Radii, Restitution, Rounds, Side,
     Size, SomeFixed, Value, When, Why, ZoneCount, ZoneEdge,
 };
 
-/// A kind of event with its properties. Scenes have to contain every pair of values of two of them.
+/// A kind of event with its properties. Scenes have to contain every pair of values of any two properties.
 #[derive(Debug)]
 pub struct Family {
     /// The name of the event.
     pub name: &'static str,
     /// The family's properties.
     pub axes: &'static [Axis],
-    /// Pairs of values that no event can have.
+    /// The pairs of values that no event can have.
     pub(super) never: &'static [(Value, Value)],
 }
 
-/// An event: the number of its kind in [`FAMILIES`], and the value of each property, as a number.
-pub(super) type Happening = (usize, Vec<usize>);
+/// An event: the index of its kind in [`FAMILIES`], and the index of each property's value.
+pub(super) type Event = (usize, Vec<usize>);
 
-/// Declares the events of a kind: its number, their properties, and what excludes each other.
+/// Declares a kind of event: its number, its properties, and the values that exclude each other.
 macro_rules! family {
     ($type:ident, $number:literal, $name:literal { $($field:ident: $axis:ident),+ $(,)? } never $never:expr) => {
         #[derive(Debug, Clone, Copy)]
@@ -31,14 +30,14 @@ macro_rules! family {
         impl $type {
             pub(super) const FAMILY: Family = Family { name: $name, axes: &[$($axis::AXIS),+], never: $never };
 
-            pub(super) fn happening(self) -> Happening {
+            pub(super) fn happening(self) -> Event {
                 ($number, vec![$(self.$field as usize),+])
             }
         }
     };
 }
 
-/// Values that exclude each other: one, and all values of another property that no event has together with it.
+/// Declares values that exclude each other: one value, and all values of another property that never occur with it.
 macro_rules! never {
     ($($one:ident::$value:ident with $other:ident::{$($excluded:ident),+}),* $(,)?) => {
         &[$($((($one::AXIS.name, $one::$value as usize), ($other::AXIS.name, $other::$excluded as usize))),+),*]
@@ -87,7 +86,8 @@ family!(NoContact, 3, "a pair does not collide" {
     found: Found,
     fixed: SomeFixed,
 } never never![
-    // Only edges have ends that a particle can miss, and a half-plane has one particle, which is fixed or not.
+    // Only edges have ends that a particle can miss. A pair with a half-plane has one particle, which is either fixed
+    // or not.
     Kind::Particles with Why::{BesideFirst, BesideSecond},
     Kind::HalfPlane with Why::{BesideFirst, BesideSecond},
     Kind::HalfPlane with SomeFixed::{Some},
@@ -106,14 +106,14 @@ family!(MovedZone, 4, "the failsafe moves a zone" {
     limit: Limit,
     integrator: Integrator,
 } never never![
-    // A single body hits a half-plane, cannot turn, has not grown, has no edge and no other body to differ from.
+    // A single body hits a half-plane. It cannot turn, has not grown, has no edge, and differs from no other body.
     Size::One with Held::{Nothing, Fixed},
     Size::One with Motion::{Turns},
     Size::One with Age::{Grown},
     Size::One with ZoneEdge::{Next, Previous, Apart},
     Size::One with Likeness::{Unequal},
     Size::One with Radii::{Unequal},
-    // An edge and its particle are three. One contact joins three at most, and a half-plane has a contact of its own.
+    // An edge and its particle are three bodies. One contact joins at most three, and a half-plane has its own contact.
     Size::Two with ZoneEdge::{Next, Previous, Apart},
     Size::More with Links::{One},
 ]);
@@ -135,7 +135,7 @@ family!(HybridStep, 6, "a step of hybrid" {
     penalty: Penalty,
     integrator: Integrator,
 } never never![
-    // Zones are searched if impulses do not suffice, and then there is a round.
+    // If impulses do not suffice, zones are searched in at least one round.
     LoopEnd::Nothing with ZoneCount::{One, Several},
     LoopEnd::Within with ZoneCount::{One, Several},
     LoopEnd::JustEnough with ZoneCount::{One, Several},
@@ -145,17 +145,17 @@ family!(HybridStep, 6, "a step of hybrid" {
     LoopEnd::RunOut with Rounds::{None},
     LoopEnd::NotAllowed with Rounds::{None},
     Limit::Zero with Rounds::{None},
-    // A second round follows from a new zone.
+    // A new zone causes a second round.
     ZoneCount::None with Rounds::{Two, More},
     ZoneCount::One with Rounds::{None},
     ZoneCount::Several with Rounds::{None},
-    // The ends that a limit allows.
+    // The loop ends that each limit allows.
     Limit::Zero with LoopEnd::{Nothing, Within, JustEnough, RunOut},
     Limit::One with LoopEnd::{Within, JustEnough, NotAllowed},
     Limit::More with LoopEnd::{NotAllowed},
 ]);
 
-/// All kinds of events, by their numbers.
+/// All kinds of events, in the order of their numbers.
 pub const FAMILIES: [Family; 7] = [
     ParticleContact::FAMILY,
     EdgeContact::FAMILY,

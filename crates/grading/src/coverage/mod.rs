@@ -1,9 +1,8 @@
 //! The contents of a suite's scenes, measured from the reference's run: kinds of contacts, zones and steps.
 //!
-//! An event in a step has properties ([`FAMILIES`]): it is a contact, a pair that does not collide, a zone
-//! that the failsafe moves, the step as a whole. A suite covers two values of two properties when one event of one of
-//! its scenes has both. A mistake that shows with one or two properties together therefore meets a scene where it can
-//! show.
+//! An event in a step has properties ([`FAMILIES`]): it is a contact, a pair that does not collide, a zone that the
+//! failsafe moves, the step as a whole. A suite covers a pair of values of two properties if an event in one of its
+//! scenes has both. A mistake that depends on one or two properties therefore occurs in some scene.
 mod axes;
 mod events;
 mod families;
@@ -19,20 +18,20 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// Two values of one kind of event, by their numbers: the kind, and twice a property and its value. The first property
-/// comes before the second in the family's list.
+/// Two values of two properties of one kind of event, by index. The first property comes before the second in the
+/// family's list.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pairing {
     /// The kind of event, an index into [`FAMILIES`].
     pub family: usize,
-    /// A property and its value.
+    /// The first property's index and its value's index.
     pub one: (usize, usize),
-    /// Another property and its value.
+    /// The second property's index and its value's index.
     pub other: (usize, usize),
 }
 
 impl Pairing {
-    /// Returns all that some event can have.
+    /// Returns all pairs of values that an event can have.
     pub fn all() -> impl Iterator<Item = Self> {
         FAMILIES
             .iter()
@@ -55,7 +54,7 @@ impl Pairing {
         !family.never.iter().any(|never| *never == (one, other) || *never == (other, one))
     }
 
-    /// Returns both values in words: `fixed: the first, time: start of the step`.
+    /// Returns both values as text, such as `fixed: the first, time: start of the step`.
     #[must_use]
     pub fn describe(self) -> String {
         let value = |(axis, value): (usize, usize)| {
@@ -73,10 +72,11 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Returns the events of one scene; `None` if its collisions are not those of the assignment.
+    /// Returns the events of one scene; `None` if its collision handling is not that of the assignment.
     ///
     /// # Errors
-    /// When it can't be simulated to its end.
+    ///
+    /// When the scene can't be simulated to its end.
     pub fn for_scene(scene: &Scene) -> Result<Self, StepError> {
         let mut coverage = Self::default();
         if scene.assignment() == Assignment::T2M2 {
@@ -89,12 +89,12 @@ impl Coverage {
         Ok(coverage)
     }
 
-    /// Adds what other scenes contain.
+    /// Adds the events of other scenes.
     pub fn add(&mut self, other: &Self) {
         self.seen.extend(&other.seen);
     }
 
-    /// Returns whether nothing is known of any step.
+    /// Returns whether no event is recorded.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.seen.is_empty()
@@ -106,7 +106,7 @@ impl Coverage {
         self.seen.contains(&pairing)
     }
 
-    /// Returns the contents by single values: the kind of event, a property, and its value.
+    /// Returns the single values that occur, each as the kind of event, the property, and the value.
     pub fn values(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let values = self
             .seen
@@ -127,8 +127,8 @@ impl Coverage {
         Pairing::all().filter(|pairing| !self.has(*pairing))
     }
 
-    /// Notes an event.
-    fn note(&mut self, (family, values): &families::Happening) {
+    /// Records an event.
+    fn note(&mut self, (family, values): &families::Event) {
         for (first, &one) in values.iter().enumerate() {
             for (second, &other) in values.iter().enumerate().skip(first + 1) {
                 self.seen.insert(Pairing { family: *family, one: (first, one), other: (second, other) });

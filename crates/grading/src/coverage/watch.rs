@@ -1,4 +1,4 @@
-//! Observes the reference's run and notes every event.
+//! Observes the reference's run and records every event.
 use super::{
     Coverage,
     axes::{
@@ -6,7 +6,7 @@ use super::{
     },
     events,
     families::{
-        ContinuousStep, EdgeContact, HalfPlaneContact, Happening, HybridStep, MovedZone, NoContact, ParticleContact,
+        ContinuousStep, EdgeContact, Event, HalfPlaneContact, HybridStep, MovedZone, NoContact, ParticleContact,
     },
 };
 use fosssim_model::{
@@ -15,32 +15,32 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// The bodies of a contact of the current pass, and its event: once if it is their only contact, and once if they have
-/// several. The end of the pass decides which.
-type WatchedContact = (Vec<usize>, [Happening; 2]);
+/// The bodies of a contact of the current pass, and its event in two forms: as their only contact, and as one of
+/// several. The end of the pass decides which applies.
+type WatchedContact = (Vec<usize>, [Event; 2]);
 
-/// A zone as the last round had it.
+/// A zone of the last round.
 type EarlierZone = (Vec<usize>, bool);
 
 pub(super) struct Watch<'a> {
     scene: &'a Scene,
     coverage: &'a mut Coverage,
     stage: Stage,
-    step: StepHeard,
+    step: StepEvents,
 }
 
-/// The events of the step that runs.
+/// The events of the current step.
 #[derive(Default)]
-struct StepHeard {
+struct StepEvents {
     /// The positions of bodies at the start and at the end of the step, as the current pass sees them.
     q_start: Vec<f64>,
     q_end: Vec<f64>,
     contacts: Vec<WatchedContact>,
-    /// The number of hits in each pass: of the impulse rounds, or of the step's only pass.
+    /// The number of hits in each pass of the impulse rounds, or in the step's only pass.
     hits: Vec<usize>,
     /// All contacts of the step's passes for zones.
     zone_contacts: BTreeSet<Pair>,
-    /// The zones that are moved in this round, and in the round before.
+    /// The zones that are moved in this round and the round before.
     zones: Vec<EarlierZone>,
     before: Vec<EarlierZone>,
     rounds: u32,
@@ -48,12 +48,12 @@ struct StepHeard {
 
 impl<'a> Watch<'a> {
     pub(super) fn new(scene: &'a Scene, coverage: &'a mut Coverage) -> Self {
-        Self { scene, coverage, stage: Stage::Simple, step: StepHeard::default() }
+        Self { scene, coverage, stage: Stage::Simple, step: StepEvents::default() }
     }
 
-    fn contact(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: Company) -> Happening {
+    fn contact(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: Company) -> Event {
         let scene = self.scene;
-        let (found, when) = (events::place_of_stage(self.stage), events::when(time));
+        let (found, when) = (events::place_of_stage(self.stage), events::time_range(time));
         let (restitution, integrator) = (events::restitution(scene), events::integrator(scene));
         let masses = events::masses(scene, bodies);
         match detection.pair.kind {
@@ -86,7 +86,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Notes the contacts of a pass, now that it is known which have bodies in common.
+    /// Records the contacts of a pass, after it is known which have bodies in common.
     fn note_contacts(&mut self) {
         let contacts = std::mem::take(&mut self.step.contacts);
         for (index, (bodies, [alone, several])) in contacts.iter().enumerate() {
@@ -129,7 +129,7 @@ impl<'a> Watch<'a> {
         let zone = MovedZone {
             size,
             held,
-            motion: events::motion(scene, particles, &self.step.q_start, &self.step.q_end),
+            motion: events::zone_motion(scene, particles, &self.step.q_start, &self.step.q_end),
             age,
             position,
             edge: ZoneEdge::None,
@@ -187,7 +187,7 @@ const fn forces(forces: &[Force]) -> Forces {
 
 impl Observer for Watch<'_> {
     fn begin_step(&mut self, _step: u32) {
-        self.step = StepHeard::default();
+        self.step = StepEvents::default();
     }
 
     fn begin_pass(&mut self, pass: Pass) {
@@ -215,7 +215,7 @@ impl Observer for Watch<'_> {
             Decision::Miss { .. } => {
                 let no_contact = NoContact {
                     kind: events::kind(detection.pair.kind),
-                    why: events::why(detection.pair.kind, detection.polynomials),
+                    why: events::miss_reason(detection.pair.kind, detection.polynomials),
                     found: events::place_of_stage(self.stage),
                     fixed: events::some_fixed(self.scene, &bodies),
                 };

@@ -28,7 +28,7 @@ fn key() -> Key {
 
 /// A result that was written and read again.
 fn again(result: &SceneResult) -> SceneResult {
-    let entry = read_line(&line(&key(), "submission", result)).expect("our own form is sound");
+    let entry = read_line(&format_line(&key(), "submission", result)).expect("our own form is sound");
     assert_eq!((&entry.key, entry.submission.as_str()), (&key(), "submission"));
     entry.result
 }
@@ -247,7 +247,7 @@ fn every_reason_and_every_end_reads_back() {
 
 #[test]
 fn another_version_and_damage_are_not_read() {
-    let written = String::from_utf8(line(&key(), "submission", &wrong())).expect("text");
+    let written = String::from_utf8(format_line(&key(), "submission", &wrong())).expect("text");
     assert!(read_line(written.as_bytes()).is_some());
     assert_eq!(written.find('\n'), Some(written.len() - 1), "one line");
     assert!(

@@ -1,19 +1,19 @@
-//! Suites and scenes that are files.
-use super::{MatchingScenes, Plan, built_in, built_in_names, load_by, meant};
+//! Suites and scenes in files.
+use super::{MatchingScenes, Plan, built_in, built_in_names, load_by, suggest};
 use crate::config::SuiteError;
 use fosssim_files::{open_file, read_limited, read_text};
 use fosssim_model::scene;
 use std::{io, path::Path};
 
-/// A suite of more bytes is none.
-pub const LARGEST_SUITE: u64 = 1 << 20;
+/// The maximum size of a suite file, in bytes.
+pub const MAX_SUITE_BYTES: u64 = 1 << 20;
 
-/// The greatest number of scenes of a suite, and of bytes in all of them.
-pub const MOST_SCENES: usize = 10_000;
-/// See [`MOST_SCENES`].
-pub const MOST_SCENE_BYTES: u64 = 256 << 20;
+/// The maximum number of scenes of a suite.
+pub const MAX_SCENES: usize = 10_000;
+/// The maximum number of bytes in all scenes of a suite.
+pub const MAX_SCENE_BYTES: u64 = 256 << 20;
 
-/// The reason why there is no plan: no such suite, a file that can't be read, or everything that is wrong with it.
+/// The reason why there is no plan: no such suite, an unreadable file, or a suite with errors.
 #[derive(Debug, thiserror::Error)]
 #[error("{words}")]
 pub struct FindError {
@@ -29,27 +29,28 @@ impl From<String> for FindError {
     }
 }
 
-/// Returns the message for a suite that is not sound; each problem is a line.
-fn unsound(name: &str, SuiteError { problems }: &SuiteError) -> String {
+/// Returns the message for an invalid suite, with a line for each problem.
+fn describe_errors(name: &str, SuiteError { problems }: &SuiteError) -> String {
     let lines: String = problems.iter().map(|(at, text)| format!("\n{name}:{at}: {text}")).collect();
     let plural = if problems.len() == 1 { "" } else { "s" };
     format!("the suite has {} problem{plural}:{lines}", problems.len())
 }
 
-/// Finds a suite: one that comes with the program, by its name, or a file. Its own files are looked up next to it.
+/// Finds a suite: one of the program's by its name, or a file. Files that it names are relative to its folder.
 ///
 /// # Errors
-/// When there is no such suite; otherwise everything that is wrong with it.
+///
+/// When there is no such suite, or with all of its problems.
 pub fn find(name: &str) -> Result<Plan, FindError> {
     let path = Path::new(name);
     let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     let loaded = match built_in(name) {
         Some(text) => load(text, Path::new(".")),
         None => {
-            let text = read_text(path, LARGEST_SUITE).map_err(|why| match why.kind() {
+            let text = read_text(path, MAX_SUITE_BYTES).map_err(|why| match why.kind() {
                 io::ErrorKind::NotFound => {
                     let known = built_in_names().collect::<Vec<_>>().join(", ");
-                    format!("no suite {name}: it is neither a file nor one of {known}{}", meant(name)).into()
+                    format!("no suite {name}: it is neither a file nor one of {known}{}", suggest(name)).into()
                 }
                 _ => FindError { words: format!("cannot read the suite {name}"), why: Some(why) },
             })?;
@@ -60,25 +61,26 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
             load(&text, beside)
         }
     };
-    loaded.map_err(|error| unsound(name, &error).into())
+    loaded.map_err(|error| describe_errors(name, &error).into())
 }
 
-/// Reads, validates and looks up a suite; files are relative to `folder`.
+/// Reads and validates a suite, and finds its scenes; files are relative to `folder`.
 ///
 /// # Errors
-/// As for [`load_by`].
+///
+/// The errors of [`load_by`].
 pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
-    let mut room = FileBudget { scenes: MOST_SCENES, bytes: MOST_SCENE_BYTES };
-    load_by(text, &mut |pattern| files(pattern, folder, &mut room))
+    let mut room = FileBudget { scenes: MAX_SCENES, bytes: MAX_SCENE_BYTES };
+    load_by(text, &mut |pattern| find_files(pattern, folder, &mut room))
 }
 
-/// The room that is left for a suite's files.
+/// The remaining budget for a suite's files.
 struct FileBudget {
     scenes: usize,
     bytes: u64,
 }
 
-fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<MatchingScenes, String> {
+fn find_files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<MatchingScenes, String> {
     let path = folder.join(pattern);
     let text = path.to_str().ok_or_else(|| format!("{}: the folder's name is not UTF-8", folder.display()))?;
     let paths = glob::glob(text).map_err(|error| format!("pattern {pattern}: {error}"))?;
@@ -89,30 +91,30 @@ fn files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Matching
         let name = relative.with_extension("").to_string_lossy().into_owned();
         let xml = scene_file(&path)?;
         room.scenes = room.scenes.checked_sub(1).ok_or_else(|| {
-            format!("with pattern {pattern} the suite has more than {MOST_SCENES} scenes, which is the limit")
+            format!("with pattern {pattern} the suite has more than {MAX_SCENES} scenes, which is the limit")
         })?;
         room.bytes = room.bytes.checked_sub(xml.len() as u64).ok_or_else(|| {
             format!(
-                "with pattern {pattern} the suite's scenes have more than {MOST_SCENE_BYTES} bytes, which is the \
+                "with pattern {pattern} the suite's scenes have more than {MAX_SCENE_BYTES} bytes, which is the \
                 limit"
             )
         })?;
         found.push((name, xml));
     }
     if found.is_empty() {
-        return Err(format!("no scene file matches {pattern} (files are looked up next to the suite)"));
+        return Err(format!("no scene file matches {pattern} (paths are relative to the suite's folder)"));
     }
     Ok(found)
 }
 
-/// Returns the bytes of a scene: of a regular file, which can be read without waiting.
+/// Returns the content of a scene file, which must be regular so that reading does not block.
 fn scene_file(path: &Path) -> Result<Vec<u8>, String> {
-    const LARGEST: u64 = scene::MAX_SCENE_BYTES as u64;
+    const MAX_BYTES: u64 = scene::MAX_SCENE_BYTES as u64;
     let (file, size) = open_file(path, true).map_err(|error| error.to_string())?;
-    if size > LARGEST {
-        return Err(format!("{} is too large for a scene ({size} bytes, the limit is {LARGEST})", path.display()));
+    if size > MAX_BYTES {
+        return Err(format!("{} is too large for a scene ({size} bytes, the limit is {MAX_BYTES})", path.display()));
     }
-    let read = file.metadata().and_then(|metadata| read_limited(file, &metadata, LARGEST));
+    let read = file.metadata().and_then(|metadata| read_limited(file, &metadata, MAX_BYTES));
     read.map_err(|error| format!("{}: {error}", path.display()))
 }
 
@@ -127,7 +129,7 @@ mod tests {
             std::fs::write(folder.path().join(name), "<scene/>").expect("written");
         }
         let found = |pattern: &str, scenes, bytes| {
-            let found = files(pattern, folder.path(), &mut FileBudget { scenes, bytes });
+            let found = find_files(pattern, folder.path(), &mut FileBudget { scenes, bytes });
             found.map(|found| found.len())
         };
         assert_eq!(found("*.xml", 3, 24), Ok(3));

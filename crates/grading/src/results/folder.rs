@@ -1,8 +1,8 @@
 //! Results in a folder: a journal with one JSON line per judged scene.
 //!
-//! A line is written and flushed before its result is reported. A line cut short by a crash is dropped on the next
-//! opening. [`line`] writes the lines; those of other versions are ignored. A lock keeps two graders out of one folder.
-use super::{KeepError, Results, line, read_line};
+//! A line is written and flushed before its result is reported. A line that a crash cut short is dropped at the next
+//! opening. Lines of other versions are ignored. A lock prevents two graders in one folder.
+use super::{KeepError, Results, format_line, read_line};
 use crate::{key::Key, result::SceneResult};
 use fosssim_files::{FileError, Folder};
 use std::{
@@ -15,20 +15,20 @@ use std::{
     sync::{Mutex, MutexGuard, PoisonError},
 };
 
-/// The file that keeps results.
+/// The name of the journal file.
 pub const JOURNAL: &str = "journal.jsonl";
 
-/// The file that a grader at work holds locked.
-pub const LOCK: &str = ".lock";
+/// The name of the file that an active grader keeps locked.
+pub const LOCK_FILE: &str = ".lock";
 
-/// A journal of more bytes is not read: 10,000 submissions of 85 scenes that are all wrong and well explained write a
-/// quarter of it.
-pub const LARGEST_JOURNAL: u64 = 16 << 30;
+/// The maximum size of a journal, in bytes: four times that of 10,000 submissions of 85 scenes that are all wrong and
+/// well explained.
+pub const MAX_JOURNAL_BYTES: u64 = 16 << 30;
 
-/// A journal with a line of more bytes is damaged; results have some thousand.
-pub const LONGEST_LINE: usize = 16 << 20;
+/// The maximum length of a line, in bytes; results have some thousand bytes. A journal with a longer line is damaged.
+pub const MAX_LINE_BYTES: usize = 16 << 20;
 
-/// Results in one output folder, locked while it lives.
+/// The results in an output folder, which stays locked while this value exists.
 #[derive(Debug)]
 pub struct FolderResults {
     journal: Mutex<Journal>,
@@ -43,38 +43,38 @@ struct Journal {
 }
 
 impl FolderResults {
-    /// Opens or creates the journal in an existing folder. With `fresh` earlier results are forgotten.
+    /// Opens or creates the journal in an existing folder. `fresh` discards earlier results.
     ///
     /// # Errors
-    /// When another grader holds the folder, or files can't be read or written.
+    ///
+    /// When another grader has locked the folder, or files can't be read or written.
     pub fn open(folder: &Path, fresh: bool) -> io::Result<Self> {
         let at = |name: &str| {
             let path = folder.join(name);
             move |reason: io::Error| io::Error::new(reason.kind(), format!("{}: {reason}", path.display()))
         };
         let opened = Folder::to_write(folder).map_err(at(""))?;
-        let lock = own_file(&opened, LOCK).map_err(at(LOCK))?;
+        let lock = own_file(&opened, LOCK_FILE).map_err(at(LOCK_FILE))?;
         lock.try_lock().map_err(|error| match error {
             std::fs::TryLockError::WouldBlock => io::Error::other(format!(
-                "another grader works in {}: wait for it, or give another --output folder",
+                "another grader is using {}: wait for it, or choose another --output folder",
                 folder.display()
             )),
-            std::fs::TryLockError::Error(reason) => at(LOCK)(reason),
+            std::fs::TryLockError::Error(reason) => at(LOCK_FILE)(reason),
         })?;
         let mut file = own_file(&opened, JOURNAL).map_err(at(JOURNAL))?;
         let metadata = file.metadata().map_err(at(JOURNAL))?;
-        if metadata.len() > LARGEST_JOURNAL && !fresh {
-            let text =
-                format!("it has more than {LARGEST_JOURNAL} bytes, the limit of a journal; --fresh begins a new one");
+        if metadata.len() > MAX_JOURNAL_BYTES && !fresh {
+            let text = format!("the journal has more than {MAX_JOURNAL_BYTES} bytes; --fresh starts a new one");
             return Err(at(JOURNAL)(io::Error::other(text)));
         }
         let mut found = BTreeMap::new();
         let sound = if fresh { 0 } else { read(&file, &mut found).map_err(at(JOURNAL))? };
         if metadata.nlink() > 1 {
-            // A backup, or a student who linked another's file here: the other names keep their file.
+            // The journal has other names, from a backup or a student's link: copy it, so that the other file stays.
             file = copy(&file, sound, &opened).map_err(at(JOURNAL))?;
         }
-        // The bytes that a crash left behind the last whole line go away.
+        // Remove the bytes after the last whole line, which a crash left.
         file.set_len(sound).map_err(at(JOURNAL))?;
         file.seek(io::SeekFrom::Start(sound)).map_err(at(JOURNAL))?;
         let path = folder.join(JOURNAL);
@@ -90,18 +90,18 @@ fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
     folder.own_file(name).map_err(|error| match error {
         FileError::System { source, .. } => source,
         FileError::NotRegular { what, .. } => {
-            io::Error::other(format!("it is {what}, not a file of the grader: remove it"))
+            io::Error::other(format!("it is {what}, not a file of the grader; remove it"))
         }
         error => io::Error::other(error),
     })
 }
 
-/// Reads the results of a journal, and where its last whole line ends.
+/// Reads the results of a journal, and the end of its last whole line.
 fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> {
     let mut sound = 0;
     for_each_line(BufReader::new(file), |line| -> io::Result<()> {
         sound += line.len() as u64;
-        // A damaged line costs its own result only.
+        // A damaged line loses only its own result.
         if let Some(entry) = read_line(line) {
             found.insert(entry.key, entry.result);
         }
@@ -113,7 +113,8 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
 /// Passes the whole lines of a journal to `take`.
 ///
 /// # Errors
-/// When it can't be read, or has a line that is longer than any result; the errors of `take`.
+///
+/// When the journal can't be read or has a line longer than any result, and the errors of `take`.
 pub fn for_each_line<E: From<io::Error>>(
     mut journal: impl BufRead,
     mut take: impl FnMut(&[u8]) -> Result<(), E>,
@@ -121,14 +122,14 @@ pub fn for_each_line<E: From<io::Error>>(
     let mut line = Vec::new();
     loop {
         line.clear();
-        let read = journal.by_ref().take(LONGEST_LINE as u64).read_until(b'\n', &mut line)?;
+        let read = journal.by_ref().take(MAX_LINE_BYTES as u64).read_until(b'\n', &mut line)?;
         if line.last() == Some(&b'\n') {
             take(&line)?;
-        } else if read < LONGEST_LINE {
+        } else if read < MAX_LINE_BYTES {
             return Ok(());
         } else {
             let text = format!(
-                "it has a line of more than {LONGEST_LINE} bytes, the limit of a result: remove it, and its scenes \
+                "it has a line of more than {MAX_LINE_BYTES} bytes, the limit of a result: remove it, and its scenes \
                  are graded again"
             );
             return Err(io::Error::other(text).into());
@@ -136,7 +137,7 @@ pub fn for_each_line<E: From<io::Error>>(
     }
 }
 
-/// Returns a journal of our own with the first bytes of another.
+/// Creates a new journal with the first `length` bytes of another.
 fn copy(mut file: &File, length: u64, folder: &Folder) -> io::Result<File> {
     let mut own = folder.replacement(OsStr::new(JOURNAL), None)?;
     file.rewind()?;
@@ -150,7 +151,7 @@ impl Results for FolderResults {
     }
 
     fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError> {
-        let line = line(key, submission, result);
+        let line = format_line(key, submission, result);
         let Journal { path, file, found } = &mut *self.journal();
         append(file, &line).map_err(|reason| KeepError(format!("{}: {reason}", path.display())))?;
         found.insert(key.clone(), result.clone());
@@ -158,11 +159,11 @@ impl Results for FolderResults {
     }
 }
 
-/// Writes a whole line or nothing.
+/// Appends a whole line or nothing.
 fn append(file: &mut File, line: &[u8]) -> io::Result<()> {
     let before = file.stream_position().unwrap_or(0);
     file.write_all(line).and_then(|()| file.flush()).inspect_err(|_| {
-        // The next line must not follow half a line; opening would drop the half anyway.
+        // Truncate, so that the next line does not follow half a line.
         let _ = file.set_len(before);
         let _ = file.seek(io::SeekFrom::Start(before));
     })
@@ -246,7 +247,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let path = folder.path().join(JOURNAL);
         let journal = File::create(&path).expect("a file");
-        journal.set_len(LARGEST_JOURNAL + 1).expect("a hole");
+        journal.set_len(MAX_JOURNAL_BYTES + 1).expect("a hole");
         let refused = FolderResults::open(folder.path(), false).expect_err("too large").to_string();
         assert!(refused.contains("journal.jsonl") && refused.contains("--fresh"), "{refused}");
         // A line without end takes neither memory nor time, and nothing is changed.

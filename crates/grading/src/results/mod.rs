@@ -1,28 +1,29 @@
-//! Places for results, so that nothing is lost and nothing is done twice.
+//! Storage of results, so that nothing is lost or done twice.
 //!
-//! Results are found by a key that digests everything they depend on ([`Key`]), so a changed program, scene, rule or
-//! grader is simply not found. The outcome of a grading does not depend on the place of its results.
+//! Results are found by a key that digests everything they depend on ([`Key`]), so the results of a changed program,
+//! scene, rule or grader are not found. The outcome of a grading does not depend on the storage.
 mod folder;
 
-pub use super::form::{Entry, line, read_line};
-pub use folder::{FolderResults, JOURNAL, LARGEST_JOURNAL, LOCK, LONGEST_LINE, for_each_line};
+pub use super::form::{Entry, format_line, read_line};
+pub use folder::{FolderResults, JOURNAL, LOCK_FILE, MAX_JOURNAL_BYTES, MAX_LINE_BYTES, for_each_line};
 
 use super::{key::Key, result::SceneResult};
 
-/// A place for results, which several jobs use at one time.
+/// A storage of results, which several jobs use in parallel.
 pub trait Results: Sync {
-    /// Finds the result that was kept under this key; the last of several.
+    /// Finds the newest result that was stored under a key.
     fn find(&self, key: &Key) -> Option<SceneResult>;
 
-    /// Keeps a result. A place that outlives the grader has it written when this returns. The submission's name is for
+    /// Stores a result. A persistent storage has written it when this function returns. The submission's name is for
     /// people only.
     ///
     /// # Errors
-    /// When it can't be kept, for example because the disk is full. What was kept before stays.
+    ///
+    /// When the result can't be stored, for example because the disk is full. Earlier results stay.
     fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError>;
 }
 
-/// The reason why a result can't be kept: always ours or the machine's fault.
+/// The reason why a result can't be stored; always an error of the grader or the machine.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct KeepError(pub String);

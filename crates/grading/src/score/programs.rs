@@ -10,7 +10,7 @@ use crate::{
     plan::PlannedGroup,
     result::{Reason, RunEnd, SceneResult},
     score,
-    smallest::{DescribeSmallest, QUICK, Shrinker, SmallestScene, WrongScene, causes, impatient},
+    smallest::{DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, causes, impatient},
     staging::StagedProgram,
     verdict::Verdict,
 };
@@ -20,21 +20,20 @@ use fosssim_mistakes::{
 };
 use fosssim_model::assignments::Assignment;
 
-/// Causes of one submission of which a grading makes a scene.
-const MOST_CAUSES: usize = 4;
+/// The maximum number of causes per submission for which a smallest scene is made.
+const MAX_CAUSES: usize = 4;
 
 impl SubmissionGrading<'_> {
-    /// Returns the grade, of the results of all scenes in the plan's order, each with the word whether it was found.
-    /// Where the suite gives points for speed, the submission is timed first.
+    /// Returns the grade of the results of all scenes, in the plan's order, each with whether it was found. If the
+    /// suite gives points for speed, the submission is timed first.
     pub(crate) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {
         let (plan, options) = (self.grader.plan, self.grader.options);
-        // A run parallel to the scene that was the end does not count, or the result would depend on the number of
-        // jobs.
+        // A run in parallel to the last scene does not count; otherwise the result would depend on the number of jobs.
         let known: Vec<_> = results
             .iter()
             .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
             .collect();
-        if let Some((end, why)) = patience::end(&plan.patience, options.fail_fast, &known) {
+        if let Some((end, why)) = patience::find_end(&plan.patience, options.fail_fast, &known) {
             for (result, scene) in results.iter_mut().zip(plan.scenes()).skip(end) {
                 *result = (patience::left_out(scene, why), false);
             }
@@ -45,7 +44,7 @@ impl SubmissionGrading<'_> {
         if self.grader.smallest.is_some() && results.iter().any(|(result, _)| is_wrong(result)) {
             drop(self.staged_program());
         }
-        // The submission's copy is removed.
+        // This removes the submission's copy.
         let staged = lock(&self.staged).take();
         let (program, build) = match staged.as_deref() {
             Some(Ok(staged)) => (staged.program_digest(), staged.build.clone()),
@@ -54,7 +53,7 @@ impl SubmissionGrading<'_> {
         };
         let mut warnings = self.grader.backend.weaknesses();
         if self.submission.file.as_ref().is_some_and(|file| file.is_shared && !file.is_anothers) {
-            warnings.push(one_file::SHARED.to_owned());
+            warnings.push(one_file::SHARED_FILE.to_owned());
         }
         let is_visible = |group: &PlannedGroup| group.marking.visibility == Visibility::Visible;
         let active = self.grader.backend.layers().iter().filter(|report| report.active);
@@ -74,14 +73,14 @@ impl SubmissionGrading<'_> {
         }
         settle(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
-            // A fault here is no reason to lose the grade.
+            // A panic here must not lose the grade.
             grade.smallest = catch_panic(|| self.smallest(&grade, staged, describe)).unwrap_or_default();
         }
         grade
     }
 
-    /// Returns the smallest scene for each cause. It is made from scenes that students see, if these show the cause: it
-    /// must reveal nothing of others.
+    /// Returns the smallest scene for each cause. It is made from scenes that students see, if these show the cause, so
+    /// that it reveals nothing of others.
     fn smallest(&self, grade: &Grade, staged: &StagedProgram, tell: &DescribeSmallest<'_>) -> Vec<SmallestScene> {
         let plan = self.grader.plan;
         let is_visible = |name: &str| {
@@ -101,10 +100,10 @@ impl SubmissionGrading<'_> {
             runner: Runner { limits: &limits, cards: None, ..self.runner(first, None) },
             program: &staged.program,
             assignment: plan.assignment(),
-            limits: QUICK,
+            limits: QUICK_LIMITS,
         };
         let mut found: Vec<SmallestScene> = Vec::new();
-        for (reason, mut tasks) in causes(&likely, &wrong).into_iter().take(MOST_CAUSES) {
+        for (reason, mut tasks) in causes(&likely, &wrong).into_iter().take(MAX_CAUSES) {
             if tasks.iter().any(|task| is_visible(&task.name)) {
                 tasks.retain(|task| is_visible(&task.name));
             }
@@ -115,8 +114,8 @@ impl SubmissionGrading<'_> {
         found
     }
 
-    /// Returns the milestone to which the program seems to belong, if its library lacks what the suite's has. It is
-    /// searched if no scene is accepted, and half of them leave no readable trace.
+    /// Returns the milestone that the program seems to implement, if its library lacks features of the suite's. The
+    /// search is made if no scene is accepted, and at least half of them leave no readable trace.
     fn looks_like(&self, results: &[(SceneResult, bool)]) -> Option<Assignment> {
         let expected = self.grader.plan.milestone?;
         let count = |is: fn(Verdict) -> bool| results.iter().filter(|(result, _)| is(result.verdict)).count();
@@ -126,20 +125,20 @@ impl SubmissionGrading<'_> {
         }
         let (staged, first) = (self.staged_program(), self.grader.plan.scenes().next()?);
         let program = &staged.as_ref().as_ref().ok()?.program;
-        // A fault here is no reason to lose the grade.
+        // An error here must not lose the grade.
         let found = milestone::looks_like(&self.runner(first, None), program).ok().flatten();
         found.filter(|found| milestone::lacks(*found, expected))
     }
 }
 
-/// Returns whether a program is wrong on a scene that it was run on.
+/// Returns whether a program was run on the scene and is wrong.
 fn is_wrong(result: &SceneResult) -> bool {
     let is_of_us = matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun | Verdict::Unusable);
     !is_of_us && !result.verdict.is_accepted() && result.ended.is_some()
 }
 
-/// Returns the contents that the failing scenes have in common. `contents` are those of all scenes in their order,
-/// computed only if some fail and some do not.
+/// Returns the contents that all failing scenes have in common. `contents` are those of all scenes, in order; they are
+/// computed only if some scenes fail and others do not.
 fn locate_failure<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
     let failing = |ended: &Option<RunEnd>| ended.as_ref().and_then(FailureKind::from_end);
     let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));

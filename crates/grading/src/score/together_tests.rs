@@ -47,7 +47,7 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         verdict: Verdict::WrongAnswer,
         points: Some(0.0),
         max_points: 1.0,
-        groups: vec![score::group("a", marking, results)],
+        groups: vec![score::grade_group("a", marking, results)],
         shows_output: true,
         build: None,
         warnings: Vec::new(),

@@ -1,12 +1,11 @@
-//! The place to check: the part of the program that the likely mistake is in. If no mistake is named, the first
-//! finding's kind suggests a place.
+//! The advice where to look in the program. If no likely mistake is named, the kind of the first finding suggests a
+//! place.
 use super::{Check, first};
 use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};
 use fosssim_model::assignments::CollisionType;
 
-/// Returns the places to check. There are none if the explanations name them: a known mistake says where it is, a
-/// polynomial has its name.
+/// Returns the advice; empty if the explanations are sufficient, because they name a known mistake or a polynomial.
 pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first::first(check) else { return Vec::new() };
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
@@ -16,12 +15,12 @@ pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     }
 }
 
-/// Returns the advice of milestones whose steps log states only, by their collision handling.
+/// Returns the advice for milestones whose traces log only states, by their collision handling.
 fn milestone_advice(finding: &Finding, collisions: CollisionType) -> Option<&'static [&'static str]> {
     Some(match (finding.detail, collisions) {
         (FindingDetail::MissedCollision { .. }, CollisionType::Simple) => &[
             "the detection of this pair: at the end of the step the two overlap and approach each other",
-            "is the distance compared with the right radii, and are the velocities those where the objects are near?",
+            "is the distance compared with the right radii, and are the velocities those at the nearest points?",
         ],
         (FindingDetail::SuperfluousCollision { .. }, CollisionType::Simple) => &[
             "the detection of this pair: at the end of the step the two do not overlap, or do not approach each other",
@@ -45,7 +44,7 @@ fn milestone_advice(finding: &Finding, collisions: CollisionType) -> Option<&'st
     })
 }
 
-/// Returns the advice by the kind of the first finding: later findings often follow from it.
+/// Returns the advice for the kind of the first finding, because later findings often follow from it.
 fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'static str] {
     if let Some(advice) = milestone_advice(finding, collisions) {
         return advice;
@@ -54,7 +53,7 @@ fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'s
         _ if finding.step == 0 => &["the first record: the scene's own positions and velocities, before any step"],
         FindingDetail::MissedCollision { .. } => &[
             "the detection of this pair: the trace's own state at the start of the step leads to this impact",
-            "do its polynomials agree? then the choice of the time of impact, or the test of the normal, is wrong",
+            "if its polynomials agree, the choice of the time of impact or the test of the normal is wrong",
         ],
         FindingDetail::SuperfluousCollision { .. } => &[
             "the detection of this pair: from the trace's own state at the start of the step it does not collide",
@@ -62,7 +61,7 @@ fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'s
         ],
         FindingDetail::WrongNormal { .. } => &[
             "the contact normal: from the first object to the second, at the time of impact, not normalized",
-            "is it taken from the positions at that time, and not from those at the end of the step?",
+            "it must be computed from the positions at that time, not from those at the end of the step",
         ],
         FindingDetail::PolynomialCount { actual: 0, .. } => &[
             "the detection: in this step it never calls the course's root finder; is it written yet?",
@@ -73,19 +72,19 @@ fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'s
         {
             &[
                 "the loop over detection passes: it runs too often, or tests pairs that the reference leaves out",
-                "an earlier response of this step that differs also makes the loop go on",
+                "a wrong earlier response of this step can also make the loop too long",
             ]
         }
         FindingDetail::PolynomialCount { .. } | FindingDetail::PassCount { .. } => &[
             "the loop over detection passes: it ends too early, or leaves out pairs",
-            "an earlier response of this step that differs also makes the loop end",
+            "a wrong earlier response of this step can also end the loop",
         ],
         FindingDetail::PolynomialDegree { .. } => &[
             "the leading coefficients of this polynomial: those below 1e-12 in size are dropped, others are kept",
             "a factor on all coefficients moves them across that bound",
         ],
         FindingDetail::VanishingPolynomial { .. } => {
-            &["the inputs of this polynomial: for the reference the two objects do not move relative to each other"]
+            &["the inputs of this polynomial: in the reference, the two objects do not move relative to each other"]
         }
         FindingDetail::Coefficient { .. } => &[
             "the formula of this coefficient; any positive factor of the whole polynomial is right",
@@ -103,13 +102,13 @@ fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'s
             &["each pair is tested once in a step: is it added to the list twice?"]
         }
         FindingDetail::PassPositions { .. } => &[
-            "the response (or the rigid failsafe) before this detection pass: what it does to the end positions",
-            "which positions the pass is given: those after the responses of the round before",
+            "the response (or the rigid failsafe) before this detection pass: how it changes the end positions",
+            "the positions that the pass uses: they must be those after the responses of the preceding round",
         ],
         FindingDetail::RecordsDiffer { .. } => {
-            &["what is written after the step: the course's code writes both records itself"]
+            &["the output after the step: the course's code writes both records itself"]
         }
-        FindingDetail::ImpossibleLog => &["the trace was not written by the course's library as it was handed out"],
+        FindingDetail::ImpossibleLog => &["the trace was not written by the course's unchanged library"],
         FindingDetail::BeyondReach { .. } => {
             &["the step that leads to this state: something divides by zero, or grows from step to step"]
         }
@@ -121,13 +120,13 @@ fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'s
         FindingDetail::NoResult { .. } => &[
             "the steps before this one: numbers that are not finite or absurdly large, or that grow from step to step",
         ],
-        FindingDetail::MixedForms { .. } => &[
-            "the approach polynomial: here it has one of its two accepted forms, elsewhere in this trace the other one",
-        ],
+        FindingDetail::MixedForms { .. } => {
+            &["the approach polynomial: it switches between its two accepted forms within this trace; use one of them"]
+        }
     }
 }
 
-/// Returns the advice where a pair's force was left out, or applied twice.
+/// Returns the advice for a pair whose force was left out or applied twice.
 const fn pair_advice(is_doubled: bool) -> &'static [&'static str] {
     match is_doubled {
         false => &[

@@ -1,9 +1,9 @@
-//! Questions of commands about an outcome before they report it.
+//! Properties of an outcome that commands check before they report it.
 use fosssim_findings::{Outcome, Overall, Stop};
 use fosssim_judge::{Unreadable, fair::FairVerdict};
 use fosssim_model::sim::StepError;
 
-/// Returns whether there is something to explain: the fair rules decide what is a mistake.
+/// Returns whether there is something to explain; the fair rules decide this.
 #[must_use]
 pub fn is_wrong(outcome: &Outcome) -> bool {
     match &outcome.fair {
@@ -12,9 +12,9 @@ pub fn is_wrong(outcome: &Outcome) -> bool {
     }
 }
 
-/// Returns why a scene has no verdict, whatever the trace; `None` for nearly all scenes.
+/// Returns the reason why a scene has no verdict for any trace; `None` for nearly all scenes.
 #[must_use]
-pub fn no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
+pub fn describe_no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
     match outcome.parity.endless {
         Some(StepError::VortexHessian { .. }) => Some(format!(
             "the scene {scene} has a vortexforce, which has no Hessian: choose an integrator that is not implicit"
@@ -23,9 +23,9 @@ pub fn no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
     }
 }
 
-/// Returns the message where a trace could not be read to its end, and so has no verdict.
+/// Returns the message about a trace that could not be read to its end, and so has no verdict.
 #[must_use]
-pub fn not_read(outcome: &Outcome, trace: &str, why: &str) -> String {
+pub fn describe_unread(outcome: &Outcome, trace: &str, why: &str) -> String {
     let place = match &outcome.stop {
         Some(Stop::Trace { cause: Unreadable::Io, offset, .. }) => format!(" at byte {offset}"),
         _ => String::new(),

@@ -1,4 +1,4 @@
-//! The verdicts of the rule books, a line each; the tables behind them are shown on request.
+//! The verdicts of the rule books, one line each; their tables are shown on request.
 use super::{Check, fair, follows};
 use crate::{
     number::format_count,
@@ -6,10 +6,10 @@ use crate::{
 };
 use fosssim_judge::{Overall, fair::cause};
 
-/// The verdict of one rule book: its name, its word with a style, and its grounds.
+/// The verdict of one rule book: its name, its word with a style, and its reason.
 pub(crate) type BookWords = (&'static str, Look, &'static str, String);
 
-/// Returns the verdicts of both books; none if the headline has them.
+/// Returns the verdicts of both books; `None` if the headline contains them.
 pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     let outcome = check.outcome;
     let judgement = outcome.fair.as_deref()?;
@@ -28,7 +28,7 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     Some([parity, ("the fair rules", look, word, fair::summary(judgement, outcome))])
 }
 
-/// Renders the section; empty if the headline has the verdicts.
+/// Renders the section; `None` if the headline contains the verdicts.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let mut text = format!("{}\n", style.paint(Look::Strong, "Rule books"));
     for (name, look, word, grounds) in verdicts(check)? {

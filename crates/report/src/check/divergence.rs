@@ -11,13 +11,13 @@ use fosssim_model::trace::LoggedImpulse;
 pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
     format!(
         "{}\n{}",
-        style.paint(Look::Strong, &format!("First difference: {}", place(finding, steps))),
-        block(finding, style)
+        style.paint(Look::Strong, &format!("First difference: {}", describe_place(finding, steps))),
+        render_finding(finding, style)
     )
 }
 
 /// Returns the place of a finding, for a heading.
-pub(crate) fn place(finding: &Finding, steps: u32) -> String {
+pub(crate) fn describe_place(finding: &Finding, steps: u32) -> String {
     let record = if finding.frame == 2 * u64::from(finding.step) { " (end record)" } else { "" };
     match finding.step {
         0 => "the first record".to_owned(),
@@ -25,24 +25,24 @@ pub(crate) fn place(finding: &Finding, steps: u32) -> String {
     }
 }
 
-/// Returns one finding in words, and its values side by side.
-pub(super) fn block(finding: &Finding, style: Style) -> String {
+/// Returns one finding as a sentence, and its values side by side.
+pub(super) fn render_finding(finding: &Finding, style: Style) -> String {
     format!("  {}\n{}", finding.what(), side_by_side(&finding.detail).text(style))
 }
 
 /// A value that a finding compares.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Value {
-    /// There is none.
+    /// There is no value.
     Nothing,
-    /// How often.
+    /// A number of occurrences.
     Count(usize),
-    /// A number.
+    /// A floating-point number.
     Number(f64),
 }
 
 impl Value {
-    /// Returns the value to its last bit.
+    /// Returns the exact value as text.
     pub(crate) fn exact(self) -> String {
         match self {
             Self::Nothing => "none".to_owned(),
@@ -57,22 +57,22 @@ impl Value {
 pub(crate) struct Row {
     /// The name of both values.
     pub(crate) name: &'static str,
-    /// The reference's.
+    /// The reference's value.
     pub(crate) expected: Value,
-    /// The trace's.
+    /// The trace's value.
     pub(crate) actual: Value,
-    /// Whether they are not the same.
+    /// Whether the values differ.
     pub(crate) differs: bool,
 }
 
-/// The values of a finding side by side, with remarks behind them.
+/// The values of a finding side by side, with the remarks before and after them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct SideBySide {
-    /// The place of the records before the step in the trace, for a reader who inspects its bytes.
+    /// The position of the preceding records in the trace, for readers who inspect its bytes.
     before: Vec<String>,
     pub(crate) rows: Vec<Row>,
     pub(crate) after: Vec<String>,
-    /// The values that the original compares, where these are others.
+    /// The values that the original compares, if they are different.
     original: Option<String>,
 }
 
@@ -96,22 +96,22 @@ impl SideBySide {
 pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
     let rows = |rows: Vec<Row>| SideBySide { rows, ..SideBySide::default() };
     match detail {
-        FindingDetail::MissedCollision { expected } => rows(collision(Some((*expected).into()), None)),
+        FindingDetail::MissedCollision { expected } => rows(collision_rows(Some((*expected).into()), None)),
         FindingDetail::SuperfluousCollision { actual } | FindingDetail::RepeatedCollision { actual } => {
-            rows(collision(None, Some(*actual)))
+            rows(collision_rows(None, Some(*actual)))
         }
         FindingDetail::WrongNormal { expected, actual, .. } | FindingDetail::ContactTime { expected, actual } => {
-            rows(collision(Some((*expected).into()), Some(*actual)))
+            rows(collision_rows(Some((*expected).into()), Some(*actual)))
         }
         FindingDetail::PolynomialCount { expected, actual, per_pass } => SideBySide {
-            after: vec![format!("one pass over all pairs asks about {per_pass}")],
-            ..rows(vec![counts("polynomials", *expected, *actual)])
+            after: vec![format!("one pass over all pairs has {per_pass}")],
+            ..rows(vec![count_row("polynomials", *expected, *actual)])
         },
         FindingDetail::PolynomialDegree { place, expected, actual_size, actual } => {
             let more = actual_size.saturating_sub(actual.coefficients().len());
             let mut sides = polynomials(place, expected.coefficients(), actual.coefficients());
             if more > 0 {
-                sides.after.push(format!("{more} more of the trace are not shown"));
+                sides.after.push(format!("{more} further coefficients of the trace are not shown"));
             }
             sides
         }
@@ -123,7 +123,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
         } => {
             let (reference, trace) = (expected_polynomial.coefficients(), actual_polynomial.coefficients());
             let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
-            // The factor that the finding was made with.
+            // The factor by which the finding was made.
             let factor = if own == 0.0 { factor(reference, trace) } else { expected / own };
             let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
             sides.original = rescaled.as_ref().map(|RescaledCoefficient { power, expected, actual, .. }| {
@@ -133,9 +133,9 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
             sides
         }
         FindingDetail::Position { expected, actual, .. } | FindingDetail::Velocity { expected, actual, .. } => {
-            rows(vec![numbers("x", expected[0], actual[0]), numbers("y", expected[1], actual[1])])
+            rows(vec![number_row("x", expected[0], actual[0]), number_row("y", expected[1], actual[1])])
         }
-        FindingDetail::PassCount { expected, actual, .. } => rows(vec![counts("passes", *expected, *actual)]),
+        FindingDetail::PassCount { expected, actual, .. } => rows(vec![count_row("passes", *expected, *actual)]),
         FindingDetail::PassPositions { place }
         | FindingDetail::TrimmedDecision { place, .. }
         | FindingDetail::TrimmedTime { place, .. }
@@ -144,11 +144,11 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
     }
 }
 
-fn counts(name: &'static str, expected: usize, actual: usize) -> Row {
+fn count_row(name: &'static str, expected: usize, actual: usize) -> Row {
     Row { name, expected: Value::Count(expected), actual: Value::Count(actual), differs: expected != actual }
 }
 
-fn numbers(name: &'static str, expected: f64, actual: f64) -> Row {
+fn number_row(name: &'static str, expected: f64, actual: f64) -> Row {
     let differs = expected.to_bits() != actual.to_bits();
     Row { name, expected: Value::Number(expected), actual: Value::Number(actual), differs }
 }
@@ -157,13 +157,12 @@ fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
     format!("polynomial {} of the record", place.index)
 }
 
-/// Returns two polynomials by power, marked where they part once the factor on which most coefficients agree is taken
-/// out.
+/// Returns two polynomials by power. Coefficients that differ after division by the common factor are marked.
 fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual: &[f64]) -> SideBySide {
     polynomials_with(place, expected, actual, factor(expected, actual), None)
 }
 
-/// Compares two polynomials by power with this factor, which the expected values carry; one power is known to differ.
+/// Compares two polynomials by power, where `factor` scales the expected values; one power is known to differ.
 fn polynomials_with(
     place: &fosssim_judge::PolynomialPlace,
     expected: &[f64],
@@ -196,13 +195,13 @@ fn polynomials_with(
     }
 }
 
-/// The powers of a polynomial's coefficients; none has more.
+/// The names of the powers of a polynomial's coefficients; no polynomial has more.
 const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
 /// Returns the contact normal and time.
-fn collision(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
+fn collision_rows(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
     let row = |name, part: fn(LoggedImpulse) -> f64| match (expected.map(part), actual.map(part)) {
-        (Some(expected), Some(actual)) => numbers(name, expected, actual),
+        (Some(expected), Some(actual)) => number_row(name, expected, actual),
         (expected, actual) => {
             let value = |value: Option<f64>| value.map_or(Value::Nothing, Value::Number);
             Row { name, expected: value(expected), actual: value(actual), differs: false }

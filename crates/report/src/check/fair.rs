@@ -11,7 +11,7 @@ use fosssim_judge::{
     fair::{FairRefusal, FairVerdict, Form, Judgement, cause},
 };
 
-/// Renders the section; empty if the fair rules did not judge.
+/// Renders the section; `None` if the fair rules did not judge.
 pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let fair = outcome.fair.as_deref()?;
     let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
@@ -31,13 +31,13 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         Form::Course => line("approach polynomial: the course's form, with its slip in t^3".to_owned()),
         Form::Right => line("approach polynomial: the right form, without the course's slip in t^3".to_owned()),
     }
-    if let Some(shares) = shares(fair) {
+    if let Some(shares) = describe_shares(fair) {
         line(format!("largest used share of a tolerance: {shares}"));
     }
     if fair.borderline > 0 {
         let (verb, plural) = if fair.borderline == 1 { ("was", "") } else { ("were", "s") };
         line(format!(
-            "{} decision{plural} that round-off or small coefficients may flip {verb} followed, not counted",
+            "{} decision{plural} that round-off or small coefficients may flip {verb} accepted as in the trace",
             count(fair.borderline)
         ));
         for decision in &fair.borderline_examples {
@@ -54,13 +54,13 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         text += &describe_kinds(&fair.findings, style);
     }
     if let Some(cause) = cause(outcome) {
-        let (heading, sides) = (style.paint(Look::Notice, "The rule books differ:"), sides(cause));
+        let (heading, sides) = (style.paint(Look::Notice, "The rule books differ:"), describe_sides(cause));
         text += &format!("  {heading} {sides}:\n  {cause}\n");
     }
     Some(text)
 }
 
-/// Returns the kinds of findings of a book, with their first examples.
+/// Returns the kinds of findings of a book, with the first example of each.
 pub(super) fn describe_kinds(found: &BookFindings, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
     table.heading(["kind", "count", "first example"]);
@@ -80,14 +80,14 @@ pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
     }
 }
 
-/// Returns the grounds of the fair verdict, in one line.
+/// Returns the reason for the fair verdict, in one line.
 pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     let refusal = match fair.refusal {
         Some(FairRefusal::Stopped) => Some("the trace can't be read to its end"),
         Some(FairRefusal::Damaged) => Some("the trace is damaged"),
         Some(FairRefusal::TrailingBytes) => Some("bytes follow the last record"),
         Some(FairRefusal::Undecided) => {
-            Some("most of its decisions are not the reference's, though round-off may flip them")
+            Some("most of its decisions differ from the reference's, though only round-off could flip them")
         }
         None => None,
     };
@@ -104,7 +104,7 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
         };
         wrong + &first
     });
-    let given_up = fair.given_up.map(|step| format!("from step {step} on, judging by these rules would take too long"));
+    let given_up = fair.given_up.map(|step| format!("judging would take too long from step {step} on"));
     let nothing = (fair.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
     let parts = [refusal.map(str::to_owned), found.or(nothing), given_up];
     match parts.into_iter().flatten().collect::<Vec<_>>() {
@@ -113,8 +113,8 @@ pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
     }
 }
 
-/// Returns `coefficients 12 %, positions 3 %`; unused shares are left out.
-fn shares(fair: &Judgement) -> Option<String> {
+/// Returns the used shares of tolerances, such as `coefficients 12 %, positions 3 %`; unused shares are left out.
+fn describe_shares(fair: &Judgement) -> Option<String> {
     let shares = fair.shares;
     let list: Vec<String> = [
         ("coefficients", shares.coefficient),
@@ -124,17 +124,17 @@ fn shares(fair: &Judgement) -> Option<String> {
     ]
     .into_iter()
     .filter(|(_, share)| *share > 0.0)
-    .map(|(name, share)| format!("{name} {}", percent(share)))
+    .map(|(name, share)| format!("{name} {}", format_percent(share)))
     .collect();
     (!list.is_empty()).then(|| list.join(", "))
 }
 
-fn percent(share: f64) -> String {
+fn format_percent(share: f64) -> String {
     if share < 0.01 { "< 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
 }
 
-/// Returns which of the books accepts a trace that the other one rejects.
-pub(crate) const fn sides(cause: Cause) -> &'static str {
+/// Returns the sentence which book accepts and which one rejects the trace.
+pub(crate) const fn describe_sides(cause: Cause) -> &'static str {
     if cause.original_fails() {
         "the original fails this trace, the fair rules accept it"
     } else {

@@ -11,37 +11,39 @@ view! {
     #[derive(Debug)]
     #[schemars(deny_unknown_fields)]
     pub(super) struct FairView<'a> from fair: Judgement {
-        /// The verdict; none if judging was cut short, without a fault so far.
+        /// The verdict; none if judging stopped early without a fault.
         verdict: FairVerdict = fair.verdict,
-        /// The reason why the trace is rejected as a whole.
+        /// The reason why the whole trace is rejected.
         refusal: Option<FairRefusal> = fair.refusal,
-        /// Steps with at least one finding; the first record is not a step.
+        /// The number of steps with at least one finding; the first record is not a step.
         wrong_steps: u64 = fair.findings.wrong_steps,
-        /// The first finding; null when there is none.
+        /// The first finding; null if there is none.
         first_divergence: Option<FindingView> =
             fair.findings.first_divergence.as_ref().map(|first| FindingView::from_finding(Book::Fair, first)),
-        /// As at the top. Tolerances depend on the values, so they are null.
+        /// The first finding of each kind, and the number of each kind. Tolerances depend on the values, so they are
+        /// null.
         findings: Vec<CountedView> =
-            CountedView::all(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
-        /// Least and greatest factor of the polynomials; null if it is 1.
+            CountedView::count(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
+        /// The smallest and the largest factor of the polynomials; null if it is 1.
         #[serde(with = "fosssim_num::written")]
         #[schemars(with = "Option<[crate::view::Number; 2]>")]
         factor: Option<[f64; 2]> = fair.factor,
-        /// Which accepted form the approach polynomial of a particle and an edge has.
+        /// The accepted form of the particle-edge approach polynomial that the trace uses.
         approach_form: Form = fair.form,
-        /// Decisions that round-off may flip and that differ in the trace; they are not counted.
+        /// The decisions that round-off may flip and that differ from the reference's; they are not counted as
+        /// findings.
         borderline: BorderlineView<'a> =
             BorderlineView { count: fair.borderline, examples: &fair.borderline_examples },
-        /// The largest share of its tolerances that something right uses, 0 to 1.
+        /// The largest shares of the tolerances that right values use, 0 to 1.
         used_tolerance: &'a Shares = &fair.shares,
     }
 }
 
-/// All findings of one kind: how many, and the first.
+/// The number of findings of one kind, and the first of them.
 #[derive(Debug, Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(super) struct CountedView {
-    /// The number of all.
+    /// The number of findings.
     #[schemars(range(min = 1))]
     count: u64,
     #[serde(flatten)]
@@ -49,8 +51,8 @@ pub(super) struct CountedView {
 }
 
 impl CountedView {
-    /// Returns the first findings of each kind by a book, each with the number of them all.
-    pub(super) fn all(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
+    /// Returns the first findings of each kind by a book, each with the number of findings.
+    pub(super) fn count(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
         firsts
             .iter()
             .map(|first| Self { count: count(first.kind()), first: FindingView::from_finding(book, first) })
@@ -62,9 +64,9 @@ impl CountedView {
 #[derive(Debug, Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct BorderlineView<'a> {
-    /// The number of all.
+    /// The number of borderline decisions.
     count: u64,
-    /// The first of these decisions.
+    /// The first borderline decisions.
     examples: &'a [Borderline],
 }
 
@@ -73,9 +75,9 @@ view! {
     #[derive(Debug)]
     #[schemars(deny_unknown_fields)]
     pub(crate) struct CauseView from cause: Cause {
-        /// The rule of the original that is the cause.
+        /// The rule of the original that causes the difference.
         key: Cause = *cause,
-        /// In words.
+        /// The rule as a sentence.
         text: String = cause.to_string(),
     }
 }

@@ -1,9 +1,9 @@
-//! Consequences: polynomials that differ only because the positions differ that they are made of.
+//! Consequences: polynomials that differ only because their input positions differ.
 use crate::number::count as number;
 use fosssim_judge::{Finding, FindingKind, Outcome, fair::FairVerdict};
 
-/// Faults of a formula, and not of the positions that go into it.
-const OF_FORMULAS: [FindingKind; 6] = [
+/// The kinds of faults of a formula, as opposed to faults of its input positions.
+const FORMULA_KINDS: [FindingKind; 6] = [
     FindingKind::PolynomialDegree,
     FindingKind::VanishingPolynomial,
     FindingKind::Coefficient,
@@ -14,30 +14,31 @@ const OF_FORMULAS: [FindingKind; 6] = [
 
 /// Returns whether a finding of this kind may be a fault of a formula.
 pub(crate) fn is_of_formula(kind: FindingKind) -> bool {
-    OF_FORMULAS.contains(&kind)
+    FORMULA_KINDS.contains(&kind)
 }
 
-/// Returns whether it is a formula's fault in a pass whose positions earlier passes of the step have made.
+/// Returns whether the finding is a formula's fault in a pass whose input positions come from earlier passes of the
+/// step.
 pub(super) fn is_of_later_pass(finding: &Finding) -> bool {
     is_of_formula(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
 }
 
-/// Counts the polynomials that the original's rules find wrong only because positions are wrong. These are all of them
-/// if the fair rules, which follow the trace's own positions, find no wrong formula except in later passes. The same
-/// holds if they find wrong states only, and the first formulas that differ are those of later passes.
+/// Counts the polynomials that the original's rules find wrong only because positions are wrong. If the fair rules,
+/// which use the trace's own positions, find no wrong formula except in later passes, these are all of them. The same
+/// holds if they find only wrong states, and the first differing formulas are those of later passes.
 pub(crate) fn count(outcome: &Outcome) -> u64 {
     let Some(fair) = outcome.fair.as_ref().filter(|fair| fair.verdict == FairVerdict::Rejected) else { return 0 };
     let charged = |kind: FindingKind| fair.findings.counts.get(kind);
     let examples = outcome.parity.findings.examples.iter().filter(|example| is_of_formula(example.kind()));
     let has_states = charged(FindingKind::Position) + charged(FindingKind::Velocity) > 0;
     let follow = charged(FindingKind::PassPositions) > 0 || has_states && { examples }.all(is_of_later_pass);
-    if !follow || OF_FORMULAS.into_iter().any(|kind| charged(kind) > 0) {
+    if !follow || FORMULA_KINDS.into_iter().any(|kind| charged(kind) > 0) {
         return 0;
     }
-    OF_FORMULAS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()
+    FORMULA_KINDS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()
 }
 
-/// Returns the number of these polynomials with their name.
+/// Returns the number of consequential polynomials with its noun.
 pub(super) fn describe(follow: u64) -> String {
     format!("polynomials that follow from wrong positions: {}", number(follow))
 }

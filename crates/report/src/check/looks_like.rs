@@ -1,10 +1,10 @@
-//! Files that are taken for traces and are something else.
+//! The detection of files that are not traces.
 
-/// The number of bytes that show the kind of a file.
-pub const LOOKED_AT: u64 = 512;
+/// The number of bytes at the start of a file that are checked for its kind.
+pub const SNIFFED_BYTES: u64 = 512;
 
-/// Returns the kind of a file that begins with these bytes, if it can't be a trace: a trace begins with the bits of a
-/// position.
+/// Returns the kind of a file that begins with the given bytes, if it can't be a trace. A trace begins with the bits of
+/// a position.
 #[must_use]
 pub fn looks_like(start: &[u8]) -> Option<&'static str> {
     const MARKS: [(&[u8], &str); 8] = [

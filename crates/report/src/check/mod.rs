@@ -16,11 +16,11 @@ mod looks_like;
 mod steps;
 mod text;
 
-pub use asked::{is_wrong, no_verdict, not_read};
-pub use looks_like::{LOOKED_AT, looks_like};
+pub use asked::{describe_no_verdict, describe_unread, is_wrong};
+pub use looks_like::{SNIFFED_BYTES, looks_like};
 pub use steps::{LISTED, StepChoice, WrongSteps};
 pub use text::describe_stop;
-pub(crate) use text::{headline, notes, problem};
+pub(crate) use text::{describe_problem, headline, notes};
 
 use super::{
     annotation::annotation,
@@ -38,12 +38,12 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use steps::WrongStepView;
 
-/// A judged trace with the names under which people know it.
+/// A judged trace, with the names that people use for it.
 #[derive(Debug, Clone, Copy)]
 pub struct Check<'a> {
-    /// The scene as typed.
+    /// The scene's name, as typed.
     pub scene: &'a str,
-    /// The trace as typed.
+    /// The trace's name, as typed.
     pub trace: &'a str,
     /// The outcome of judging.
     pub outcome: &'a Outcome,
@@ -51,13 +51,13 @@ pub struct Check<'a> {
     pub explanations: &'a [Explanation],
     /// The rule books that judged.
     pub rules: Rules,
-    /// The wrong steps, and the choice of those that are shown one by one.
+    /// The wrong steps, and the selection of steps that are shown individually.
     pub steps: &'a WrongSteps,
-    /// Whether certificates were audited, so that the counts of root searches are worth showing.
+    /// Whether certificates were audited, so that the report includes the counts of root searches.
     pub audit: bool,
-    /// Whether the text holds all tables, and not only what fits on a screen.
+    /// Whether the text contains all tables, or only as much as fits on a screen.
     pub tables: bool,
-    /// The kind of file that the trace seems to be, where it begins like something else.
+    /// The kind of file that the trace seems to be, if it begins like another kind.
     pub looks_like: Option<&'a str>,
 }
 
@@ -68,21 +68,21 @@ impl Check<'_> {
         self.outcome.ruling(self.book()) == Ruling::Accepted
     }
 
-    /// Returns the official verdict in words, such as `wrong answer`.
+    /// Returns the official verdict as text, such as `wrong answer`.
     #[must_use]
     pub fn verdict(&self) -> &'static str {
         self.outcome.ruling(self.book()).name()
     }
 
-    /// Returns whether the file is no trace at all; then the report says only that.
-    pub(crate) fn is_no_trace(&self) -> bool {
+    /// Returns whether the file is not a trace at all, so that the report says only that.
+    pub(crate) fn is_not_a_trace(&self) -> bool {
         self.looks_like.is_some() && !self.is_accepted()
     }
 
-    /// Returns the difference of the two rule books: the book that accepts the trace.
+    /// Returns the text which book accepts the trace, if the rule books disagree.
     #[must_use]
     pub fn difference(&self) -> Option<&'static str> {
-        cause(self.outcome).map(fair::sides)
+        cause(self.outcome).map(fair::describe_sides)
     }
 
     /// Returns the official book.
@@ -90,12 +90,12 @@ impl Check<'_> {
         self.rules.official()
     }
 
-    /// Returns the findings of the official book.
+    /// Returns the findings of the official rule book.
     fn account(&self) -> &BookFindings {
         self.outcome.findings_by(self.book())
     }
 
-    /// Renders the report for people.
+    /// Renders the report as text for people.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         text::render(self, style)
@@ -107,8 +107,8 @@ impl Check<'_> {
         steps::render(self, style)
     }
 
-    /// Annotations for GitHub Actions: the verdict with the likely mistakes, if it is not accepted, and where the rule
-    /// books differ.
+    /// Returns annotations for GitHub Actions: the verdict with the likely mistakes, if it is not accepted, and the
+    /// difference of the rule books.
     #[must_use]
     pub fn github(&self) -> String {
         let mut text = String::new();
@@ -133,8 +133,8 @@ impl Check<'_> {
     }
 }
 
-/// Counts how often the original prints each of its messages, in the words that graders of its output search for.
-fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
+/// Counts how often the original prints each of its messages, with the texts that graders of its output search for.
+fn count_messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
     let mut messages: BTreeMap<_, _> = FindingKind::ALL
         .into_iter()
         .filter_map(|kind| Some((kind.original_message()?, outcome.parity.findings.counts.get(kind))))
@@ -156,23 +156,24 @@ fn messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
 }
 
 view! {
-    /// The report on one trace. Fields may be added within a version of the shape; their meanings do not change.
-    /// Numbers that are not finite are the texts nan, -nan, inf and -inf.
+    /// The report on one trace. A version of the shape may get further fields, but the meaning of a field does not
+    /// change. Numbers that are not finite are the texts nan, -nan, inf and -inf.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct CheckView<'a> from check: Check<'a> {
         /// The version of this shape.
         #[schemars(extend("const" = CHECK_SCHEMA))]
         schema: u32 = CHECK_SCHEMA,
-        /// The scene as typed.
+        /// The scene's name, as typed.
         scene: &'a str = check.scene,
-        /// The trace as typed.
+        /// The trace's name, as typed.
         trace: &'a str = check.trace,
         /// The requested rule books.
         rules: Rules = check.rules,
         /// The book that gives the verdict, the first difference, findings and wrong steps.
         official: Book = check.book(),
-        /// By the official book. Undecided: no fault was found, but judging stopped early. Bad trace: it could not be
-        /// read to the scene's last step. By the fair rules it may also be damaged, or go on after its last record.
+        /// The verdict of the official book. Undecided: no fault was found, but judging stopped early. Bad trace: the
+        /// trace could not be read to the scene's last step. By the fair rules it may also be damaged, or have bytes
+        /// after its last record.
         #[schemars(extend("enum" = Ruling::ALL.map(Ruling::name)))]
         verdict: &'static str = check.verdict(),
         /// The reason for the verdict, in one line.
@@ -181,41 +182,41 @@ view! {
         parity: Parity = Parity::from(check.outcome),
         /// The fair rules' judgement; null if they did not judge.
         fair: Option<FairView<'a>> = check.outcome.fair.as_deref().map(FairView::from),
-        /// The reason why the two rule books differ; null if they agree.
+        /// The rule by which the two rule books differ; null if they agree.
         difference: Option<CauseView> = cause(check.outcome).as_ref().map(CauseView::from),
-        /// The official book's first finding; null when there is none.
+        /// The official book's first finding; null if there is none.
         first_divergence: Option<FindingView> =
             check.account().first_divergence.as_ref().map(|first| FindingView::from_finding(check.book(), first)),
         /// The first finding of each kind by the official book, and the number of each kind.
         findings: Vec<CountedView> =
-            CountedView::all(check.book(), &check.account().examples, |kind| check.account().counts.get(kind)),
-        /// Advice by the kind of the first finding.
+            CountedView::count(check.book(), &check.account().examples, |kind| check.account().counts.get(kind)),
+        /// Advice for the kind of the first finding.
         advice: Vec<&'static str> = advice::lines(check),
         /// Commands that show more of the first finding.
         commands: Vec<String> = closer::commands(check),
-        /// Other facts worth knowing: damage, bytes behind the end.
+        /// Other facts, such as damage or bytes after the end.
         notes: Vec<String> = text::notes(check),
         /// Likely mistakes, the likeliest first; empty if nothing is wrong, and with --no-explain.
         explanations: Vec<ExplanationView> = check.explanations.iter().map(ExplanationView::from).collect(),
-        /// Steps of the scene.
+        /// The number of steps of the scene.
         steps: u32 = check.outcome.steps,
-        /// Steps that were judged.
+        /// The number of judged steps.
         steps_judged: u32 = check.outcome.steps_judged,
-        /// Steps with at least one finding of the official book.
+        /// The number of steps with at least one finding of the official book.
         wrong_steps: u64 = check.account().wrong_steps,
-        /// The numbers of these steps, from 1; the first 1000.
+        /// The numbers of the wrong steps, from 1; only the first 1000.
         #[schemars(length(max = LISTED), inner(range(min = 1)))]
         wrong_step_numbers: Vec<u32> = steps::numbers(check),
-        /// With --all the wrong steps, the first 1000; with --step the requested steps; null without both. By the
-        /// official book, or by the fair rules if the official book found nothing.
+        /// The wrong steps (the first 1000) with --all, or the requested steps with --step; null without both options.
+        /// The findings are the official book's, or the fair rules' if the official book found none.
         shown_steps: Option<Vec<WrongStepView>> = steps::views(check),
-        /// The reason why judging stopped before the scene's last step; null when it did not.
+        /// The reason why judging stopped before the scene's last step; null if it did not.
         problem: Option<StopView> = check.outcome.stop_of(check.book()).as_ref().map(StopView::from),
-        /// The first damage that the original reads over in silence.
+        /// The first damage that the original's reader skips silently.
         damage: Option<DamageView> = check.outcome.damage.as_ref().map(DamageView::from),
         /// Whether bytes follow the last record.
         trailing_bytes: bool = check.outcome.trailing_bytes,
-        /// Counts of root searches, with --audit only.
+        /// The counts of root searches; only with --audit.
         #[serde(skip_serializing_if = "Option::is_none")]
         root_searches: Option<SearchCounts> = check.audit.then_some(check.outcome.searches),
     }
@@ -231,8 +232,9 @@ view! {
         residuals: Residuals = outcome.parity.residuals,
         /// Whether collisions and polynomials are right; null without a verdict.
         collisions_passed: Option<bool> = outcome.parity.collisions_passed,
-        /// How many times the original prints each of its messages; messages that it does not print are left out.
-        messages: BTreeMap<&'static str, u64> = messages(outcome),
+        /// The number of times that the original prints each of its messages; messages that it does not print are left
+        /// out.
+        messages: BTreeMap<&'static str, u64> = count_messages(outcome),
     }
 }
 
@@ -240,13 +242,13 @@ view! {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct StopView {
-    /// The reason.
+    /// The kind of stop.
     kind: StopKind,
     #[serde(flatten)]
     place: DamageView,
 }
 
-/// The reason why judging stopped early.
+/// The kind of reason why judging stopped early.
 #[derive(Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum StopKind {
@@ -254,26 +256,26 @@ enum StopKind {
     StateUnreadable,
     /// The impulses or polynomials of a record can't be read.
     ImpulsesUnreadable,
-    /// A list claims more than fits into memory.
+    /// A list claims more entries than fit into memory.
     ImpossibleCount,
-    /// A list claims more than the limits allow.
+    /// A list claims more entries than the limits allow.
     BeyondLimit,
-    /// The file itself can't be read on.
+    /// The file cannot be read further.
     ReadError,
-    /// The step that begins with these values has no result.
+    /// The step that begins with the given values has no result.
     StepWithoutResult,
 }
 
 view! {
-    /// A place in a trace where it can't be read as it should.
+    /// A damaged place in a trace.
     struct DamageView from damage: Damage {
-        /// From 1; 0 is the initial record.
+        /// The step number, from 1; 0 is the initial record.
         step: u32 = damage.step,
-        /// The record, from 0.
+        /// The index of the record, from 0.
         frame: Option<u64> = Some(damage.frame),
-        /// Byte offset.
+        /// The byte offset of the damage.
         offset: Option<u64> = Some(damage.offset),
-        /// In words.
+        /// The damage as a sentence.
         message: String = damage.what.to_string(),
     }
 }

@@ -1,4 +1,5 @@
-//! The wrong steps of a trace, one by one: gathered while it is judged, and shown with expected and actual values.
+//! The wrong steps of a trace, one by one. They are collected during judging, and shown with expected and actual
+//! values.
 use super::super::{
     number::{count, format_count},
     style::{Look, Style},
@@ -10,18 +11,18 @@ use fosssim_judge::{
 };
 use serde::Serialize;
 
-/// The greatest number of wrong steps kept by number, and of those kept with their findings.
+/// The maximum number of wrong steps whose numbers or findings are kept.
 pub const LISTED: usize = 1000;
 
-/// The steps that a report shows one by one.
+/// The selection of steps that a report shows individually.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum StepChoice {
-    /// No step; only the numbers of the wrong ones are kept.
+    /// No step; only the numbers of the wrong steps are kept.
     #[default]
     None,
-    /// All wrong steps, the first [`LISTED`].
+    /// All wrong steps, up to [`LISTED`].
     All,
-    /// These steps, wrong or right; 0 is the first record.
+    /// The given steps, wrong or right; 0 is the first record.
     These(Vec<u32>),
 }
 
@@ -31,11 +32,11 @@ struct Step {
     number: u32,
     /// The first finding of each kind.
     firsts: Vec<Finding>,
-    /// The number of them besides.
+    /// The number of further findings of each kind.
     more: FindingCounts,
 }
 
-/// The wrong steps by one book, the first [`LISTED`], in their order.
+/// The wrong steps by one book, up to [`LISTED`], in order.
 #[derive(Debug, Clone, Default)]
 struct Steps {
     numbers: Vec<u32>,
@@ -51,14 +52,14 @@ pub struct WrongSteps {
 }
 
 impl WrongSteps {
-    /// Creates the store for what a report about these steps needs.
+    /// Creates an empty collection that keeps the steps selected by `shown`.
     #[must_use]
     pub fn new(shown: StepChoice) -> Self {
         Self { shown, ..Self::default() }
     }
 
-    /// Returns the findings of a book, including those that follow only from the whole trace.
-    fn by(&self, book: Book, account: &BookFindings) -> Steps {
+    /// Returns the findings of a book, including those that follow from the whole trace.
+    fn findings_of(&self, book: Book, account: &BookFindings) -> Steps {
         let mut steps = match book {
             Book::Parity => self.parity.clone(),
             Book::Fair => self.fair.clone(),
@@ -79,12 +80,12 @@ impl Progress for WrongSteps {
 }
 
 impl Steps {
-    /// Adds findings of a step that may be here already.
+    /// Adds findings of a step, which may already be in the collection.
     fn add(&mut self, step: u32, findings: StepFindings<'_>, shown: &StepChoice) {
         if findings.firsts.is_empty() {
             return;
         }
-        // The first record is no step.
+        // Record 0 is the initial state, not a step.
         if let (Err(place), true, true) = (self.numbers.binary_search(&step), step > 0, self.numbers.len() < LISTED) {
             self.numbers.insert(place, step);
         }
@@ -116,7 +117,7 @@ impl Steps {
 
 /// Returns the steps of the official book, or of the other one if the official book has none.
 fn steps_of(check: &Check<'_>) -> (Book, Steps) {
-    let of = |book| (book, check.steps.by(book, check.outcome.findings_by(book)));
+    let of = |book| (book, check.steps.findings_of(book, check.outcome.findings_by(book)));
     let official = of(check.book());
     if official.1.numbers.is_empty() && official.1.kept.is_empty() && check.rules.ask_fair() {
         return of(Book::Fair);
@@ -124,13 +125,13 @@ fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     official
 }
 
-/// Returns the numbers of the official book's wrong steps, the first [`LISTED`].
+/// Returns the numbers of the official book's wrong steps, up to [`LISTED`].
 pub(super) fn numbers(check: &Check<'_>) -> Vec<u32> {
-    check.steps.by(check.book(), check.outcome.findings_by(check.book())).numbers
+    check.steps.findings_of(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 
-/// Returns whether only certain steps are requested, so that the rest of the report is left out.
-pub(super) fn only_these(check: &Check<'_>) -> bool {
+/// Returns whether only certain steps are requested, so that the report has nothing else.
+pub(super) fn shows_only_these(check: &Check<'_>) -> bool {
     matches!(check.steps.shown, StepChoice::These(_))
 }
 
@@ -139,7 +140,7 @@ pub(super) fn are_all_requested(check: &Check<'_>) -> bool {
     check.steps.shown == StepChoice::All
 }
 
-/// Returns the requested steps, each with its findings; none if no step was requested.
+/// Returns the requested steps, each with its findings; `None` if no step was requested.
 fn requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a Step>)>> {
     let found = |number: u32| steps.kept.iter().find(|step| step.number == number);
     match &check.steps.shown {
@@ -149,12 +150,12 @@ fn requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, 
     }
 }
 
-/// Renders the section about single steps; empty if none was requested, or none is wrong.
+/// Renders the section about single steps; `None` if no step was requested, or none is wrong.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = steps_of(check);
     let block = |(number, found): (u32, Option<&Step>)| match found {
-        Some(step) => block(check, step, style),
-        None => format!("{}\n", style.paint(Look::Strong, &nothing_wrong(check, number))),
+        Some(step) => render_step(check, step, style),
+        None => format!("{}\n", style.paint(Look::Strong, &describe_right(check, number))),
     };
     let mut text = requested_steps(check, &steps)?.into_iter().map(block).collect::<Vec<_>>().join("\n");
     let wrong = check.outcome.findings_by(book).wrong_steps;
@@ -165,7 +166,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     (!text.is_empty()).then_some(text)
 }
 
-fn nothing_wrong(check: &Check<'_>, step: u32) -> String {
+fn describe_right(check: &Check<'_>, step: u32) -> String {
     let outcome = check.outcome;
     let sound = outcome.steps_judged - outcome.damaged_steps;
     match step {
@@ -173,13 +174,13 @@ fn nothing_wrong(check: &Check<'_>, step: u32) -> String {
         0 => "First record: only the fair rules check it".to_owned(),
         _ if step <= sound => format!("Step {step} of {}: nothing is wrong", outcome.steps),
         _ if step <= outcome.steps_judged => {
-            format!("Step {step} of {}: not checked, because the trace is damaged there or before", outcome.steps)
+            format!("Step {step} of {}: not checked, because the trace is damaged in it or before it", outcome.steps)
         }
-        _ => format!("Step {step} of {}: not judged, because the trace can't be followed so far", outcome.steps),
+        _ => format!("Step {step} of {}: not judged, because judging stopped at an earlier step", outcome.steps),
     }
 }
 
-fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
+fn render_step(check: &Check<'_>, step: &Step, style: Style) -> String {
     let findings = step.firsts.len() as u64 + step.more.total();
     let frame = step.firsts.first().map_or(0, |first| first.frame);
     let heading = match step.number {
@@ -190,7 +191,7 @@ fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
     };
     let mut text = style.paint(Look::Strong, &heading) + "\n";
     for finding in &step.firsts {
-        text += &divergence::block(finding, style);
+        text += &divergence::render_finding(finding, style);
         match step.more.get(finding.kind()) {
             0 => {}
             more => text += &format!("  and {} more of this kind ({})\n", count(more), finding.kind()),
@@ -203,17 +204,17 @@ fn block(check: &Check<'_>, step: &Step, style: Style) -> String {
 #[derive(Debug, Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(super) struct WrongStepView {
-    /// From 1; 0 is the first record.
+    /// The step number, from 1; 0 is the first record.
     step: u32,
-    /// The first finding of each kind in the step, and the number of each kind. Empty if the step is right, or if the
-    /// trace can't be judged so far.
+    /// The first finding of each kind in the step, and the number of each kind. Empty if the step is right, or if
+    /// judging stopped before it.
     findings: Vec<CountedView>,
 }
 
-/// Returns the requested steps; none if no step was requested.
+/// Returns the requested steps; `None` if no step was requested.
 pub(super) fn views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
     let (book, steps) = steps_of(check);
-    let counted = |step: &Step| CountedView::all(book, &step.firsts, |kind| 1 + step.more.get(kind));
+    let counted = |step: &Step| CountedView::count(book, &step.firsts, |kind| 1 + step.more.get(kind));
     let view =
         |(step, found): (u32, Option<&Step>)| WrongStepView { step, findings: found.map(counted).unwrap_or_default() };
     Some(requested_steps(check, &steps)?.into_iter().map(view).collect())

@@ -1,4 +1,4 @@
-//! The check report for people: the verdict first, then what leads to it.
+//! The check report for people: first the verdict, then its reasons.
 use super::{
     super::{
         explain,
@@ -17,71 +17,71 @@ use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use std::{fmt::Display, iter};
 
-/// The advice where a trace has met a limit.
-const LIMIT: &str =
+/// The advice for a trace that exceeds a limit.
+const LIMIT_ADVICE: &str =
     "this is a limit of this program, which the original does not have: it says nothing about the trace";
 
-/// The advice at a computation without result.
-const ABSURD: &str = "the trace's own positions and velocities lead here; look for values that are not finite or \
+/// The advice for a computation without a result.
+const NO_RESULT: &str = "the trace's own positions and velocities lead here; look for values that are not finite or \
                       absurdly large in the steps before";
 
-/// The greatest number of explanations that are shown without `--tables`.
-const EXPLANATIONS: usize = 2;
+/// The maximum number of explanations that are shown without `--tables`.
+const MAX_EXPLANATIONS: usize = 2;
 
 pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let outcome = check.outcome;
-    let mut parts = vec![head(check, style)];
-    if check.is_no_trace() {
+    let mut parts = vec![render_head(check, style)];
+    if check.is_not_a_trace() {
         return parts.concat();
     }
     parts.extend(outcome.stop_of(check.book()).map(|stop| {
-        let (place, message, advice) = problem(&stop, outcome);
+        let (place, message, advice) = describe_problem(&stop, outcome);
         let lines: String = iter::once(&*message).chain(advice).map(|line| format!("  {line}\n")).collect();
         format!("{} {place}\n{lines}", style.paint(Look::Strong, "Stopped at"))
     }));
-    if steps::only_these(check) {
+    if steps::shows_only_these(check) {
         parts.extend(steps::render(check, style));
         return parts.join("\n");
     }
-    // The cause first, then where it shows first.
+    // Show the cause first, then its first occurrence.
     let is_told = !is_other_scene(check);
-    parts.extend(explanations(check, style).filter(|_| is_told));
-    // With all steps shown, it appears there again.
+    parts.extend(render_mistakes(check, style).filter(|_| is_told));
+    // If all steps are shown, the first finding appears there.
     let first = first(check).filter(|_| !steps::are_all_requested(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
-    parts.extend(section("Where to look", "  - ", &advice::lines(check), style));
+    parts.extend(render_section("Where to look", "  - ", &advice::lines(check), style));
     parts.extend(steps::render(check, style).filter(|_| is_told));
     let has_tables = check.tables;
     if has_tables {
-        parts.push(residuals(outcome, style));
+        parts.push(render_residuals(outcome, style));
         parts.extend(fair::render(outcome, style));
         let account = outcome.findings_by(check.book());
-        // The fair section holds its own findings.
+        // The fair section shows the fair rules' findings.
         if !account.examples.is_empty() && check.book() == Book::Parity {
-            parts.push(findings(account, follows::count(outcome), style));
+            parts.push(render_findings(account, follows::count(outcome), style));
         }
     } else {
         parts.extend(books::render(check, style));
     }
-    parts.extend(section("Notes", "  - ", &notes(check), style));
+    parts.extend(render_section("Notes", "  - ", &notes(check), style));
     let more = "  --tables shows all kinds of findings, and how much of each tolerance is used\n";
-    let commands = section("Next", "  $ ", &closer::commands(check), style);
+    let commands = render_section("Next", "  $ ", &closer::commands(check), style);
     parts.extend(commands.map(|commands| commands + if has_tables { "" } else { more }));
     parts.join("\n")
 }
 
-/// Returns the lines under a heading; nothing without any.
-fn section(heading: &str, mark: &str, lines: &[impl Display], style: Style) -> Option<String> {
+/// Returns the lines under a heading; `None` without lines.
+fn render_section(heading: &str, mark: &str, lines: &[impl Display], style: Style) -> Option<String> {
     let heading = style.paint(Look::Strong, heading) + "\n";
     let lines: String = lines.iter().map(|line| format!("{mark}{line}\n")).collect();
     (!lines.is_empty()).then(|| heading + &lines)
 }
 
-/// Returns the likely mistakes of the program. The likeliest ones fill no more than a screen.
-fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
-    let most = if check.tables { usize::MAX } else { EXPLANATIONS };
+/// Returns the likely mistakes of the program, limited to a screen.
+fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
+    let most = if check.tables { usize::MAX } else { MAX_EXPLANATIONS };
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
-    // The first difference follows, which is an example, too.
+    // The first difference, which is also an example, follows below.
     let has_example = check.tables || first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
@@ -89,22 +89,22 @@ fn explanations(check: &Check<'_>, style: Style) -> Option<String> {
     if !more.is_empty() {
         lines.push(format!("and {} (--tables)", format_count(more.len() as u64, "less likely explanation")));
     }
-    section("Likely cause", "  ", &lines, style)
+    render_section("Likely cause", "  ", &lines, style)
 }
 
-fn head(check: &Check<'_>, style: Style) -> String {
+fn render_head(check: &Check<'_>, style: Style) -> String {
     let look = if check.is_accepted() { Look::Good } else { Look::Bad };
     let verdict = style.paint(look, &check.verdict().to_uppercase());
-    if check.is_no_trace() {
+    if check.is_not_a_trace() {
         return format!("{verdict}: {} {}\n", check.trace, headline(check));
     }
     format!("{verdict}: {}\n  scene {}\n  trace {}\n", headline(check), check.scene, check.trace)
 }
 
-/// Returns the reason behind the verdict, in one line.
+/// Returns the reason for the verdict, in one line.
 pub(crate) fn headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
-    if let (Some(kind), true) = (check.looks_like, check.is_no_trace()) {
+    if let (Some(kind), true) = (check.looks_like, check.is_not_a_trace()) {
         return format!("is not a trace: it {kind}");
     }
     if let Some(question) = check.explanations.iter().find(|one| one.is_other_scene()) {
@@ -112,7 +112,7 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
     }
     let steps = count(u64::from(outcome.steps));
     let parity = match outcome.parity.overall {
-        Overall::Passed if outcome.steps == 0 => "the scene has no step; there is nothing to get wrong".to_owned(),
+        Overall::Passed if outcome.steps == 0 => "the scene has no steps, so nothing can be wrong".to_owned(),
         Overall::Passed => format!("{} by the original's rules", share::describe_right(outcome.steps, count)),
         Overall::Failed if outcome.damaged_steps > 0 => describe_damage(outcome),
         Overall::Failed if outcome.parity.findings.wrong_steps == 0 => {
@@ -127,8 +127,8 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
             let judged = count(u64::from(outcome.judged_by(Book::Parity)));
             let end = match &outcome.stop_of(Book::Parity) {
                 Some(stop) if is_limit(stop) => "a limit of this program ended judging",
-                Some(Stop::Step(_)) => "the original would compute without end",
-                _ => "the trace could not be read on",
+                Some(Stop::Step(_)) => "the original would not terminate",
+                _ => "the trace could not be read further",
             };
             format!("judged {judged} of {}, then {end}", format_count(outcome.steps.into(), "step"))
         }
@@ -142,7 +142,7 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
     }
 }
 
-/// Describes where a trace that is read to its end is damaged, and what its steps before are.
+/// Describes the damage of a trace that is read to its end, and the result of the steps before it.
 fn describe_damage(outcome: &Outcome) -> String {
     let place = match &outcome.damage {
         Some(damage) if damage.step > 0 => format!("the trace is damaged in step {} of {}", damage.step, outcome.steps),
@@ -165,10 +165,10 @@ fn describe_damage(outcome: &Outcome) -> String {
     }
 }
 
-/// Returns the place at which judging a trace ended, and the reason: one line.
+/// Returns a line with the place and the reason of the end of judging.
 #[must_use]
 pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
-    let (place, message, _) = problem(stop, outcome);
+    let (place, message, _) = describe_problem(stop, outcome);
     let what = match stop {
         Stop::Trace { .. } => "the trace can't be read any further at",
         Stop::Step(_) => "judging ended at",
@@ -176,18 +176,18 @@ pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
     format!("{what} {place}: {message}")
 }
 
-/// Returns whether judging ended at a limit of this program, which is no fault of the trace.
+/// Returns whether judging ended at a limit of this program, which is not a fault of the trace.
 const fn is_limit(stop: &Stop) -> bool {
     matches!(stop, Stop::Trace { cause: Unreadable::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
-/// Returns where judging a trace ended, the reason, and the place to check; nothing if there is no such reason.
-pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
+/// Returns the place and the reason of the end of judging, and advice where to look, if there is any.
+pub(crate) fn describe_problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
     let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {
             let advice = match cause {
-                Unreadable::Io => "the file could not be read on; check the disk, or who else writes to it",
-                Unreadable::Limit => LIMIT,
+                Unreadable::Io => "reading the file failed; check the disk, and for other programs that write to it",
+                Unreadable::Limit => LIMIT_ADVICE,
                 Unreadable::Memory => {
                     "the trace is damaged, or was made for another scene: compare the scene's number of particles \
                      and its collision type with those of the run"
@@ -208,7 +208,7 @@ pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option
         }
         Stop::Step(error) => {
             let (step, message) = (error.step(), WithoutResult(*error).to_string());
-            let advice = if is_limit(stop) { LIMIT } else { ABSURD };
+            let advice = if is_limit(stop) { LIMIT_ADVICE } else { NO_RESULT };
             (format!("step {step} of {}", outcome.steps), message, advice)
         }
     };
@@ -216,7 +216,7 @@ pub(crate) fn problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option
     (place, message, (!asks).then_some(advice))
 }
 
-fn residuals(outcome: &Outcome, style: Style) -> String {
+fn render_residuals(outcome: &Outcome, style: Style) -> String {
     let names = ["accumulated position", "accumulated velocity", "maximum position", "maximum velocity"];
     let judged = outcome.parity.overall != Overall::None;
     let mut table = Table::new([Align::Left, Align::Right, Align::Right, Align::Right, Align::Left]);
@@ -227,7 +227,7 @@ fn residuals(outcome: &Outcome, style: Style) -> String {
             name.into(),
             general(value).into(),
             general(bound).into(),
-            share_cell(value, bound).into(),
+            format_share(value, bound).into(),
             verdict,
         ]);
     }
@@ -241,8 +241,8 @@ fn pass_cell(yes: bool) -> Cell {
     if yes { Cell::with_look(Look::Good, "passed") } else { Cell::with_look(Look::Bad, "failed") }
 }
 
-/// Returns which share of its tolerance a residual uses.
-fn share_cell(value: f64, bound: f64) -> String {
+/// Returns the used share of a residual's tolerance, as the text of a table cell.
+fn format_share(value: f64, bound: f64) -> String {
     let share = value / bound;
     if share.is_nan() {
         "-".to_owned()
@@ -259,7 +259,7 @@ fn share_cell(value: f64, bound: f64) -> String {
     }
 }
 
-fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
+fn render_findings(account: &BookFindings, follow: u64, style: Style) -> String {
     let heading =
         format!("Findings: {} in {}", count(account.counts.total()), format_count(account.wrong_steps, "step"));
     let mut text = format!("{}\n{}", style.paint(Look::Strong, &heading), fair::describe_kinds(account, style));
@@ -269,7 +269,7 @@ fn findings(account: &BookFindings, follow: u64, style: Style) -> String {
     text
 }
 
-/// Writes further notes.
+/// Returns further notes about the trace.
 pub(crate) fn notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();

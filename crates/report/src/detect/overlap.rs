@@ -10,14 +10,14 @@ use fosssim_model::sim::Pair;
 use fosssim_num::{vector::Vec2, written::WrittenNumbers};
 use serde::Serialize;
 
-/// A decision to be shown, and where in a scene's run it is.
+/// The content of a report on an overlap decision, and its place in a scene's run.
 #[derive(Debug, Clone, Copy)]
 pub struct Overlap<'a> {
-    /// The computation.
+    /// The reference's study of the pair.
     pub study: &'a OverlapStudy,
-    /// The scene as typed.
+    /// The scene's name, as typed.
     pub scene: &'a str,
-    /// The trace as typed; `None` for the reference's own run.
+    /// The trace's name, as typed; `None` for the reference's own run.
     pub trace: Option<&'a str>,
     /// The step, from 1.
     pub step: u32,
@@ -36,7 +36,7 @@ impl Overlap<'_> {
             + &self.body(exact, style)
     }
 
-    /// Renders the report without its title, with numbers as this function writes them.
+    /// Renders the report without its title; `number` formats numbers.
     pub(crate) fn body(&self, number: ShownNumber, style: Style) -> String {
         let study = self.study;
         let heading = |words: &str| format!("\n{}\n", style.paint(Look::Strong, words));
@@ -53,16 +53,16 @@ impl Overlap<'_> {
         text +=
             &format!("  normal {}: from the first object to the nearest point of the second\n", vector(study.normal));
         text += &format!(
-            "  distance {}, radii together {}: they {}overlap\n",
+            "  distance {}, sum of radii {}: they {}overlap\n",
             number(study.distance()),
             number(study.reach),
-            not(overlap)
+            negation(overlap)
         );
         let [one, other] = study.velocities.map(vector);
         text += &format!(
             "  velocities {one} and {other}, their difference times the normal {}: they {}approach\n",
             number(study.approach()),
-            not(approach)
+            negation(approach)
         );
         text += &heading("Decision");
         let (look, words) = match study.collides {
@@ -120,7 +120,7 @@ impl Overlap<'_> {
     }
 }
 
-const fn not(is: bool) -> &'static str {
+const fn negation(is: bool) -> &'static str {
     if is { "" } else { "do not " }
 }
 
@@ -128,9 +128,9 @@ const fn not(is: bool) -> &'static str {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(super) struct OverlapView {
-    /// The nearest point of an edge, from 0 at its first end to 1 at its second; null without an edge.
+    /// The position of the nearest point on the edge, from 0 at its first end to 1 at its second; null without an edge.
     alpha: Option<Number>,
-    /// From the first object to the nearest point of the second, not normalized.
+    /// The vector from the first object to the nearest point of the second, not normalized.
     normal: [Number; 2],
     /// The length of the normal.
     distance: Number,
@@ -138,12 +138,12 @@ pub(super) struct OverlapView {
     radii_together: Number,
     /// Whether the distance is below the sum of the radii.
     overlaps: bool,
-    /// The velocities of the first object, and of the second at its nearest point.
+    /// The velocities of the first object, and of the nearest point of the second.
     velocities: [[Number; 2]; 2],
     /// The difference of the velocities times the normal.
     approach: Number,
-    /// Whether it is above zero.
+    /// Whether `approach` is positive.
     approaches: bool,
-    /// Whether the trace has a collision of this pair; null for the reference's run.
+    /// Whether the trace has a collision of the pair; null for the reference's run.
     logged: Option<bool>,
 }

@@ -1,6 +1,6 @@
 //! Every format: against its schema, and as a snapshot that people read.
 use super::Format;
-use crate::grade::{csv_of_submissions, json_lines, samples, warn_of};
+use crate::grade::{add_warnings, csv_of_submissions, json_lines, samples};
 use crate::page::{Audience, GradePage};
 use fosssim_grading::{
     Grade, PassedOver, Reason, Verdict,
@@ -90,7 +90,7 @@ fn who_is_passed_over_is_told_of_a_class_in_every_format_and_once() {
     assert_eq!(names[2..], [".hidden", "'=a|b,<c>::d"]);
     assert_eq!(json_lines(&all(), &passed_over).lines().count(), 5);
     let mut one = [samples::good()];
-    warn_of(&mut one, &passed_over);
+    add_warnings(&mut one, &passed_over);
     for format in Format::ALL.iter().filter(|format| **format != Format::Csv) {
         assert!(format.render(&one).contains(".hidden"), "{}", format.name());
     }

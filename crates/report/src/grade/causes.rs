@@ -1,22 +1,22 @@
-//! The scenes of a submission by the cause of their verdicts, and the scene that shows a cause best: the same one in
-//! every report.
+//! The scenes of a submission by the cause of their verdicts, and the scene that shows a cause best, which is the same
+//! in every report.
 use super::likely_mistakes;
 use crate::words;
 use fosssim_findings::{Grade, Reason, SceneGrade, Verdict};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::{cmp::Reverse, collections::BTreeMap};
 
-/// Scenes whose verdicts have the same cause: the one that shows it best, then the others in the suite's order.
+/// Scenes whose verdicts have the same cause: first the one that shows it best, then the others in the suite's order.
 pub type AlikeScenes<'a> = Vec<&'a SceneGrade>;
 
-/// Returns the scenes with something to tell, cause by cause: first likely mistakes, then what most scenes have in
-/// common, then what was left out, last accepted scenes about which the rule books differ.
+/// Returns the listed scenes by cause: first likely mistakes, then causes that most scenes share, then skipped scenes,
+/// and last accepted scenes about which the rule books differ.
 #[must_use]
 pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     let likely: Vec<Explanation> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
     let mut found: BTreeMap<(Verdict, Vec<String>), (usize, AlikeScenes<'_>)> = BTreeMap::new();
-    for (place, scene) in grade.scenes().enumerate().filter(|(_, scene)| is_told(scene)) {
-        found.entry((scene.verdict, cause(scene))).or_insert((place, Vec::new())).1.push(scene);
+    for (place, scene) in grade.scenes().enumerate().filter(|(_, scene)| is_listed(scene)) {
+        found.entry((scene.verdict, describe_cause(scene))).or_insert((place, Vec::new())).1.push(scene);
     }
     let mut causes: Vec<_> = found.into_values().collect();
     causes.sort_by_key(|(place, scenes)| {
@@ -33,42 +33,41 @@ pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
 }
 
 /// Returns the scene that shows a mistake best.
-pub(crate) fn example<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
+pub(crate) fn clearest_scene<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
     let named = grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
     named.min_by_key(|scene| obscurity(scene))
 }
 
-/// Returns the rank of the first of the likely mistakes among some explanations; other explanations come after all of
-/// them, and none at all comes last.
+/// Returns the rank of the best of some explanations among the likely mistakes. Other explanations come after them, and
+/// no explanation comes last.
 pub(crate) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
     let named = likely.iter().position(|one| is_named_in(one, own));
     named.unwrap_or(likely.len() + usize::from(own.is_empty()))
 }
 
-/// Returns how hard a cause is to see in a scene; the smallest value is the clearest scene. It counts in this order:
-/// whether the rule books differ, so that it may be a consequence or round-off; how many mistakes are named; how many
-/// others would have the same effect there; how much is wrong, which grows with the motion; how long that is.
+/// Returns how hard a cause is to see in a scene; the smallest value is the clearest scene. The criteria are, in this
+/// order: whether the rule books differ (the fault may be round-off), the number of named mistakes, the number of
+/// mistakes with the same effect, the number of faults (which grows with the motion), and its length.
 fn obscurity(scene: &SceneGrade) -> (bool, usize, usize, u64, u32) {
     let found = scene.disclosure.as_ref().map_or(0, |all| all.official().counts.total());
     (scene.differs.is_some(), scene.settled.len(), scene.explanations.len(), found, scene.steps)
 }
 
-/// Returns whether a scene has something to tell.
-pub(crate) fn is_told(scene: &SceneGrade) -> bool {
+/// Returns whether the report lists the scene.
+pub(crate) fn is_listed(scene: &SceneGrade) -> bool {
     scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
 }
 
-/// Returns the cause of a scene's verdict, in words: the end of its program, its likely mistakes, the kind of the first
-/// finding, or the summary without the numbers of its place. A scene that the rule books judge differently has a cause
-/// of its own.
-fn cause(scene: &SceneGrade) -> Vec<String> {
+/// Returns the cause of a scene's verdict, as text: the end of its program, its likely mistakes, the kind of the first
+/// finding, or the summary without numbers. A scene that the rule books judge differently has its own cause.
+fn describe_cause(scene: &SceneGrade) -> Vec<String> {
     if scene.verdict.is_accepted() || scene.differs.is_some() {
         return vec![scene.scene.clone()];
     }
     if !matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace) {
-        // If nothing is logged, the first place where that shows does not matter.
+        // If nothing is logged, the place of the first difference does not matter.
         let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
-        return std::iter::once(words::ending(scene)).chain(details).collect();
+        return std::iter::once(words::describe_ending(scene)).chain(details).collect();
     }
     if !scene.settled.is_empty() {
         return scene.settled.iter().map(words::explanation::what).collect();

@@ -1,12 +1,12 @@
-//! The changes of a submission since an earlier grading, in words.
+//! The changes of a submission since an earlier grading, as text.
 use super::{format_points, phrases::list_some, points};
 use crate::{number::format_count, style::Look};
 use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
 
-/// The greatest number of scenes that are named.
-const NAMED: usize = 5;
+/// The maximum number of scenes that a line names.
+const MAX_NAMED: usize = 5;
 
-/// Returns the lines about the changes, with the style of each: points, and scenes by what became of them.
+/// Returns the lines about the changes, each with its style: points, and scenes by the kind of change.
 pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
     let Some(changes) = grade.changes() else { return Vec::new() };
     let name = |scene: &&SceneGrade| scene.scene.clone();
@@ -27,7 +27,7 @@ pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
     let named = kinds.into_iter().filter(|(_, _, names)| !names.is_empty());
     let mut lines: Vec<(Look, String)> = named
         .map(|(look, verb, names)| {
-            (look, format!("{} {verb}: {}", format_count(names.len() as u64, "scene"), list_some(&names, NAMED)))
+            (look, format!("{} {verb}: {}", format_count(names.len() as u64, "scene"), list_some(&names, MAX_NAMED)))
         })
         .collect();
     if lines.is_empty() {

@@ -1,4 +1,4 @@
-//! A class in numbers: how many points, which scenes few have right, which mistakes many make.
+//! The statistics of a class: points, the hardest scenes, and the most frequent mistakes.
 use super::{likely_mistakes, phrases::list_some, points, shorten_name};
 use crate::foreign::one_line;
 use crate::{
@@ -11,18 +11,19 @@ use fosssim_findings::{Grade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
 use std::{cmp::Ordering, collections::BTreeMap, fmt::Write};
 
-/// The number of submissions that were run on a scene, and of those that it was accepted for.
+/// The numbers of submissions that were run on a scene, and that were accepted there.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct SceneShare {
     pub(crate) accepted: usize,
     pub(crate) run: usize,
 }
 
-/// Returns the class, with at most this number of scenes, mistakes and names of one program's submissions.
+/// Returns the report on the class, with at most `most` scenes, mistakes, and names of submissions with the same
+/// program.
 #[must_use]
 pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
-    let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), head(grades));
-    let (scenes, whole) = hardest(grades);
+    let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), render_head(grades));
+    let (scenes, whole) = find_hardest(grades);
     if !scenes.is_empty() {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scenes with the fewest right answers"));
         let mut table = Table::new([Align::Right, Align::Right, Align::Left]);
@@ -42,7 +43,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
             let _ = writeln!(text, "  {} accepted for all", format_count(whole as u64, "scene"));
         }
     }
-    let mistakes = frequent(grades);
+    let mistakes = find_frequent(grades);
     if !mistakes.is_empty() {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Most frequent mistakes"));
         let mut table = Table::new([Align::Right, Align::Left]);
@@ -63,7 +64,7 @@ pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
     text
 }
 
-/// Returns the numbers of the submissions that have the same program as others, each group once.
+/// Returns the groups of submissions with the same program, by their numbers.
 pub(crate) fn same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
     let mut found: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| !grade.same_program.is_empty()) {
@@ -74,20 +75,20 @@ pub(crate) fn same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The figures of a class; those about points count only submissions that ran.
+/// The figures of a class. Those about points count only submissions that were run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct ClassFigures {
     pub(crate) submissions: usize,
-    /// Submissions of which a scene was run.
+    /// The number of submissions that were run on some scene.
     pub(crate) ran: usize,
     pub(crate) accepted: usize,
-    /// Submissions that ran and have no points.
+    /// The number of submissions that were run and have no points.
     pub(crate) without_points: usize,
-    /// Mean, median, the fewest and the most points.
+    /// The mean, the median, the minimum and the maximum of the points.
     pub(crate) points: Option<[f64; 4]>,
-    /// Points that can be reached.
+    /// The maximum number of points.
     pub(crate) max_points: f64,
-    /// Submissions with more points than in the earlier grading, and with fewer.
+    /// The numbers of submissions with more points than in the earlier grading, and with fewer.
     pub(crate) since: Option<(usize, usize)>,
 }
 
@@ -119,8 +120,9 @@ impl ClassFigures {
     }
 }
 
-/// Returns `30 submissions, 28 ran, 12 accepted; of those that ran mean 63.2, median 71, from 0 to 100 of 100 points`.
-fn head(grades: &[Grade]) -> String {
+/// Returns the figures as text, such as `30 submissions, 28 ran, 12 accepted; of those that ran mean 63.2, median 71,
+/// from 0 to 100 of 100 points`.
+fn render_head(grades: &[Grade]) -> String {
     let figures = ClassFigures::from_grades(grades);
     let all = format_count(figures.submissions as u64, "submission");
     let mut text = format!("{all}, {} ran, {} accepted", figures.ran, figures.accepted);
@@ -140,14 +142,14 @@ fn head(grades: &[Grade]) -> String {
     text
 }
 
-/// Returns whether no scene of it was run: no program is in it, or it does not build.
+/// Returns whether the submission was run on no scene, because it has no program or does not build.
 pub(crate) fn never_ran(grade: &Grade) -> bool {
     grade.scenes().all(|scene| matches!(scene.verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError))
 }
 
-/// Returns the scenes that are not accepted for all, those that fewest have right first, and how many others
-/// there are. Submissions that never ran do not count, nor do scenes that were not run, or on which the grader failed.
-pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
+/// Returns the scenes that not all submissions have right, the hardest first, and the number of further ones.
+/// Submissions that were never run, scenes that were not run, and failures of the grader do not count.
+pub(crate) fn find_hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();
     for scene in grades.iter().filter(|grade| !never_ran(grade)).flat_map(Grade::scenes) {
@@ -162,7 +164,7 @@ pub(crate) fn hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     }
     let known = order.into_iter().map(|scene| (scene, shares[scene])).filter(|(_, share)| share.run > 0);
     let (whole, mut wrong): (Vec<_>, Vec<_>) = known.partition(|(_, share)| share.accepted == share.run);
-    // Shares are compared as fractions; the sort is stable, so that equal shares stay in the suite's order.
+    // Shares are compared as fractions. The sort is stable, so that equal shares stay in the suite's order.
     wrong.sort_by(|(_, a), (_, b)| (a.accepted * b.run).cmp(&(b.accepted * a.run)));
     (wrong, whole.len())
 }
@@ -174,7 +176,7 @@ pub(crate) struct SharedMistake {
 }
 
 /// Returns the likely mistakes with the submissions that make them, the most frequent first.
-pub(crate) fn frequent(grades: &[Grade]) -> Vec<SharedMistake> {
+pub(crate) fn find_frequent(grades: &[Grade]) -> Vec<SharedMistake> {
     let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {
         for (mistake, _) in likely_mistakes(grade) {
@@ -229,7 +231,7 @@ mod tests {
     #[test]
     fn what_was_not_run_or_not_judged_is_no_failure_of_a_scene() {
         let grades = [samples::fault(), samples::stopped_grade()];
-        assert_eq!(hardest(&grades), (Vec::new(), 1));
-        assert_eq!(hardest(&[samples::bad(), samples::unfit()]), hardest(&[samples::bad()]));
+        assert_eq!(find_hardest(&grades), (Vec::new(), 1));
+        assert_eq!(find_hardest(&[samples::bad(), samples::unfit()]), find_hardest(&[samples::bad()]));
     }
 }

@@ -1,4 +1,4 @@
-//! CSV for spreadsheets. A cell that a spreadsheet would take for a formula gets an apostrophe in front.
+//! CSV for spreadsheets. A cell that a spreadsheet would read as a formula begins with an apostrophe.
 use super::{likely_mistakes, no_points, phrases::NOT_GRADED, points};
 use crate::foreign::one_line;
 use crate::{view::key, words};
@@ -34,10 +34,11 @@ pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     write(head, rows.chain(rest))
 }
 
-/// Returns one row per submission, with a column per group; `rules_differ` counts scenes that the rule books judge
-/// differently. Points are empty if the grader failed or was stopped; `reason` is one sentence why not everything is
-/// accepted, `same_program` names the others with the same program, and `worth` is what mending the first likely
-/// mistake is worth. Entries that are no submissions have rows with only the reason.
+/// Returns one row per submission, with a column per group. `rules_differ` counts scenes that the rule books judge
+/// differently. Points are empty if the grader failed or was stopped. `reason` is one sentence about a submission that
+/// is not accepted everywhere, `same_program` names the others with the same program, and `worth` is the number of
+/// points that fixing the first likely mistake would give. Entries that are not submissions have rows with only the
+/// reason.
 #[must_use]
 pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let head = "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,\
@@ -76,7 +77,7 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     write(head, rows.chain(rest))
 }
 
-/// Returns rows with the reason why an entry is not graded, in the column for reasons.
+/// Returns rows for entries that are not graded, with the reason in the column for reasons.
 fn empty_rows(passed_over: &[PassedOver], head: &[String], reasons: &str) -> Vec<Vec<String>> {
     let cell = |entry: &PassedOver, column: &str| match column {
         "submission" => safe(&entry.name),
@@ -84,7 +85,7 @@ fn empty_rows(passed_over: &[PassedOver], head: &[String], reasons: &str) -> Vec
         column if column == reasons => safe(&entry.why),
         _ => String::new(),
     };
-    // A group may be called like a column of ours.
+    // A group may have the name of a column.
     let own = head.iter().position(|column| column == reasons).unwrap_or_default();
     let column = |number: usize| if number <= own { head[number].as_str() } else { "" };
     passed_over.iter().map(|entry| (0..head.len()).map(|number| cell(entry, column(number))).collect()).collect()
@@ -93,14 +94,14 @@ fn empty_rows(passed_over: &[PassedOver], head: &[String], reasons: &str) -> Vec
 fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
     let mut writer = csv::Writer::from_writer(Vec::new());
     for row in std::iter::once(head).chain(rows) {
-        // Writing to memory fails only when rows differ in length, which the rows above do not.
+        // Writing to memory fails only if rows differ in length, which the rows above do not.
         let _ = writer.write_record(&row);
     }
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
-/// Returns text that no spreadsheet takes for a formula. Text that begins like an escaped formula is escaped again, so
-/// that two texts never become the same cell.
+/// Returns text that no spreadsheet reads as a formula. Text that begins like an escaped formula is escaped again, so
+/// that different texts have different cells.
 fn safe(text: &str) -> String {
     const FORMULAS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
     let text = one_line(text);

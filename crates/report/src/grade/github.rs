@@ -1,11 +1,11 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
 use super::{
     super::explain,
-    by_cause, change_lines, difference, format_points, head_lines, is_told, no_points,
+    by_cause, change_lines, describe_difference, format_points, head_lines, is_listed, no_points,
     phrases::{NOT_GRADED, list_some},
     points,
 };
-use crate::annotation::{annotation, annotation_of};
+use crate::annotation::{annotation, join_annotation};
 use crate::foreign::{clean_output, one_line};
 use crate::{number::format_count, words};
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
@@ -24,13 +24,13 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
         if let Some(build) = grade.failed_build() {
             let title = format!("{}: {}", grade.submission, words::build(&build.end));
             let words: String = clean_output(&build.output).chars().take(4000).collect();
-            text += &annotation_of("error", &title, words.lines());
+            text += &join_annotation("error", &title, words.lines());
         }
-        // GitHub shows the first ten, so the most important ones come first, each only once.
+        // GitHub shows only ten annotations, so the most important ones come first, without repetition.
         let head = head_lines(grade);
         if !head.is_empty() && grade.failed_build().is_none() {
-            let title = format!("{}: {}, {}", grade.submission, grade.verdict, score(grade));
-            text += &annotation_of("error", &title, head.iter().map(String::as_str));
+            let title = format!("{}: {}, {}", grade.submission, grade.verdict, format_score(grade));
+            text += &join_annotation("error", &title, head.iter().map(String::as_str));
         }
         let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted() && grade.unfit().is_none());
         for scene in wrong {
@@ -41,7 +41,7 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
             text += &annotation(level, &title, &words.join("; "));
         }
         for scene in grade.scenes() {
-            let Some(words) = difference(scene) else { continue };
+            let Some(words) = describe_difference(scene) else { continue };
             text += &annotation("warning", &format!("{}: {}", grade.submission, scene.scene), &words);
         }
     }
@@ -54,7 +54,7 @@ pub(crate) fn passed_over(entries: &[PassedOver]) -> String {
     entries.iter().map(warning).collect()
 }
 
-/// Lists the entries that are no submissions in Markdown.
+/// Lists the entries that are not submissions in Markdown.
 pub(crate) fn list_of_passed_over(entries: &[PassedOver]) -> String {
     if entries.is_empty() {
         return String::new();
@@ -67,7 +67,7 @@ pub(crate) fn list_of_passed_over(entries: &[PassedOver]) -> String {
 pub(crate) fn summary(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
-        let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&score(grade)));
+        let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&format_score(grade)));
         for line in head_lines(grade) {
             let _ = writeln!(text, "{}\n", cell(&line));
         }
@@ -97,14 +97,14 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
             let scene = alike[0];
             let words: Vec<String> = std::iter::once(words::summary(scene))
                 .chain(explain::sentence(&scene.settled))
-                .chain(difference(scene))
+                .chain(describe_difference(scene))
                 .map(|words| cell(&words))
                 .collect();
             let (names, words) = (cell(&list_some(&names, NAMED)), words.join("; "));
             let _ = writeln!(text, "| {names} | {} | {} | {words} |", scene.verdict, sum(&alike));
         }
         for verdict in [Verdict::Accepted, Verdict::NotRun] {
-            let rest: Vec<_> = grade.scenes().filter(|one| !is_told(one) && one.verdict == verdict).collect();
+            let rest: Vec<_> = grade.scenes().filter(|one| !is_listed(one) && one.verdict == verdict).collect();
             if !rest.is_empty() {
                 let count = format_count(rest.len() as u64, "scene");
                 let _ = writeln!(text, "| {count} | {verdict} | {} | |", sum(&rest));
@@ -115,13 +115,13 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
     text
 }
 
-/// Returns `12.5 of 20`, or why there are no points.
-fn score(grade: &Grade) -> String {
+/// Returns the score, such as `12.5 of 20`, or the reason why there are no points.
+fn format_score(grade: &Grade) -> String {
     let reached = grade.points.map(|reached| format!("{} of {}", points(reached), points(grade.max_points)));
     reached.or_else(|| no_points(grade)).unwrap_or_default()
 }
 
-/// Returns text without Markdown or HTML of its own.
+/// Returns text in which Markdown and HTML are escaped.
 fn cell(text: &str) -> String {
     let mut cell = String::new();
     for c in one_line(text).chars() {

@@ -1,5 +1,6 @@
-//! Gradescope's results.json. A fault of ours has no score: the harness exits with an error instead of a zero.
-use super::{super::explain, difference, head_lines, points, see_above, speed_words};
+//! Gradescope's results.json. If the grader failed there is no score: the harness exits with an error instead of giving
+//! zero points.
+use super::{super::explain, describe_difference, describe_speed, head_lines, points, see_above};
 use crate::foreign::{clean_output, plain};
 use crate::{number::format_count, style::Style, view::document, words};
 use fosssim_findings::{
@@ -53,7 +54,7 @@ pub(crate) fn render(grade: &Grade) -> String {
     for (g, group) in grade.groups.iter().enumerate() {
         for (s, scene) in group.scenes.iter().enumerate() {
             tests.push(Test {
-                // Without a score of its own the whole would be the sum of these.
+                // Without its own score, the whole would be the sum of these.
                 score: grade.points.and(scene.points).map(round_points),
                 max_score: round_points(scene.max_points),
                 status: if scene.verdict.is_accepted() { "passed" } else { "failed" },
@@ -61,12 +62,12 @@ pub(crate) fn render(grade: &Grade) -> String {
                 number: format!("{}.{}", g + 1, s + 1),
                 output: match grade.unfit() {
                     Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
-                    // A test that only staff sees may show everything.
-                    None if tells_all || group.visibility == Visibility::Hidden => output(scene),
+                    // A test that only staff see may show everything.
+                    None if tells_all || group.visibility == Visibility::Hidden => describe_scene(scene),
                     None => {
                         let mut scene = scene.clone();
                         scene.withhold();
-                        output(&scene)
+                        describe_scene(&scene)
                     }
                 },
                 tags: vec![scene.verdict.code().to_owned()],
@@ -75,8 +76,8 @@ pub(crate) fn render(grade: &Grade) -> String {
         }
         if let Some(speed) = &group.speed {
             let words = match tells_all || group.visibility == Visibility::Hidden {
-                true => speed_words(speed),
-                false => speed_words(&SpeedGrade { source: SpeedSource::Withheld, ..speed.clone() }),
+                true => describe_speed(speed),
+                false => describe_speed(&SpeedGrade { source: SpeedSource::Withheld, ..speed.clone() }),
             };
             tests.push(Test {
                 score: grade.points.and(speed.points).map(round_points),
@@ -93,7 +94,7 @@ pub(crate) fn render(grade: &Grade) -> String {
     let results = Results {
         score: grade.points.map(round_points),
         execution_time: tells_all.then_some(grade.wall.as_secs()),
-        output: overall(grade),
+        output: describe_grade(grade),
         output_format: "text",
         test_output_format: "text",
         test_name_format: "text",
@@ -109,21 +110,21 @@ pub(crate) fn render(grade: &Grade) -> String {
     document(&results)
 }
 
-fn overall(grade: &Grade) -> String {
+fn describe_grade(grade: &Grade) -> String {
     // Text that every reader sees immediately must not describe groups that some readers do not see.
     let all_visible = grade.is_visible();
     let mut lines = vec![match grade.points {
         Some(_) if !all_visible => "Graded.".to_owned(),
         Some(reached) => format!("{}: {} of {} points.", grade.verdict, points(reached), points(grade.max_points)),
         None if grade.is_our_fault() => {
-            "The grader failed; this is not your fault and costs no points. Staff must look at it.".to_owned()
+            "The grader failed. This is not your fault and costs no points. Staff must check it.".to_owned()
         }
-        None => out_of_time(grade),
+        None => describe_timeout(grade),
     }];
     if let Some(build) = grade.failed_build() {
         lines.push(format!("{}\n{}", plain(&words::build(&build.end)), clean_output(&build.output)));
     } else {
-        // A fault of the upload itself reveals no scene.
+        // A fault of the upload reveals no scene.
         let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
         lines.extend(head_lines(&shown).iter().map(|line| plain(line)));
     }
@@ -131,11 +132,11 @@ fn overall(grade: &Grade) -> String {
     lines.join("\n")
 }
 
-/// Returns the message to a student when the platform's time was over; it names what used the time.
-fn out_of_time(grade: &Grade) -> String {
+/// Returns the message to a student if the platform's time limit was reached; it names what used the time.
+fn describe_timeout(grade: &Grade) -> String {
     let missing = grade.count(Verdict::NotRun);
     let mut text = format!(
-        "Grading was stopped because its time was up; {missing} of {} have no result, so there is no score yet.",
+        "Grading was stopped at its time limit. {missing} of {} have no result, so there is no score yet.",
         format_count(grade.scenes().count() as u64, "scene")
     );
     let scenes = grade.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene)));
@@ -154,9 +155,9 @@ fn out_of_time(grade: &Grade) -> String {
     text
 }
 
-fn output(scene: &SceneGrade) -> String {
+fn describe_scene(scene: &SceneGrade) -> String {
     let mut lines = vec![format!("{}: {}", scene.verdict, plain(&words::summary(scene)))];
-    lines.extend(difference(scene));
+    lines.extend(describe_difference(scene));
     lines.extend(words::details(scene).iter().map(|detail| plain(detail)));
     lines.extend(explain::lines(&scene.settled, Style::Plain).iter().map(|line| plain(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
@@ -165,7 +166,7 @@ fn output(scene: &SceneGrade) -> String {
     lines.join("\n")
 }
 
-/// Returns the points with six decimals at most, so that shares of a group add up to the shown sum.
+/// Returns the points with at most six decimals, so that the shares of a group add up to its sum.
 fn round_points(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

@@ -1,5 +1,5 @@
-//! Our own JSON (`schemas/grade.schema.json`): everything a grade holds.
-use super::{super::explain::ExplanationView, phrases::NOT_GRADED, speed_words};
+//! The program's own JSON (`schemas/grade.schema.json`), with everything in a grade.
+use super::{super::explain::ExplanationView, describe_speed, phrases::NOT_GRADED};
 use crate::foreign::{clean_output, plain};
 use crate::{
     check::CauseView,
@@ -18,10 +18,10 @@ use fosssim_mistakes::together::{likely_mistake, likely_mistakes, worth};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The version of the schema; it rises if a reader of the old version would misunderstand the new one.
+/// The version of the schema. It rises if a reader of the old version would misunderstand the new one.
 const SCHEMA: u32 = 4;
 
-/// The document of `grade --format json`. The number in `schema` rises if a reader of the old version would
+/// The document of `grade --format json`. Its version in `schema` rises if a reader of the old version would
 /// misunderstand the new one.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
@@ -31,9 +31,9 @@ pub(crate) struct GradeDocument {
     schema: u32,
     /// The version of the program.
     version: &'static str,
-    /// The submissions.
+    /// The grades of the submissions.
     grades: Vec<GradeView>,
-    /// Entries of the class's folder that are no submissions; left out where there are none.
+    /// The entries of the class's folder that are not submissions; left out if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
     passed_over: Vec<PassedOver>,
 }
@@ -56,51 +56,50 @@ view! {
         /// The verdict as one word, such as `AC`.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
         code: &'static str = grade.verdict.code(),
-        /// Null if the grader failed or was stopped; no student gets a zero for that.
+        /// The points reached; null if the grader failed or was stopped. A failure of the grader never gives zero
+        /// points.
         #[schemars(range(min = 0.0))]
         points: Option<f64> = grade.points,
-        /// Points that can be reached.
+        /// The maximum number of points.
         #[schemars(range(min = 0.0))]
         max_points: f64 = grade.max_points,
-        /// The wall time of all runs together.
+        /// The total wall time of all runs.
         #[schemars(range(min = 0.0))]
         wall_seconds: f64 = grade.wall.as_secs_f64(),
-        /// Layers of the sandbox that were active.
+        /// The layers of the sandbox that were active.
         sandbox: Vec<String> = grade.layers.clone(),
-        /// Weaknesses of the sandbox.
+        /// The weaknesses of the sandbox on this host.
         warnings: Vec<String> = grade.warnings.iter().map(|warning| plain(warning)).collect(),
-        /// The fault of the submission itself in a sentence, such as a program of another milestone; left out where
-        /// there is none.
+        /// The fault of the whole submission as a sentence, such as a program of another milestone; left out if there
+        /// is none.
         #[serde(skip_serializing_if = "Option::is_none")]
         unfit: Option<String> = words::describe_unfit(grade).map(|unfit| plain(&unfit)),
-        /// The way the build ended; null if the suite builds nothing.
+        /// The end of the build; null if the suite builds nothing.
         build: Option<BuildView> = grade.build.as_ref().map(BuildView::from),
-        /// The contents that the scenes have in common in which the program crashes or runs into a limit; null if
-        /// nothing is known.
+        /// The common contents of the scenes in which the program crashes or exceeds a limit; null if there are none.
         located: Option<LocatedView> = grade.located.as_ref().map(LocatedView::from),
-        /// The mistake that explains most wrong scenes, where several have explanations.
+        /// The mistake that explains most wrong scenes, if several have explanations.
         likely_mistake: Option<ExplanationView> = likely_mistake(grade).as_ref().map(ExplanationView::from),
         /// Up to three mistakes that explain the wrong scenes together, the most frequent first.
         #[schemars(length(max = 3))]
         likely_mistakes: Vec<ExplanationView> =
             likely_mistakes(grade).iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
-        /// The points of the scenes that only this mistake makes wrong, for each of these mistakes: the worth of
-        /// mending it.
+        /// For each of the likely mistakes, the points of the scenes that only this mistake makes wrong.
         #[schemars(length(max = 3))]
         worth: Vec<f64> = likely_mistakes(grade).iter().map(|(mistake, _)| worth(grade, mistake)).collect(),
-        /// The smallest scene for each cause; left out if they were not requested.
+        /// The smallest scene for each cause; left out if not requested.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         smallest: Vec<SmallestView> = grade.smallest.iter().map(SmallestView::from).collect(),
-        /// The course's own words on these mistakes, by their keys; left out where there are none.
+        /// The course's notes on the likely mistakes, by their keys; left out if there are none.
         #[serde(skip_serializing_if = "BTreeMap::is_empty")]
         notes: BTreeMap<String, CourseNote> = likely_mistakes(grade)
             .iter()
             .filter_map(|(mistake, _)| Some((mistake.key.clone(), grade.note(mistake)?.clone())))
             .collect(),
-        /// Other submissions with the same program, byte for byte, at most 20; left out where there are none.
+        /// Other submissions with an identical program (at most 20); left out if there are none.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         same_program: Vec<String> = grade.same_program.iter().map(|name| plain(name)).collect(),
-        /// The changes since an earlier grading; left out where none was given.
+        /// The changes since an earlier grading; left out if none was given.
         #[serde(skip_serializing_if = "Option::is_none")]
         changes: Option<ChangesView> = grade.changes().as_ref().map(ChangesView::from),
         /// The groups in the suite's order.
@@ -112,15 +111,15 @@ view! {
     /// The changes since an earlier grading of the same submission.
     #[schemars(deny_unknown_fields)]
     struct ChangesView from changes: Changes<'_> {
-        /// Points in the earlier grading; null if it had none.
+        /// The points in the earlier grading; null if it had none.
         points: Option<f64> = changes.points,
-        /// Points that could be reached then.
+        /// The maximum number of points in the earlier grading.
         max_points: f64 = changes.max_points,
-        /// Scenes that became right.
+        /// The scenes that became right.
         right: Vec<String> = changes.right.iter().map(|scene| plain(&scene.scene)).collect(),
-        /// Scenes that are no longer right.
+        /// The scenes that are no longer right.
         broke: Vec<String> = changes.broke.iter().map(|scene| plain(&scene.scene)).collect(),
-        /// Scenes that fail with another verdict than before.
+        /// The scenes that fail with another verdict than before.
         others: Vec<String> = changes.others.iter().map(|(scene, _)| plain(&scene.scene)).collect(),
     }
 }
@@ -129,17 +128,17 @@ view! {
     /// The scenes in which a program fails.
     #[schemars(deny_unknown_fields)]
     struct LocatedView from found: LocatedFailure {
-        /// The whole in words.
+        /// The common contents as a sentence.
         text: String = plain(&words::describe_located(found)),
-        /// Scenes in which the program fails.
+        /// The number of scenes in which the program fails.
         failed: usize = found.failed,
-        /// The number of these scenes that have the contents.
+        /// The number of failing scenes that have the contents.
         with: usize = found.with,
-        /// Scenes that have the contents, and in which it does not fail.
+        /// The number of scenes with the contents in which the program does not fail.
         without: usize = found.without,
-        /// The first scene in which it fails.
+        /// The first scene in which the program fails.
         first_scene: String = plain(&found.first),
-        /// The last step of that scene that its trace holds whole.
+        /// The last step of that scene that is complete in the trace.
         last_complete_step: u32 = found.step,
     }
 }
@@ -148,11 +147,11 @@ view! {
     /// The build step's end.
     #[schemars(deny_unknown_fields)]
     struct BuildView from build: Build {
-        /// Whether there is a program.
+        /// Whether the build made a program.
         succeeded: bool = build.end.is_success(),
-        /// The way it ended, in words.
+        /// The end of the build as a sentence.
         end: String = plain(&words::build(&build.end)),
-        /// The compiler's output, cut where it is long.
+        /// The compiler's output, truncated if it is long.
         output: String = clean_output(&build.output),
     }
 }
@@ -163,24 +162,24 @@ view! {
     struct GroupView from group: GroupGrade {
         /// The group's name.
         name: String = plain(&group.name),
-        /// The readers who see the group.
+        /// The visibility of the group's results.
         visibility: Visibility = group.visibility,
-        /// The worst verdict of its scenes.
+        /// The worst verdict of the group's scenes.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::name)))]
         verdict: &'static str = group.verdict.name(),
-        /// Points reached, including those for speed; null if a scene has none.
+        /// The points reached, including those for speed; null if a scene has none.
         #[schemars(range(min = 0.0))]
         points: Option<f64> = group.points,
-        /// Points that can be reached.
+        /// The maximum number of points.
         #[schemars(range(min = 0.0))]
         max_points: f64 = group.max_points,
-        /// True where its points count neither in the sum nor in the maximum of the grade; left out elsewhere.
+        /// Whether the points count in neither the sum nor the maximum of the grade; left out if false.
         #[serde(skip_serializing_if = "std::ops::Not::not")]
         extra: bool = group.extra,
-        /// Points for speed, which are part of the group's points; left out where the suite gives none.
+        /// The points for speed, which are part of the group's points; left out if the suite gives none.
         #[serde(skip_serializing_if = "Option::is_none")]
         speed: Option<SpeedView> = group.speed.as_ref().map(SpeedView::from),
-        /// The course's own words on it; left out where there are none.
+        /// The course's note on the group; left out if there is none.
         #[serde(skip_serializing_if = "Option::is_none")]
         note: Option<CourseNote> = group.note.clone(),
         /// The group's scenes.
@@ -192,24 +191,24 @@ view! {
     /// Points for speed.
     #[schemars(deny_unknown_fields)]
     struct SpeedView from speed: SpeedGrade {
-        /// Points reached; null when the grader could not measure.
+        /// The points reached; null if the grader could not measure.
         #[schemars(range(min = 0.0))]
         points: Option<f64> = speed.points,
-        /// Points that can be reached.
+        /// The maximum number of points.
         #[schemars(range(min = 0.0))]
         max_points: f64 = speed.marking.points,
-        /// The measurement in words.
-        text: String = plain(&speed_words(speed)),
-        /// The submission's processor time, divided by the reference's: of the least times.
+        /// The measurement as a sentence.
+        text: String = plain(&describe_speed(speed)),
+        /// The submission's minimum processor time, divided by the reference's.
         #[schemars(range(min = 0.0))]
         ratio: Option<f64> = measure_ratio(speed).map(|measured| measured.ratio),
-        /// The least ratio of a round of runs.
+        /// The smallest ratio of a round of runs.
         #[schemars(range(min = 0.0))]
         least_ratio: Option<f64> = measure_ratio(speed).map(|measured| measured.least),
-        /// The greatest ratio of a round of runs.
+        /// The largest ratio of a round of runs.
         #[schemars(range(min = 0.0))]
         greatest_ratio: Option<f64> = measure_ratio(speed).map(|measured| measured.most),
-        /// Rounds of runs.
+        /// The number of rounds.
         runs: u32 = measure_ratio(speed).map_or(0, |measured| measured.runs),
     }
 }
@@ -228,21 +227,21 @@ view! {
         code: &'static str = scene.verdict.code(),
         /// The reason for the verdict, in one line.
         summary: String = plain(&words::summary(scene)),
-        /// The reason why the two rule books judge the scene differently; null if they do not.
+        /// The rule by which the two rule books judge the scene differently; null if they agree.
         difference: Option<CauseView> = scene.differs.as_ref().map(CauseView::from),
-        /// The place where the trace diverges first, and the number of findings of each kind, if hints allow it.
+        /// The place of the first difference, and the number of findings of each kind, if hints allow it.
         details: Vec<String> = words::details(scene).iter().map(|detail| plain(detail)).collect(),
-        /// Likely mistakes, the likeliest first, if hints allow it.
+        /// The likely mistakes, the likeliest first, if hints allow it.
         explanations: Vec<ExplanationView> = scene.settled.iter().map(ExplanationView::from).collect(),
-        /// Points reached; null when the grader failed, or did not come to run it.
+        /// The points reached; null if the grader failed or did not run the scene.
         #[schemars(range(min = 0.0))]
         points: Option<f64> = scene.points,
-        /// Points that can be reached.
+        /// The maximum number of points.
         #[schemars(range(min = 0.0))]
         max_points: f64 = scene.max_points,
-        /// Steps that are right.
+        /// The number of steps that are right.
         right_steps: u32 = scene.right_steps,
-        /// Steps of the scene.
+        /// The number of steps of the scene.
         steps: u32 = scene.steps,
         /// The processor time of the run.
         #[schemars(range(min = 0.0))]
@@ -250,13 +249,13 @@ view! {
         /// The wall time of the run.
         #[schemars(range(min = 0.0))]
         wall_seconds: f64 = scene.measured.wall.as_secs_f64(),
-        /// The most memory that it used; null if that is not known.
+        /// The peak memory of the program; null if unknown.
         memory_bytes: Option<u64> = scene.measured.memory,
-        /// The program's output, cut where it is long.
+        /// The program's standard output, truncated if it is long.
         stdout: String = clean_output(&scene.stdout),
-        /// The program's standard error, likewise.
+        /// The program's standard error, truncated if it is long.
         stderr: String = clean_output(&scene.stderr),
-        /// Whether the result was taken from an earlier run.
+        /// Whether the result was reused from an earlier run.
         cached: bool = scene.cached,
     }
 }
@@ -272,7 +271,7 @@ fn with_plain_words(entry: &PassedOver) -> PassedOver {
     PassedOver { name: plain(&entry.name), why: plain(&entry.why) }
 }
 
-/// Returns a line per grade, and one per entry that is not a submission, which has no points either.
+/// Returns a line per grade, and a line per entry that is not a submission.
 #[must_use]
 pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));
@@ -284,7 +283,7 @@ pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     grades.chain(passed_over).map(|line| line.unwrap_or_default() + "\n").collect()
 }
 
-/// Returns the measurement of a submission that was timed.
+/// Returns the speed ratio, if the submission was timed.
 fn measure_ratio(speed: &SpeedGrade) -> Option<SpeedRatio> {
     match speed.source {
         SpeedSource::Measured(measured) => Some(measured),

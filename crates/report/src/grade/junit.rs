@@ -1,5 +1,5 @@
-//! JUnit XML: a suite per group, a case per scene. Wrong programs are failures, faults of ours are errors.
-use super::{super::explain, difference, head_lines, phrases::NOT_GRADED};
+//! JUnit XML: a suite per group, a case per scene. Wrong programs are failures; errors of the grader are errors.
+use super::{super::explain, describe_difference, head_lines, phrases::NOT_GRADED};
 use crate::foreign::{clean_output, plain};
 use crate::{style::Style, words};
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
@@ -10,7 +10,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
         if let Some(unfit) = words::describe_unfit(grade) {
-            report.add_test_suite(submission(grade, &unfit));
+            report.add_test_suite(fault_suite(grade, &unfit));
         }
         for group in &grade.groups {
             let mut suite = TestSuite::new(format!("{}: {}", plain(&grade.submission), plain(&group.name)));
@@ -21,12 +21,12 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
                 suite.add_property(quick_junit::Property::new(format!("likely_mistake.{number}"), plain(line)));
             }
             for scene in &group.scenes {
-                // A test case has no place of its own for anything but its result and the program's output.
-                if let Some(words) = difference(scene) {
+                // A test case can contain only its result and the program's output.
+                if let Some(words) = describe_difference(scene) {
                     let name = format!("rules_differ.{}", plain(&scene.scene));
                     suite.add_property(quick_junit::Property::new(name, words));
                 }
-                suite.add_test_case(case(grade, scene));
+                suite.add_test_case(test_case(grade, scene));
             }
             report.add_test_suite(suite);
         }
@@ -43,8 +43,8 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     report.to_string().unwrap_or_default()
 }
 
-/// Returns a suite of one case: the fault of the submission itself, so that no scene was run.
-fn submission(grade: &Grade, unfit: &str) -> TestSuite {
+/// Returns a suite with one case: the fault of the whole submission, which was not run.
+fn fault_suite(grade: &Grade, unfit: &str) -> TestSuite {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
     status.set_type(grade.verdict.name());
     status.set_message(plain(unfit));
@@ -58,7 +58,7 @@ fn submission(grade: &Grade, unfit: &str) -> TestSuite {
     suite
 }
 
-fn case(grade: &Grade, scene: &SceneGrade) -> TestCase {
+fn test_case(grade: &Grade, scene: &SceneGrade) -> TestCase {
     let status = match scene.verdict {
         Verdict::Accepted => TestCaseStatus::success(),
         Verdict::NotRun => TestCaseStatus::skipped(),

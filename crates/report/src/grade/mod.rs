@@ -1,7 +1,7 @@
 //! Grades in every format that courses use: pure functions from [`Grade`] to text.
 //!
-//! Names and program output are words of others. Each format removes their control characters by `plain` or `one_line`
-//! of `foreign`, and escapes what its own syntax gives a meaning. A test sends hostile words through every format.
+//! Names and program output are untrusted text. Each format removes control characters with `plain` or `one_line` of
+//! `foreign`, and escapes characters with a meaning in its syntax. A test sends hostile text through every format.
 
 mod causes;
 mod changes;
@@ -19,25 +19,25 @@ mod text;
 
 use fosssim_findings::Grade;
 
-/// Returns the JSON document alone, for programs: without the data of other formats.
+/// Returns only the JSON document, without the data for other formats.
 #[must_use]
 pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])
 }
 
 pub use causes::{AlikeScenes, by_cause};
-pub(crate) use causes::{example, is_told, rank};
+pub(crate) use causes::{clearest_scene, is_listed, rank};
 pub(crate) use changes::lines as change_lines;
 pub use class::class;
-pub(crate) use class::{ClassFigures, SharedMistake, frequent, hardest, never_ran, same_programs};
+pub(crate) use class::{ClassFigures, SharedMistake, find_frequent, find_hardest, never_ran, same_programs};
 pub use csv_table::submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;
-pub use passed_over::{not_graded, warn_of};
+pub use passed_over::{add_warnings, not_graded};
 use phrases::see_above;
-pub use phrases::{difference, format_points, head_lines, likely_mistakes, no_points, points, score};
-pub(crate) use phrases::{worth, wrong_scenes};
-pub(crate) use speed::speed_words;
+pub(crate) use phrases::{count_wrong, worth};
+pub use phrases::{describe_difference, format_points, head_lines, likely_mistakes, no_points, points, score};
+pub(crate) use speed::describe_speed;
 pub use text::{Advice, Text, TextDetail, extra, shorten_name, table as text_table};
 
 #[cfg(test)]

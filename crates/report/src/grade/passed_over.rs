@@ -1,4 +1,5 @@
-//! The entries of a class's folder that are no submissions, in every format: each list names what is missing in it.
+//! The entries of a class's folder that are not submissions, in every format, so that each list names what is missing
+//! in it.
 use super::shorten_name;
 use crate::{
     foreign::one_line,
@@ -7,16 +8,15 @@ use crate::{
 };
 use fosssim_findings::{Grade, PassedOver};
 
-/// Adds to the only grade a warning of each entry that was passed over next to it: a grading of one submission has no
-/// list of others.
-pub fn warn_of(grades: &mut [Grade], passed_over: &[PassedOver]) {
+/// Adds a warning about each skipped entry to the only grade, because a report on one submission has no list of others.
+pub fn add_warnings(grades: &mut [Grade], passed_over: &[PassedOver]) {
     if let [grade] = grades {
         let words = |entry: &PassedOver| format!("passed over {}: {}", entry.name, entry.why);
         grade.warnings.extend(passed_over.iter().map(words));
     }
 }
 
-/// Returns the list below a class, for people.
+/// Returns the list of skipped entries below a class, for people.
 #[must_use]
 pub fn not_graded(grades: &[Grade], passed_over: &[PassedOver], style: Style) -> String {
     if passed_over.is_empty() || grades.len() < 2 {

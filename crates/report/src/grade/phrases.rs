@@ -1,23 +1,23 @@
-//! The sentences about a grade that several formats have in common.
+//! Sentences about a grade that several formats share.
 use crate::{foreign::one_line, number::format_count, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 pub use fosssim_mistakes::together::likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
 
-/// The text in place of a verdict where an entry is no submission.
+/// The text instead of a verdict for an entry that is not a submission.
 pub(super) const NOT_GRADED: &str = "not graded";
 
-/// Returns the lines above all scenes in a report for one reader: the fault of the submission itself, or its failures
-/// and its likely mistakes.
+/// Returns the lines above all scenes in a report for one reader: the fault of the whole submission, or its failures
+/// and likely mistakes.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::describe_unfit(grade) {
         return vec![unfit];
     }
-    let wrong = wrong_scenes(grade);
+    let wrong = count_wrong(grade);
     let mut rank = "most likely mistake";
     let line = |(mistake, explained): (Explanation, usize)| {
-        let what = words::explanation::what_or(&mistake) + &note(grade, &mistake);
+        let what = words::explanation::what_or(&mistake) + &describe_note(grade, &mistake);
         if mistake.is_not_finite() {
             return format!("{what} (in {explained} of {wrong})");
         }
@@ -28,19 +28,20 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
-/// Returns the worth of mending a mistake, such as `worth 21.4 of 100 points`; empty if it alone costs no points.
+/// Returns the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene fails
+/// only because of it.
 pub(crate) fn worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     let lost = together::worth(grade, mistake);
     (lost > 0.0).then(|| format!("worth {}", score(lost, grade.max_points)))
 }
 
-/// Returns the course's own words on a mistake, to follow ours; empty if there are none.
-pub(crate) fn note(grade: &Grade, mistake: &Explanation) -> String {
+/// Returns the course's note on a mistake, to follow the report's text; empty if there is none.
+pub(crate) fn describe_note(grade: &Grade, mistake: &Explanation) -> String {
     grade.note(mistake).map(|note| format!(" (The course: {note})")).unwrap_or_default()
 }
 
 /// Returns the number of scenes for which an explanation is searched, with their noun.
-pub(crate) fn wrong_scenes(grade: &Grade) -> String {
+pub(crate) fn count_wrong(grade: &Grade) -> String {
     let wrong = grade.scenes().filter(|scene| scene.verdict.is_wrong_trace());
     format_count(wrong.count() as u64, "wrong scene")
 }
@@ -55,7 +56,7 @@ pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
 
 /// Returns the sentence about a scene that the two rule books judge differently.
 #[must_use]
-pub fn difference(scene: &SceneGrade) -> Option<String> {
+pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
     scene.differs.map(|cause| {
         let verdicts = if cause.original_fails() {
             "the original rejects it, the fair rules accept it"
@@ -66,34 +67,34 @@ pub fn difference(scene: &SceneGrade) -> Option<String> {
     })
 }
 
-/// Returns the first of some names: `a, b, c and 2 more`.
+/// Returns the first of some names as a list, such as `a, b, c and 2 more`.
 pub(super) fn list_some(names: &[impl AsRef<str>], most: usize) -> String {
     let shown: Vec<_> = names.iter().take(most).map(|name| one_line(name.as_ref())).collect();
     let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
     shown.join(", ") + &more
 }
 
-/// Returns the points without needless digits: `12.5`, `10`.
+/// Returns points without trailing zeros, such as `12.5` or `10`.
 #[must_use]
 pub fn points(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns `12.5 of 20 points`.
+/// Returns a score, such as `12.5 of 20 points`.
 #[must_use]
 pub fn score(reached: f64, most: f64) -> String {
     let plural = if points(most) == "1" { "" } else { "s" };
     format!("{} of {} point{plural}", points(reached), points(most))
 }
 
-/// Returns the points, which may be missing: if the grader failed or was stopped, there is no zero.
+/// Returns the points as text. They may be missing, because a failure of the grader does not give zero points.
 #[must_use]
 pub fn format_points(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), points)
 }
 
-/// Returns why a grade has no points.
+/// Returns the reason why a grade has no points.
 #[must_use]
 pub fn no_points(grade: &Grade) -> Option<String> {
     if grade.points.is_some() {

@@ -1,14 +1,14 @@
-//! PrairieLearn's results.json: a score in [0, 1]; `gradable: false` for faults of ours and for uploads without a
-//! program that can be run, which charge no attempt.
-use super::{super::explain, difference, head_lines, score, see_above, speed_words};
+//! PrairieLearn's results.json: a score from 0 to 1. `gradable: false` stands for errors of the grader and for uploads
+//! without a runnable program, which do not count as an attempt.
+use super::{super::explain, describe_difference, describe_speed, head_lines, score, see_above};
 use crate::foreign::{clean_output, one_line, plain};
 use crate::{style::Style, view::document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
 use serde::Serialize;
 
-/// PrairieLearn rejects more than a megabyte; texts are cut long before.
-const LONGEST_TEXT: usize = 4000;
+/// The maximum length of a text, far below the megabyte that PrairieLearn accepts.
+const MAX_TEXT_LENGTH: usize = 4000;
 
 #[derive(Serialize)]
 struct Results {
@@ -21,7 +21,7 @@ struct Results {
     tests: Vec<Test>,
 }
 
-/// A group of the suite: PrairieLearn keeps it for the element `fosssim-report` (`integrations/prairielearn`).
+/// A group of the suite, for the PrairieLearn element `fosssim-report` (`integrations/prairielearn`).
 #[derive(Serialize)]
 struct Group {
     name: String,
@@ -58,22 +58,22 @@ pub(crate) fn render(grade: &Grade) -> String {
             points: scene.points,
             max_points: scene.max_points,
             message: if grade.unfit().is_some() { see_above(scene).to_owned() } else { cut(&words::summary(scene)) },
-            output: cut(&output(scene)),
+            output: cut(&describe_scene(scene)),
         })
         .chain(shown.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))).map(|(group, speed)| {
             Test {
                 name: format!("speed ({})", one_line(&group.name)),
                 group: one_line(&group.name),
-                description: "processor time beside the reference's".to_owned(),
+                description: "processor time compared with the reference's".to_owned(),
                 points: speed.points,
                 max_points: speed.marking.points,
-                message: cut(&speed_words(speed)),
+                message: cut(&describe_speed(speed)),
                 output: String::new(),
             }
         }))
         .collect();
     let build = grade.failed_build();
-    // A fault of the upload itself is the same in all groups.
+    // A fault of the upload is the same in all groups.
     let head = match build {
         Some(_) => Vec::new(),
         None if grade.unfit().is_some() => head_lines(grade),
@@ -89,10 +89,10 @@ pub(crate) fn render(grade: &Grade) -> String {
         message: match grade.verdict {
             Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
             _ if grade.is_incomplete() => "Grading was stopped before its end; this attempt is not counted.".to_owned(),
-            // Groups that students do not see must not show through.
+            // The verdict must not reveal groups that students do not see.
             verdict if shown.groups.len() == grade.groups.len() => verdict.name().to_owned(),
             _ => format!(
-                "{} on the tests shown here ({}); the grade has others, too",
+                "{} on the tests shown here ({}); other tests are hidden",
                 shown.verdict,
                 score(shown.points.unwrap_or_default(), shown.max_points)
             ),
@@ -121,9 +121,9 @@ pub(crate) fn render(grade: &Grade) -> String {
     document(&results)
 }
 
-/// Returns everything about a scene that is not in its message.
-fn output(scene: &SceneGrade) -> String {
-    let mut lines: Vec<String> = difference(scene).into_iter().collect();
+/// Returns everything about a scene except for its message.
+fn describe_scene(scene: &SceneGrade) -> String {
+    let mut lines: Vec<String> = describe_difference(scene).into_iter().collect();
     lines.extend(words::details(scene));
     lines.extend(explain::lines(&scene.settled, Style::Plain));
     lines.join("\n")
@@ -131,7 +131,7 @@ fn output(scene: &SceneGrade) -> String {
 
 fn cut(text: &str) -> String {
     let text = plain(text);
-    match text.char_indices().nth(LONGEST_TEXT) {
+    match text.char_indices().nth(MAX_TEXT_LENGTH) {
         Some((end, _)) => format!("{} [cut short]", &text[..end]),
         None => text,
     }

@@ -1,4 +1,4 @@
-//! Grades for tests: one good, one bad in every way, with hostile words in it.
+//! Grades for tests: a good one, and one that is bad in every way, with hostile text in it.
 use fosssim_findings::{FindingPlace, smallest::SmallestScene};
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
@@ -13,7 +13,7 @@ use fosssim_mistakes::together::settle;
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::{collections::BTreeMap, time::Duration};
 
-/// Returns a reason with these words, to test that words of others may stand in every report.
+/// Returns a reason with the given text, to test untrusted text in every report.
 pub(crate) fn saying(words: &str) -> Reason {
     Reason::Failed(Failure::Machine(words.to_owned()))
 }
@@ -33,7 +33,7 @@ fn scene(name: &str, verdict: Verdict, summary: &str) -> SceneResult {
 
 fn group(name: &str, visibility: Visibility, scenes: Vec<SceneResult>) -> GroupGrade {
     let scenes = scenes.into_iter().map(|scene| (scene, false)).collect();
-    score::group(
+    score::grade_group(
         name,
         Marking { points: 10.0, credit: Credit::Scenes, visibility, hints: Hints::Full, extra: false, speed: None },
         scenes,
@@ -80,7 +80,7 @@ pub(crate) fn good() -> Grade {
     )
 }
 
-/// Returns every verdict of a run, and words that try to get into the report's own syntax.
+/// Returns a grade with every verdict of a run, and with texts that try to break the report's syntax.
 pub(crate) fn bad() -> Grade {
     let mut wrong =
         scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");
@@ -154,7 +154,7 @@ pub(crate) fn stopped_grade() -> Grade {
     grade("kim", vec![group("Detection", Visibility::Visible, scenes)])
 }
 
-/// Returns the grade of a program that was stopped at its limit, and not run on the other scenes.
+/// Returns the grade of a program that was stopped at its limit, with the other scenes skipped.
 pub(crate) fn endless() -> Grade {
     let mut stopped = scene("Detection/a", Verdict::TimeLimit, "it ran for 5 s");
     stopped.ended = Some(RunEnd::CpuLimit);
@@ -182,7 +182,7 @@ pub(crate) fn fault() -> Grade {
     )
 }
 
-/// Returns the handed-out template, in which nothing is written yet.
+/// Returns the grade of the template for students, in which nothing is written.
 pub(crate) fn unwritten() -> Grade {
     let empty = |key: &str| Explanation {
         key: key.to_owned(),

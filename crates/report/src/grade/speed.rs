@@ -1,19 +1,19 @@
-//! Points for speed, in a sentence.
+//! The sentence about points for speed.
 use super::points;
 use crate::number::format_count;
 use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
 
-/// Returns the words on a group's speed: the points, and where they come from.
+/// Returns the sentence about a group's speed: the points, and their origin.
 #[must_use]
-pub fn speed_words(speed: &SpeedGrade) -> String {
+pub fn describe_speed(speed: &SpeedGrade) -> String {
     let SpeedGrade { marking, points: reached, source } = speed;
     let of = format!("of {} points for speed", points(marking.points));
     let reached = reached.map_or_else(|| "none yet".to_owned(), points);
     match source {
         SpeedSource::Measured(measured) => format!("{reached} {of}: {}", describe_ratio(marking, measured)),
-        SpeedSource::NotAccepted => format!("{reached} {of}: they count only if all scenes of the group are accepted"),
+        SpeedSource::NotAccepted => format!("{reached} {of}: counted only if all scenes of the group are accepted"),
         SpeedSource::Failed { scene, verdict } => {
-            format!("{reached} {of}: a timed run of {scene} had another verdict than the graded one ({verdict})")
+            format!("{reached} {of}: a timed run of {scene} had a different verdict ({verdict}) than the graded run")
         }
         SpeedSource::Unmeasured => {
             format!("{reached} {of}: the time could not be measured, which is not the submission's fault")
@@ -22,7 +22,7 @@ pub fn speed_words(speed: &SpeedGrade) -> String {
     }
 }
 
-/// Returns the ratio, its spread, and how much the points depend on it.
+/// Returns the ratio, its spread, and the effect of the spread on the points.
 fn describe_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
     let SpeedRatio { ratio, least, most, runs } = *measured;
     let (high, low) = (points(marking.points_at(least)), points(marking.points_at(most)));
@@ -45,7 +45,7 @@ mod tests {
     #[test]
     fn the_spread_is_told_with_what_it_means() {
         let marking = SpeedMarking { points: 40.0, full_at: 2.0, none_at: 10.0, runs: 5 };
-        let said = |points, source| speed_words(&SpeedGrade { marking, points, source });
+        let said = |points, source| describe_speed(&SpeedGrade { marking, points, source });
         let measured = |ratio, least, most| SpeedSource::Measured(SpeedRatio { ratio, least, most, runs: 5 });
         assert_eq!(
             said(Some(35.0), measured(3.0, 2.9, 3.4)),

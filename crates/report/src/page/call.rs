@@ -16,13 +16,13 @@ use fosssim_render::{
     plot::{PlotTarget, PlottedPolynomial, PolynomialPlot},
 };
 
-/// Renders a call under its name, folded unless it is open from the start.
+/// Renders a call under its name, unfolded if `open`.
 pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
     let (pair, pass) = (PairWords(call.pair), PassWords(call.pass));
     render_template(&CallContent { step, call, depth, open, pair, pass, key: pair_key(call.pair) })
 }
 
-/// A call and its name.
+/// A detection call and its name, for the template.
 #[derive(Template)]
 #[template(path = "call.html")]
 struct CallContent<'a> {
@@ -35,13 +35,13 @@ struct CallContent<'a> {
     key: String,
 }
 
-/// A coefficient of both sides, as markup.
+/// A coefficient of both sides, as HTML.
 struct Row {
     role: String,
     power: usize,
     expected: String,
     own: String,
-    /// The fault, as a word; empty if there is none.
+    /// The fault as a word; empty if there is none.
     word: &'static str,
 }
 
@@ -63,7 +63,7 @@ impl CallContent<'_> {
         detection::picture(study, &format!("Expected in step {}: {}", self.step, self.pair), PlotTarget::Page)
     }
 
-    /// Renders the decision of the trace's own polynomials, and their curves, where one of them is wrong.
+    /// Renders the decision by the trace's own polynomials, and their curves, if one of them is wrong.
     fn draw_own(&self, study: &Study, logged: &[Vec<f64>]) -> String {
         let mut wrong = study.curves.iter().zip(logged).filter(|(curve, own)| is_wrong(curve, own));
         let curves = match (wrong.next(), wrong.next()) {
@@ -71,24 +71,24 @@ impl CallContent<'_> {
             (Some((curve, own)), None) => {
                 draw_both(self.step, &curve.role.to_string(), curve.logged.coefficients(), &curve.positive, own)
             }
-            _ => yours(self.step, self.call, study, logged),
+            _ => own_curves(self.step, self.call, study, logged),
         };
         own_decision(logged) + &curves
     }
 }
 
-/// Returns the decision of the expected polynomials.
-fn decision(study: &Study) -> String {
+/// Returns the decision by the expected polynomials.
+fn describe_decision(study: &Study) -> String {
     Detect { study, place: None }.decision(general)
 }
 
-/// Returns whether a curve has a zero within the step. Those without are flat lines: words say it better.
+/// Returns whether a curve has a zero within the step. Curves without are flat lines, which text describes better.
 fn changes_sign(study: &Study) -> bool {
     study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero)))
 }
 
-/// Polynomials that keep their signs over the whole step, in words.
-fn signs(study: &Study) -> String {
+/// Describes the polynomials that keep their signs over the whole step.
+fn describe_signs(study: &Study) -> String {
     let of = |is_wanted: bool| {
         let is_positive = |curve: &study::Curve| curve.positive.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
         let names = study.curves.iter().filter(|curve| is_positive(curve) == is_wanted);
@@ -102,12 +102,12 @@ fn signs(study: &Study) -> String {
 
 /// Returns whether a set begins or ends within the step.
 fn is_flat(set: &[Interval]) -> bool {
-    !ends(set).iter().any(|end| (0.0..=1.0).contains(end))
+    !set_ends(set).iter().any(|end| (0.0..=1.0).contains(end))
 }
 
-/// Returns the curves of the trace, drawn as the expected curves are.
-fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
-    let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive(own)).collect();
+/// Returns the curves of the trace, drawn like the expected ones.
+fn own_curves(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
+    let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive_intervals(own)).collect();
     let own = study.curves.iter().zip(logged).zip(&sets);
     let curves: Vec<PlottedPolynomial<'_>> =
         own.map(|((curve, own), set)| plot_polynomial(curve.role.to_string(), own, set)).collect();
@@ -121,22 +121,22 @@ fn yours(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) ->
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
-/// Returns the curve of a polynomial that is positive on this set.
+/// Returns the curve of a polynomial that is positive on a given set.
 fn plot_polynomial<'a>(name: String, coefficients: &'a [f64], positive: &'a [Interval]) -> PlottedPolynomial<'a> {
-    PlottedPolynomial { name, coefficients, zeros: ends(positive), positive }
+    PlottedPolynomial { name, coefficients, zeros: set_ends(positive), positive }
 }
 
-/// Returns the zeros of the polynomial where a set ends within the step.
-fn ends(set: &[Interval]) -> Vec<f64> {
+/// Returns the zeros of a polynomial, which are the ends of its set within the step.
+fn set_ends(set: &[Interval]) -> Vec<f64> {
     set.iter().flat_map(|one| [one.lo, one.hi]).collect()
 }
 
 fn is_wrong(curve: &study::Curve, own: &[f64]) -> bool {
-    !own.is_empty() && marks(curve.logged.coefficients(), own).contains(&true)
+    !own.is_empty() && mark_differences(curve.logged.coefficients(), own).contains(&true)
 }
 
-/// Returns the intervals in which a polynomial of a trace is positive; none if its zeros can't be found.
-fn positive(own: &[f64]) -> Vec<Interval> {
+/// Returns the intervals in which a polynomial of a trace is positive; empty if its zeros can't be found.
+fn positive_intervals(own: &[f64]) -> Vec<Interval> {
     match own.len() <= 6 && own.iter().all(|c| c.is_finite()) {
         true => positive_set(own).map(|set| set.as_slice().to_vec()).unwrap_or_default(),
         false => Vec::new(),
@@ -146,7 +146,7 @@ fn positive(own: &[f64]) -> Vec<Interval> {
 /// Returns the intervals within the step in which all polynomials of a trace are positive.
 fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
     let mut common = vec![Interval { lo: 0.0, hi: 1.0 }];
-    for own in logged.iter().map(|own| positive(own)) {
+    for own in logged.iter().map(|own| positive_intervals(own)) {
         let both = |one: &Interval, other: &Interval| Interval { lo: one.lo.max(other.lo), hi: one.hi.min(other.hi) };
         common = common.iter().flat_map(|one| own.iter().map(move |other| both(one, other))).collect();
         common.retain(|set| set.lo <= set.hi);
@@ -154,7 +154,7 @@ fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
     common
 }
 
-/// Returns the decision of the trace's own polynomials.
+/// Returns the decision by the trace's own polynomials.
 fn own_decision(logged: &[Vec<f64>]) -> String {
     let says = match common_intervals(logged).iter().map(|set| set.lo).reduce(f64::min) {
         Some(time) => format!("all are positive from time {} on: a collision", number(time)),
@@ -165,7 +165,7 @@ fn own_decision(logged: &[Vec<f64>]) -> String {
 
 /// Draws the expected and the actual curve of one polynomial.
 fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64]) -> String {
-    let own = positive(logged);
+    let own = positive_intervals(logged);
     if is_flat(set) && is_flat(&own) {
         return String::new();
     }
@@ -178,13 +178,13 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
-/// Returns all coefficients side by side; those that differ after the factor that fits most are marked.
-fn rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
+/// Returns all coefficients side by side; those that differ after division by the common factor are marked.
+fn coefficient_rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
     let mut rows = Vec::new();
     for (place, curve) in study.curves.iter().enumerate() {
         let expected = curve.logged.coefficients();
         let own = logged.get(place).map_or(&[][..], Vec::as_slice);
-        let (marks, factor) = (marks(expected, own), factor(expected, own));
+        let (marks, factor) = (mark_differences(expected, own), factor(expected, own));
         for power in (0..expected.len().max(own.len()).min(12)).rev() {
             let at = |list: &[f64]| (power < list.len()).then(|| list[list.len() - 1 - power]);
             let cell = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), number);
@@ -202,9 +202,8 @@ fn rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
     rows
 }
 
-/// Describes for each power whether the coefficients differ once one is multiplied by the factor that makes most of
-/// them agree.
-fn marks(expected: &[f64], own: &[f64]) -> Vec<bool> {
+/// Returns for each power whether the coefficients differ after division by the common factor.
+fn mark_differences(expected: &[f64], own: &[f64]) -> Vec<bool> {
     let differing = differing(expected, own, factor(expected, own));
     (0..expected.len().max(own.len())).map(|power| differing.contains(&power)).collect()
 }
@@ -216,10 +215,10 @@ mod tests {
     #[test]
     fn what_differs_after_the_best_factor_is_marked() {
         // t^1 is wrong, and all is scaled.
-        assert_eq!(marks(&[1.0, 2.0, 3.0], &[10.0, 25.0, 30.0]), [false, true, false]);
-        assert_eq!(marks(&[1.0, 2.0], &[2.0, 4.0]), [false, false]);
-        assert_eq!(marks(&[1.0, 2.0], &[-1.0, -2.0]), [true, true]);
-        assert_eq!(marks(&[1.0, 2.0], &[2.0]).iter().filter(|&&mark| mark).count(), 1);
-        assert_eq!(marks(&[1.0], &[f64::NAN]), [true]);
+        assert_eq!(mark_differences(&[1.0, 2.0, 3.0], &[10.0, 25.0, 30.0]), [false, true, false]);
+        assert_eq!(mark_differences(&[1.0, 2.0], &[2.0, 4.0]), [false, false]);
+        assert_eq!(mark_differences(&[1.0, 2.0], &[-1.0, -2.0]), [true, true]);
+        assert_eq!(mark_differences(&[1.0, 2.0], &[2.0]).iter().filter(|&&mark| mark).count(), 1);
+        assert_eq!(mark_differences(&[1.0], &[f64::NAN]), [true]);
     }
 }

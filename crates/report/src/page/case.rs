@@ -9,9 +9,10 @@ use crate::{
     check::{
         Check, advice,
         books::verdicts,
+        describe_problem,
         divergence::{self, Row, Value},
         first::{first, is_other_scene},
-        follows, headline, notes, problem,
+        follows, headline, notes,
     },
     describe::pair_key,
     explain::ExplanationParts,
@@ -29,22 +30,22 @@ use fosssim_num::{
 };
 use fosssim_render::plot::{PassPlot, PlotTarget, ResidualPlot, STEPS_AXIS, Series};
 
-/// The greatest number of calls that are shown.
-const CALLS: usize = 6;
+/// The maximum number of detection calls on a page.
+const MAX_CALLS: usize = 6;
 
 /// The heading of the first difference.
-pub(super) const FIRST: &str = "First difference";
+pub(super) const FIRST_HEADING: &str = "First difference";
 
-/// A detection call with its step.
+/// A detection call and the number of its step.
 type StepCall<'e> = (u32, &'e InspectedCall);
 
 impl Case<'_> {
-    /// Renders a page about this case alone; the title is that of the window.
+    /// Renders a page about one case; the title is that of the window.
     pub(super) fn page(&self, title: &str) -> String {
         document(title, &self.html("0"), script())
     }
 
-    /// Renders the case as a page's own content.
+    /// Renders the case as the whole content of a page.
     fn html(&self, key: &str) -> String {
         let check = &self.check;
         let look = match (check.is_accepted(), check.difference()) {
@@ -59,27 +60,27 @@ impl Case<'_> {
         render_template(&CaseContent { check, key, look, content })
     }
 
-    /// Returns the finding that is shown first: of the book that counts, or of the other one where that has none.
+    /// Returns the finding that is shown first: of the official book, or of the other one if the official has none.
     fn first(&self) -> Option<&Finding> {
         first(&self.check).filter(|_| self.hints == Hints::Full)
     }
 
     /// Renders the part about the trace, below a heading of the given depth: the motion next to its cause and the first
-    /// wrong values, and below all that needs more room.
+    /// wrong values, and below them everything that needs more space.
     pub(super) fn trace_part(&self, key: &str, depth: usize, mistakes: &str) -> String {
         render_template(&TraceContent { case: self, check: &self.check, key, depth, mistakes })
     }
 
-    /// Returns the motion, where there is one.
+    /// Returns the data of the motion, if there is one.
     fn motion(&self) -> Option<&Evidence> {
         self.evidence.filter(|evidence| !evidence.steps.is_empty())
     }
 
-    /// Returns where the trace can't be followed any further, the reason, and the place to check.
+    /// Returns a sentence on where and why judging stopped, with advice where to look.
     fn describe_stop(&self) -> String {
         let outcome = self.check.outcome;
         let Some(stop) = outcome.stop_of(self.check.rules.official()) else { return String::new() };
-        let (place, message, advice) = problem(&stop, outcome);
+        let (place, message, advice) = describe_problem(&stop, outcome);
         let advice = advice.map(|advice| format!("<p>{advice}</p>")).unwrap_or_default();
         format!(
             "<section class=\"card mistake\"><p class=\"label\">Stopped at {}</p><p class=\"lead\">{}</p>{advice}\
@@ -89,19 +90,19 @@ impl Case<'_> {
         )
     }
 
-    /// Returns the sentence that the likely mistake writes the same trace.
+    /// Returns the sentence that a program with the likely mistake writes the same trace.
     fn proof(&self) -> Option<&'static str> {
         let what = self.what_if.filter(|_| self.hints == Hints::Full)?;
         Some(if what.equal {
-            "Proof: the reference with exactly the likely mistake writes the same trace, to the last bit."
+            "Proof: the reference with exactly the likely mistake writes the same trace, bit for bit."
         } else {
-            "The reference with exactly the likely mistake writes other bytes, by round-off or by more: compare its \
-             motion with yours."
+            "The reference with exactly the likely mistake writes a different trace, by round-off or by more. \
+             Compare its motion with yours."
         })
     }
 }
 
-/// The content of a page about a case alone.
+/// The content of a page about one case.
 #[derive(Template)]
 #[template(path = "case.html")]
 struct CaseContent<'a> {
@@ -111,7 +112,7 @@ struct CaseContent<'a> {
     content: String,
 }
 
-/// The content of the part about a trace, with its mistakes as markup.
+/// The content of the part about a trace, with the mistakes as HTML.
 #[derive(Template)]
 #[template(path = "trace.html")]
 struct TraceContent<'a> {
@@ -122,7 +123,7 @@ struct TraceContent<'a> {
     mistakes: &'a str,
 }
 
-/// Explanations, each in a box.
+/// Explanations, each in its own box.
 #[derive(Template)]
 #[template(path = "mistakes.html")]
 struct Mistakes {
@@ -131,8 +132,8 @@ struct Mistakes {
 }
 
 impl TraceContent<'_> {
-    /// Returns the detection calls, each with its step, those of the first wrong step first: those that only follow
-    /// from where the passes before them led, which are no mistakes of detection, and those that are wrong.
+    /// Returns the detection calls with their steps, those of the first wrong step first. The first list has the calls
+    /// that only follow from wrong earlier passes; the second has the wrong ones.
     fn calls<'e>(&self, evidence: &'e Evidence) -> (Vec<StepCall<'e>>, Vec<StepCall<'e>>) {
         let first = self.case.first().map(|first| first.step);
         let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
@@ -142,34 +143,34 @@ impl TraceContent<'_> {
         calls.into_iter().partition(|(_, call)| follows && call.pass.index > 0)
     }
 
-    /// Renders the first ones of some calls; the first one is open.
+    /// Renders the first of some calls; the first one is unfolded if `open`.
     fn render_some(&self, calls: &[StepCall<'_>], open: bool) -> String {
         let call =
             |(number, (step, one)): (usize, &StepCall<'_>)| call::html(*step, one, self.depth + 2, open && number == 0);
-        let mut out: String = calls.iter().take(CALLS).enumerate().map(call).collect();
-        if calls.len() > CALLS {
-            out += &format!("<p class=\"hint\">{} more are not shown.</p>\n", calls.len() - CALLS);
+        let mut out: String = calls.iter().take(MAX_CALLS).enumerate().map(call).collect();
+        if calls.len() > MAX_CALLS {
+            out += &format!("<p class=\"hint\">{} more are not shown.</p>\n", calls.len() - MAX_CALLS);
         }
         out
     }
 
-    /// Returns the first findings of each kind, without those that only follow from wrong positions.
+    /// Returns the first findings of each kind, without consequences of wrong positions.
     fn examples<'b>(&self, account: &'b BookFindings) -> impl Iterator<Item = &'b Finding> {
         let follows = follows::count(self.check.outcome) > 0;
         account.examples.iter().filter(move |example| !(follows && follows::is_of_formula(example.kind())))
     }
 
-    /// Renders how far steps end from where they should, and their passes.
+    /// Renders the plots of the error at the end of each step, and of the detection passes.
     fn plots(&self, evidence: &Evidence) -> String {
         let (key, first) = (self.key, self.case.first().map(|first| first.step));
-        let tolerance = bound(evidence, self.check.rules.official());
+        let tolerance = state_bound(evidence, self.check.rules.official());
         let steps = evidence.steps.len();
         let positions: Vec<f64> = evidence.steps.iter().map(|step| step.position).collect();
         let velocities: Vec<f64> = evidence.steps.iter().map(|step| step.velocity).collect();
         let series =
             [Series { name: "positions", values: &positions }, Series { name: "velocities", values: &velocities }];
         let residuals = ResidualPlot {
-            title: "How far each step ends from where it should",
+            title: "Error at the end of each step",
             series: &series,
             tolerance,
             mark: first.map(|step| (step, "first difference")),
@@ -197,7 +198,7 @@ impl TraceContent<'_> {
     }
 }
 
-/// Returns the step of a finding in words.
+/// Returns the step of a finding as text.
 fn step_of(step: u32, steps: u32) -> String {
     match step {
         0 => "the first record".to_owned(),
@@ -205,7 +206,7 @@ fn step_of(step: u32, steps: u32) -> String {
     }
 }
 
-/// Returns the subject of a finding whose values are in a table next to it.
+/// Returns the text about a finding whose values are in a table next to it.
 fn subject(finding: &Finding) -> String {
     match &finding.detail {
         FindingDetail::Coefficient { place, .. } | FindingDetail::PolynomialDegree { place, .. } => place.to_string(),
@@ -213,26 +214,26 @@ fn subject(finding: &Finding) -> String {
             format!("the contact of {}", PairWords(expected.pair))
         }
         FindingDetail::MissedCollision { expected } => {
-            format!("{} collide, and the trace misses it", PairWords(expected.pair))
+            format!("{} collide, but the trace misses it", PairWords(expected.pair))
         }
         FindingDetail::Position { particle, .. } if finding.step > 0 => format!("where particle {particle} ends"),
         FindingDetail::Velocity { particle, .. } if finding.step > 0 => {
-            format!("the velocity with which particle {particle} ends")
+            format!("the velocity of particle {particle} at the end")
         }
         _ => finding.what().to_string(),
     }
 }
 
-/// Returns two values side by side as markup: in one notation, and marked from the first digit that differs.
-fn cells(row: &Row) -> (String, String) {
+/// Returns two values side by side as HTML, in one notation, and marked from the first digit that differs.
+fn compare_cells(row: &Row) -> (String, String) {
     match (row.expected, row.actual) {
         (Value::Number(expected), Value::Number(actual)) => mark_difference(expected, actual, row.differs),
-        // A value that stands alone is no longer than others.
+        // A single value is as short as others.
         (expected, actual) => (format_value(expected), format_value(actual)),
     }
 }
 
-/// Returns a value without another to compare it with; the title has all its digits.
+/// Returns a single value as HTML; its title has all digits.
 fn format_value(value: Value) -> String {
     match value {
         Value::Number(number) => markup::number(number),
@@ -240,28 +241,28 @@ fn format_value(value: Value) -> String {
     }
 }
 
-/// Renders explanations, each in a box. An example is left out where the first wrong values are shown next to them.
+/// Renders explanations, each in its own box. An example is left out if the first wrong values are shown next to it.
 pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> String {
     let parts = explanations.iter().map(|one| ExplanationParts::new(one, Style::ColorAndSigns));
     render_template(&Mistakes { mistakes: parts.collect(), is_shown_beside })
 }
 
-/// Returns the first sentence, which is the heading, and its general rule.
-fn lead(what: &str) -> (String, Option<&str>) {
+/// Returns the first sentence, which is the heading, and the general rule after it.
+fn split_lead(what: &str) -> (String, Option<&str>) {
     match what.split_once(". ") {
         Some((lead, more)) if !more.is_empty() => (format!("{lead}."), Some(more)),
         _ => (what.to_owned(), None),
     }
 }
 
-/// Returns the pair of a finding, as the viewer knows it.
+/// Returns the pair of a finding, in the viewer's notation.
 fn pair_of(finding: &Finding) -> String {
     Focus::from(finding).pair.map(pair_key).unwrap_or_default()
 }
 
-/// Returns the bound beyond which a book calls a state wrong. By the fair rules the bound grows with the numbers; the
-/// one of the largest numbers is shown.
-fn bound(evidence: &Evidence, book: Book) -> f64 {
+/// Returns the bound beyond which a book rejects a state. By the fair rules the bound grows with the numbers; the
+/// returned bound is that of the largest numbers.
+fn state_bound(evidence: &Evidence, book: Book) -> f64 {
     match book {
         Book::Parity => PARITY_MAXIMUM,
         Book::Fair => {

@@ -1,5 +1,5 @@
 "use strict";
-// Sorts tables by a click on a column's head, and shows only the rows with some words, a verdict or a mistake.
+// Sorts tables after a click on a column heading, and shows only the rows with some text, a verdict or a mistake.
 (() => {
   const value = (row, column) => {
     const cell = row.cells[column];
@@ -20,7 +20,7 @@
       button.append(...head.childNodes);
       head.append(button);
       button.addEventListener("click", () => {
-        // Numbers begin with the largest, words with a.
+        // The first click sorts numbers from the largest, and text from a.
         const numbers = rows.some((row) => row.cells[column].dataset.sort !== undefined);
         const now = head.getAttribute("aria-sort");
         const up = now === null ? !numbers : now === "descending";
@@ -45,7 +45,7 @@
       button.textContent = "Copied";
     });
   }
-  // Rows of scenes: what lies under the pointer has a name, and a click leads to it.
+  // Rows of scenes: the scene under the pointer is named, and a click opens it.
   const block = document.getElementById("scenes");
   const scenes = block ? JSON.parse(block.textContent) : [];
   const pointed = document.querySelector(".pointed");

@@ -1,17 +1,17 @@
-//! The page of a class: who got what, which scenes few have right, and who makes the same mistake.
+//! The page of a class: the points of all submissions, the hardest scenes, and the submissions with the same mistake.
 use super::{
     document,
-    graded::key,
+    graded::scene_key,
     heat, histogram,
     markup::{count_scenes, data, note},
     render_template,
-    smallest::{parts, pre},
+    smallest::{format_pre, parts},
 };
 use crate::foreign::one_line;
 use crate::{
     grade::{
-        ClassFigures, SharedMistake, example, format_points, frequent, hardest, likely_mistakes, never_ran, points,
-        same_programs,
+        ClassFigures, SharedMistake, clearest_scene, find_frequent, find_hardest, format_points, likely_mistakes,
+        never_ran, points, same_programs,
     },
     smallest::title,
     words::{self, explanation::what_or},
@@ -23,23 +23,23 @@ use std::collections::BTreeMap;
 
 const SCRIPT: &str = include_str!("class.js");
 
-/// The greatest number of characters of a likely mistake or a summary in a table.
-const SHORT: usize = 120;
+/// The maximum number of characters of a likely mistake or a summary in a table.
+const MAX_SUMMARY_LENGTH: usize = 120;
 
-/// The greatest number of shared mistakes that are not folded: the table begins on the first screen.
-const FEW: usize = 5;
+/// The maximum number of shared mistakes that are not folded, so that the table begins on the first screen.
+const MAX_UNFOLDED: usize = 5;
 
-/// The greatest number of names listed of a cluster.
-const NAMES: usize = 400;
+/// The maximum number of listed names of a cluster.
+const MAX_NAMES: usize = 400;
 
 /// The grades of a class.
 #[derive(Clone, Copy)]
 pub struct ClassPage<'a> {
     /// The grades.
     pub grades: &'a [Grade],
-    /// The entries that are no submissions.
+    /// The entries that are not submissions.
     pub passed_over: &'a [PassedOver],
-    /// The address of a submission's page, relative to this one.
+    /// A function that returns the address of a submission's page, relative to the class's page.
     pub page: &'a dyn Fn(&Grade) -> String,
 }
 
@@ -49,10 +49,10 @@ impl ClassPage<'_> {
     pub fn html(&self) -> String {
         let content = ClassContent {
             class: self,
-            mistakes: frequent(self.grades),
+            mistakes: find_frequent(self.grades),
             is_compared: self.grades.iter().any(|grade| grade.before.is_some()),
         };
-        document(&format!("Class: {}", suite(self.grades)), &render_template(&content), SCRIPT)
+        document(&format!("Class: {}", suite_name(self.grades)), &render_template(&content), SCRIPT)
     }
 }
 
@@ -71,21 +71,21 @@ struct ClassContent<'a> {
 struct Cluster<'a> {
     heading: String,
     members: Vec<usize>,
-    /// A scene that shows their mistake, and its address.
+    /// A scene that shows the members' mistake, and its address.
     scene: Option<(String, String)>,
     note: Option<&'a CourseNote>,
-    /// The smallest scene on which one of them shows it, for the blackboard.
+    /// The smallest scene on which a member's program shows the mistake, to demonstrate in class.
     smallest: Option<&'a SmallestScene>,
-    /// The first of the scenes that all of them fail, where no mistake is named.
+    /// The first of the scenes that all members fail, if no mistake is named.
     first: Option<String>,
-    /// The number of their mistake, by which they can be shown alone.
+    /// The number of the members' mistake, by which the table can be filtered.
     mistake: Option<usize>,
 }
 
 impl ClassContent<'_> {
     /// Returns the address of a scene on a submission's page.
     fn address(&self, grade: &Grade, scene: &str) -> String {
-        format!("{}#scene-{}", (self.class.page)(grade), key(scene))
+        format!("{}#scene-{}", (self.class.page)(grade), scene_key(scene))
     }
 
     /// Returns the names of submissions, to be copied into a letter.
@@ -94,9 +94,9 @@ impl ClassContent<'_> {
         names.collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns the filters by verdict that leave something, with how much.
+    /// Returns the filters by verdict that match some submissions, each with the number of matches.
     fn states(&self) -> impl Iterator<Item = (&'static str, &'static str, usize)> {
-        let count = |wanted: &str| self.class.grades.iter().filter(|grade| state(grade) == wanted).count();
+        let count = |wanted: &str| self.class.grades.iter().filter(|grade| submission_state(grade) == wanted).count();
         let states = [
             ("good", "accepted", count("good")),
             ("bad", "not accepted", count("bad")),
@@ -106,7 +106,7 @@ impl ClassContent<'_> {
         states.into_iter().filter(|(.., count)| *count > 0)
     }
 
-    /// Returns the numbers of the mistakes of a submission, as filters know them.
+    /// Returns the numbers of a submission's mistakes, as used by filters.
     fn mistake_numbers(&self, number: usize) -> String {
         let made = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.contains(&number));
         made.map(|(place, _)| format!("m{place}")).collect::<Vec<_>>().join(" ")
@@ -118,7 +118,7 @@ impl ClassContent<'_> {
         let named = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.len() > 1);
         let named = named.map(|(number, SharedMistake { mistake, members })| {
             let first = &grades[members[0]];
-            let scene = example(first, mistake);
+            let scene = clearest_scene(first, mistake);
             let smallest = members.iter().flat_map(|&number| &grades[number].smallest);
             Cluster {
                 heading: one_line(&what_or(mistake)),
@@ -136,10 +136,10 @@ impl ClassContent<'_> {
             let wrong: Vec<&SceneGrade> = grades[members[0]].scenes().filter(|scene| is_failed(scene)).collect();
             let first = format!("{}: {}", wrong[0].scene, words::summary(wrong[0]));
             let heading = match wrong.len() {
-                1 => "No mistake is named, but the same scene fails in the same words".to_owned(),
-                count => format!("No mistake is named, but the same {count} scenes fail in the same words"),
+                1 => "No mistake is named, but the same scene fails for the same reason".to_owned(),
+                count => format!("No mistake is named, but the same {count} scenes fail for the same reason"),
             };
-            Cluster { heading, members, first: Some(short(&one_line(&first))), ..Cluster::default() }
+            Cluster { heading, members, first: Some(shorten(&one_line(&first))), ..Cluster::default() }
         });
         named.chain(same).collect()
     }
@@ -147,13 +147,13 @@ impl ClassContent<'_> {
     /// Returns the submissions with the same program, group by group.
     fn same_programs(&self) -> Vec<Cluster<'_>> {
         let cluster = |members: Vec<usize>| {
-            let heading = short(&self.names(&members));
+            let heading = shorten(&self.names(&members));
             Cluster { heading, members, ..Cluster::default() }
         };
         same_programs(self.class.grades).into_iter().map(cluster).collect()
     }
 
-    /// Returns the address of the first submission's page that shows what goes wrong in a scene.
+    /// Returns the address of the first submission's page that shows a wrong scene.
     fn shows(&self, name: &str) -> Option<String> {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
         self.class.grades.iter().find(fails).map(|grade| self.address(grade, name))
@@ -161,19 +161,19 @@ impl ClassContent<'_> {
 }
 
 /// Returns the name of the suite.
-fn suite(grades: &[Grade]) -> &str {
+fn suite_name(grades: &[Grade]) -> &str {
     grades.first().map_or("", |grade| grade.suite.as_str())
 }
 
-/// Returns the names of the scenes, as the script reads them.
-fn scenes(grades: &[Grade]) -> String {
+/// Returns the names of the scenes, in the form that the script reads.
+fn scene_names(grades: &[Grade]) -> String {
     let names: Vec<&str> =
         grades.first().iter().flat_map(|grade| grade.scenes()).map(|one| one.scene.as_str()).collect();
     data(&serde_json::json!(names))
 }
 
-/// Returns points as the script sorts them.
-fn sort(points: Option<f64>) -> String {
+/// Returns points in the form by which the script sorts.
+fn sort_key(points: Option<f64>) -> String {
     points.map_or_else(String::new, |points| points.to_string())
 }
 
@@ -182,19 +182,19 @@ fn points_before(grade: &Grade) -> Option<f64> {
     grade.changes()?.points
 }
 
-/// Returns how many scenes are accepted.
+/// Returns the number of accepted scenes.
 fn accepted_of(grade: &Grade) -> usize {
     grade.count(Verdict::Accepted)
 }
 
-/// Returns the likely mistakes of a submission, or why it is not accepted.
-fn reason(grade: &Grade) -> String {
+/// Returns the likely mistakes of a submission, or the reason why it is not accepted.
+fn describe_reason(grade: &Grade) -> String {
     let likely = likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
     let likely: Vec<String> = grade.located.iter().map(words::describe_located).chain(likely).collect();
     if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") }
 }
 
-/// Returns why the rule books differ, and the submissions in which they do, each with the number of scenes.
+/// Returns the causes of differences between the rule books, each with the submissions and their numbers of scenes.
 fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
     let mut found: BTreeMap<String, BTreeMap<usize, usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {
@@ -210,18 +210,18 @@ fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
 }
 
 /// Returns the beginning of a long text.
-fn short(words: &str) -> String {
-    let cut: String = words.chars().take(SHORT).collect();
+fn shorten(words: &str) -> String {
+    let cut: String = words.chars().take(MAX_SUMMARY_LENGTH).collect();
     if cut.len() < words.len() { cut + "..." } else { cut }
 }
 
-/// Returns whether a scene counts as failed: scenes that were not run, or on which the grader failed, do not.
+/// Returns whether a scene counts as failed; scenes that were not run, or on which the grader failed, do not.
 fn is_failed(scene: &SceneGrade) -> bool {
     !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
 }
 
-/// Returns the state of a submission by which rows are filtered and colored.
-fn state(grade: &Grade) -> &'static str {
+/// Returns the state of a submission, by which rows are filtered and colored.
+fn submission_state(grade: &Grade) -> &'static str {
     match grade {
         _ if grade.verdict.is_accepted() => "good",
         _ if never_ran(grade) => "none",
@@ -229,7 +229,7 @@ fn state(grade: &Grade) -> &'static str {
     }
 }
 
-/// Returns the scenes of a submission in a row.
+/// Returns the letters of a submission's scenes, as one row.
 fn row_of_scenes(grade: &Grade) -> String {
     let letters = grade.groups.iter().map(|group| group.scenes.iter().map(letter_of).collect::<String>());
     heat::html(&letters.collect::<Vec<_>>().join("|"))
@@ -245,16 +245,16 @@ fn letter_of(scene: &SceneGrade) -> char {
     }
 }
 
-/// Returns the class in a few numbers.
-fn figures(grades: &[Grade]) -> Vec<(String, String)> {
+/// Returns the statistics of the class, each with its name.
+fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
     let figures = ClassFigures::from_grades(grades);
     let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_points);
-    let unsolved = hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
+    let unsolved = find_hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
     let rows = [
         (format!("{} of {}", figures.ran, figures.submissions), "ran".to_owned()),
         (figures.accepted.to_string(), "accepted".to_owned()),
         (mean, format!("mean of {} points", points(figures.max_points))),
-        (median, "median; both count those that ran".to_owned()),
+        (median, "median, of submissions that were run".to_owned()),
         (unsolved.to_string(), "scenes without a right answer".to_owned()),
     ];
     let since =
@@ -262,7 +262,8 @@ fn figures(grades: &[Grade]) -> Vec<(String, String)> {
     rows.into_iter().chain(since).collect()
 }
 
-/// Returns submissions without a likely mistake that fail the same scenes in the same words, the largest cluster first.
+/// Returns groups of submissions without a likely mistake that fail the same scenes for the same reasons, the largest
+/// first.
 fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     let mut found: BTreeMap<Vec<(&str, Verdict, String)>, Vec<usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| likely_mistakes(grade).is_empty()) {
@@ -279,7 +280,7 @@ fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
 }
 
 /// Renders how many submissions that ran reach which share of the points.
-fn bars(grades: &[Grade]) -> String {
+fn render_bars(grades: &[Grade]) -> String {
     let ran = grades.iter().filter(|grade| !never_ran(grade));
     histogram::html(ran.filter_map(|grade| Some(grade.points? / grade.max_points)))
 }
@@ -314,7 +315,7 @@ mod tests {
                     };
                     (SceneResult::without_run(&format!("Group/a-scene-of-number-{scene}"), 100, verdict, why), false)
                 });
-                score::group(&format!("Group {group}"), marking, scenes.collect())
+                score::grade_group(&format!("Group {group}"), marking, scenes.collect())
             })
             .collect();
         Grade {
@@ -375,7 +376,7 @@ mod tests {
         assert!(cluster.contains("the same 9 scenes fail") && cluster.contains("<b>2</b>"), "{cluster}");
         assert!(cluster.contains("eve") && cluster.contains("&lt;b&gt;kim") && !cluster.contains("bob"), "{cluster}");
         assert!(html.contains("<td class=\"num\" data-sort=\"3\">3</td>"), "three fail the last scenes");
-        let last = key("Group/a-scene-of-number-75");
+        let last = scene_key("Group/a-scene-of-number-75");
         assert!(html.contains(&format!("<a href=\"reports/eve.html#scene-{last}\">Group/a-scene-of-number-75</a>")));
         let bars = html.split("aria-label=\"Points of the class: ").nth(1).expect("a histogram");
         assert!(bars.starts_with("0 to 10 %: 1, ") && bars.contains("90 to 100 %: 1\""), "{bars:.300}");

@@ -20,10 +20,10 @@ use std::fmt::Write;
 
 /// Returns all data blocks of a case.
 pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision: Precision) -> String {
-    // Below full hints a page holds only what the program wrote itself.
+    // Below full hints, a page holds only data that the program wrote.
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
-    // A motion that is the same to the last bit need not be there twice.
+    // A motion that is identical bit for bit is not stored twice.
     let what = case.what_if.filter(|what| is_full && !what.equal).map(|what| ("what", &what.track));
     let tracks: Vec<(&str, &Track)> =
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();
@@ -58,8 +58,8 @@ fn case_data(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounding>) -
         _ => None,
     });
     json!({
-        "scene": markup::visible(case.check.scene),
-        "traceName": case.has_trace.then(|| markup::visible(case.check.trace)),
+        "scene": markup::show_hidden(case.check.scene),
+        "traceName": case.has_trace.then(|| markup::show_hidden(case.check.trace)),
         "full": is_full,
         "collision": case.scene.collision.kind().name(),
         "collisionTag": scene::collision_element(case.scene.collision),
@@ -92,10 +92,10 @@ fn inspected_step(up: &InspectedStep, evidence: &Evidence) -> Value {
     let step = (up.step as usize).checked_sub(1).and_then(|place| evidence.steps.get(place));
     json!({
         "step": up.step,
-        "mid": up.expected_mid.as_ref().map(state),
-        "end": up.expected_end.as_ref().map(state),
-        "passes": up.passes.iter().map(pass).collect::<Vec<_>>(),
-        "expected": up.expected_contacts.iter().map(contact).collect::<Vec<_>>(),
+        "mid": up.expected_mid.as_ref().map(state_data),
+        "end": up.expected_end.as_ref().map(state_data),
+        "passes": up.passes.iter().map(pass_data).collect::<Vec<_>>(),
+        "expected": up.expected_contacts.iter().map(contact_data).collect::<Vec<_>>(),
         "actual": up.actual_contacts.iter().filter_map(encode_logged).take(200).collect::<Vec<_>>(),
         "zones": up.zones.iter().map(|zones| json!({
             "round": zones.round,
@@ -109,28 +109,28 @@ fn inspected_step(up: &InspectedStep, evidence: &Evidence) -> Value {
     })
 }
 
-fn state(state: &State) -> Vec<f64> {
+fn state_data(state: &State) -> Vec<f64> {
     state.positions.iter().chain(&state.velocities).copied().collect()
 }
 
-fn pass(up: &InspectedPass) -> Value {
+fn pass_data(up: &InspectedPass) -> Value {
     json!({
         "name": PassWords(up.pass).to_string(),
         "q": up.q_end,
         "calls": up.calls,
-        "hits": up.hits.iter().map(contact).collect::<Vec<_>>(),
-        "differing": keys(&up.differing),
-        "missing": keys(&up.missing),
-        "repeated": keys(&up.repeated),
+        "hits": up.hits.iter().map(contact_data).collect::<Vec<_>>(),
+        "differing": pair_keys(&up.differing),
+        "missing": pair_keys(&up.missing),
+        "repeated": pair_keys(&up.repeated),
         "logged": up.is_logged,
     })
 }
 
-fn keys(pairs: &[Pair]) -> Vec<String> {
+fn pair_keys(pairs: &[Pair]) -> Vec<String> {
     pairs.iter().map(|pair| pair_key(*pair)).collect()
 }
 
-fn contact(impulse: &Impulse) -> Value {
+fn contact_data(impulse: &Impulse) -> Value {
     json!([pair_key(impulse.pair), impulse.time, impulse.normal.x, impulse.normal.y])
 }
 

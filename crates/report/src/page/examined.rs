@@ -1,4 +1,4 @@
-//! The page about a trace that has just been judged.
+//! The page about a trace that was just judged.
 use super::{Case, WhatIf};
 use crate::{check::Check, words::explanation};
 use fosssim_evidence::{Evidence, ExaminedTrace, Track};
@@ -8,11 +8,11 @@ use fosssim_model::scene::Scene;
 use fosssim_student::{self as student};
 
 impl WhatIf {
-    /// Returns the run of the reference with the named mistake, next to the trace. There is none if no step was
-    /// reproduced with it, if the trace was not kept whole (`None`), or if the evidence does not hold the whole motion.
+    /// Returns the reference's run with the named mistake, next to the trace. `None` if the mistake reproduces no step,
+    /// if the trace was not kept whole, or if the evidence does not hold the whole motion.
     #[must_use]
     pub fn for_scene(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
-        // A motion that is not there as a whole is not made as a whole either, and can't be compared.
+        // An incomplete motion can't be compared.
         let trace = trace?;
         if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
             return None;
@@ -24,7 +24,7 @@ impl WhatIf {
     }
 }
 
-/// Returns the page about one trace that was judged, with all hints, because its author requests it.
+/// Returns the page about one judged trace, with full hints, because the trace's author requests it.
 #[must_use]
 pub fn examined_page(check: Check<'_>, examined: &ExaminedTrace<'_>, evidence: &Evidence) -> String {
     let scene = examined.scene;

@@ -1,31 +1,31 @@
-//! The page of `explain`: the likely mistakes of a program, trace by trace and all together.
+//! The page of `explain`: the likely mistakes of a program, for each trace and for all traces.
 use super::{
     Card,
     case::mistakes,
     document,
-    graded::{self, key},
+    graded::{self, scene_key},
     render_template, script, smallest,
 };
-use crate::{case::Case, diagnosis::Diagnosis, grade::rank, words::first_divergence};
+use crate::{case::Case, diagnosis::Diagnosis, grade::rank, words::describe_first};
 use askama::Template;
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 
-/// One trace with its pictures.
+/// A trace, with its card if one was drawn.
 type ExplainedCase<'a> = (&'a Case, Option<&'a Card>);
 
-/// Returns how hard the fault is to see; the smallest value is the clearest case. These cases come later: no pictures,
-/// another mistake than the common ones, several mistakes that can't be distinguished, a large motion.
-fn telling((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, usize, usize, usize) {
+/// Returns how hard the fault of a case is to see; the smallest value is the clearest case. Cases come later for these
+/// reasons: no picture, another mistake than the common ones, several indistinguishable mistakes, a large motion.
+fn clarity_rank((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, usize, usize, usize) {
     let own = &case.explanations;
     (card.is_none(), rank(common, own), own.len(), card.map_or(0, |card| card.sizes().1))
 }
 
-/// A page about some traces of one program.
+/// A page about several traces of one program.
 #[derive(Debug, Clone)]
 pub struct ExplainedPage<'a> {
     /// The diagnosis that the page shows.
     pub diagnosis: &'a Diagnosis,
-    /// The card of each of its traces, in their order, then that of each of its smallest scenes.
+    /// The cards of the diagnosis's traces, in order, followed by those of its smallest scenes.
     pub cards: &'a [Option<Card>],
 }
 
@@ -37,7 +37,7 @@ impl ExplainedPage<'_> {
         let wrong = cases.iter().filter(|case| !case.accepted).count();
         let look = if wrong == 0 { "good" } else { "bad" };
         let title = match (&cases[..], wrong) {
-            ([], _) => "The smallest scenes on which it is wrong".to_owned(),
+            ([], _) => "The smallest scenes on which the program is wrong".to_owned(),
             ([case], 0) => format!("{}: nothing to explain", case.scene),
             ([case], _) => format!("{}: what is wrong", case.scene),
             (_, 1) => format!("1 of {} traces is wrong", cases.len()),
@@ -69,7 +69,8 @@ struct Trace<'a> {
 }
 
 impl ExplainedContent<'_> {
-    /// Returns the mistakes that explain several traces, with their number; a single trace has these words itself.
+    /// Returns the mistakes that explain several traces, with the number of traces; empty for a single trace, whose
+    /// card names them.
     fn shared_mistakes(&self) -> impl Iterator<Item = (&Explanation, usize)> {
         let Diagnosis { cases, common, .. } = self.page.diagnosis;
         let explained = |one| cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
@@ -80,17 +81,17 @@ impl ExplainedContent<'_> {
     fn smallest(&self) -> String {
         let Diagnosis { cases, smallest: small, .. } = self.page.diagnosis;
         let small = small.iter().zip(&self.page.cards[cases.len()..]).zip(1..);
-        small.map(|((small, card), number)| smallest::article(small, card.as_ref(), number)).collect()
+        small.map(|((small, card), number)| smallest::render_article(small, card.as_ref(), number)).collect()
     }
 
-    /// Returns the traces; the clearest one is open.
+    /// Returns the traces; the clearest one is unfolded.
     fn traces(&self) -> Vec<Trace<'_>> {
         let Diagnosis { cases, common, .. } = self.page.diagnosis;
         let all: Vec<ExplainedCase<'_>> = cases.iter().zip(self.page.cards.iter().map(Option::as_ref)).collect();
         let wrong = (0..all.len()).filter(|&number| !cases[number].accepted);
-        let first = wrong.min_by_key(|&number| telling(all[number], common));
+        let first = wrong.min_by_key(|&number| clarity_rank(all[number], common));
         let trace = |(number, (case, card)): (usize, ExplainedCase<'_>)| {
-            let key = key(&format!("{number} {}", case.scene));
+            let key = scene_key(&format!("{number} {}", case.scene));
             let mistakes = mistakes(&case.explanations, card.is_some_and(Card::has_values));
             let shown = card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
             let motion = card.map(|card| card.data(&key)).unwrap_or_default();

@@ -5,14 +5,14 @@ use super::{
     document,
     markup::{count_scenes, note, text},
     render_template,
-    room::{self, OUTPUTS, Room},
+    room::{self, OUTPUT_BUDGET, Room},
     script, smallest,
 };
 use crate::foreign::{one_line, without_codes};
 use crate::{
     grade::{
-        by_cause, change_lines, difference, example, extra, format_points, is_told, likely_mistakes, no_points, points,
-        score, speed_words, worth, wrong_scenes,
+        by_cause, change_lines, clearest_scene, count_wrong, describe_difference, describe_speed, extra, format_points,
+        is_listed, likely_mistakes, no_points, points, score, worth,
     },
     number::format_count,
     words,
@@ -26,27 +26,27 @@ use fosssim_mistakes::together::for_students;
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 
-/// The greatest number of characters shown of a program's output in a scene.
-const OUTPUT: usize = 2_000;
+/// The maximum number of characters of a program's output in a scene.
+const MAX_OUTPUT_LENGTH: usize = 2_000;
 
 /// The readers of a page.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Audience {
-    /// Staff: every group is on it, with the word who sees it.
+    /// Staff, who see every group, with its visibility.
     #[default]
     Staff,
-    /// The student: the page has only groups that students see immediately, and what follows from these.
+    /// The student, who sees only groups that are visible immediately, and conclusions from these.
     Student,
 }
 
-/// One submission's grade with the pictures of its traces.
+/// One submission's grade, with the pictures of its traces.
 #[derive(Clone, Copy)]
 pub struct GradePage<'a> {
     /// The grade.
     pub grade: &'a Grade,
-    /// The card of this name, where it was kept.
+    /// A function that returns the stored card with a name.
     pub card: &'a dyn Fn(Option<&str>) -> Option<Card>,
-    /// The address of the class's page, relative to this one.
+    /// The address of the class's page, relative to the page.
     pub class: Option<&'a str>,
     /// The reader of the page.
     pub reader: Audience,
@@ -68,7 +68,7 @@ impl GradePage<'_> {
         let content = GradeContent {
             page: self,
             grade,
-            rooms: room::share_out(told.iter().map(|(_, card)| card.as_ref())),
+            rooms: room::distribute(told.iter().map(|(_, card)| card.as_ref())),
             has_scenes: grade.unfit().is_none(),
             is_accepted: told.iter().all(|(scene, _)| scene.verdict.is_accepted()),
             tells_who,
@@ -76,7 +76,7 @@ impl GradePage<'_> {
             alike: causes.iter().map(Vec::len).collect(),
             told,
         };
-        // The viewer is most of a page without cards.
+        // Without cards, the viewer would be most of the page.
         let script = if content.has_scenes && !content.told.is_empty() { script() } else { "" };
         document(&format!("{}: {}", grade.submission, grade.verdict.name()), &render_template(&content), script)
     }
@@ -89,10 +89,10 @@ struct GradeContent<'a> {
     page: &'a GradePage<'a>,
     /// The part of the grade that the reader may see.
     grade: &'a Grade,
-    /// The scenes with something to tell, cause by cause, and which parts of their cards fit.
+    /// The listed scenes by cause, each with the parts of its card that fit.
     told: Vec<(&'a SceneGrade, Option<Card>)>,
     rooms: Vec<Room>,
-    /// The number of scenes of each cause.
+    /// The number of scenes with each cause.
     alike: Vec<usize>,
     has_scenes: bool,
     /// Whether the rule books differ in all scenes that have something to tell, and nothing is wrong.
@@ -107,20 +107,20 @@ struct Article<'a> {
     scene: &'a SceneGrade,
     key: String,
     lines: Vec<String>,
-    /// The card, as far as there is room for it, and the program's output.
+    /// The parts of the card that fit, and the program's output.
     shown: String,
     outputs: String,
     motion: String,
 }
 
 impl GradeContent<'_> {
-    /// Returns the likely mistakes with the number of scenes that each explains. A fault of the submission itself
-    /// explains everything.
+    /// Returns the likely mistakes, each with the number of scenes that it explains; empty if a fault of the whole
+    /// submission explains everything.
     fn likely(&self) -> Vec<(Explanation, usize)> {
         if self.has_scenes { likely_mistakes(self.grade) } else { Vec::new() }
     }
 
-    /// Returns the first scene of a group that has something to tell.
+    /// Returns the first listed scene of a group.
     fn first_of(&self, group: &GroupGrade) -> Option<&SceneGrade> {
         let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
         self.told.iter().map(|(scene, _)| *scene).find(|scene| self.has_scenes && is_here(scene))
@@ -130,37 +130,37 @@ impl GradeContent<'_> {
     fn smallest(&self) -> String {
         let card = |small: &SmallestScene| (self.page.card)(small.card.as_deref());
         let all = self.grade.smallest.iter().zip(1..);
-        all.map(|(small, number)| smallest::article(small, card(small).as_ref(), number)).collect()
+        all.map(|(small, number)| smallest::render_article(small, card(small).as_ref(), number)).collect()
     }
 
-    /// Returns the cards of the scenes that have something to tell.
+    /// Returns the cards of the listed scenes.
     fn told_cards(&self) -> impl Iterator<Item = Option<&Card>> {
         self.told.iter().map(|(_, card)| card.as_ref())
     }
 
-    /// Returns the details of each scene, cause by cause.
+    /// Returns the details of each listed scene, by cause.
     fn articles(&self) -> Vec<Vec<Article<'_>>> {
-        let mut outputs = if self.grade.shows_output { OUTPUTS } else { 0 };
+        let mut outputs = if self.grade.shows_output { OUTPUT_BUDGET } else { 0 };
         let told = self.told.iter().zip(&self.rooms);
         let mut articles = told.map(|((scene, card), room)| Article::new(scene, card.as_ref(), *room, &mut outputs));
         self.alike.iter().map(|&count| articles.by_ref().take(count).collect()).collect()
     }
 
-    /// Returns how many scenes that have nothing to tell are accepted, and all of them.
+    /// Returns the number of accepted scenes that are not listed, and all scenes that are not listed.
     fn rest(&self) -> (usize, Vec<&SceneGrade>) {
-        let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_told(scene)).collect();
+        let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_listed(scene)).collect();
         (rest.iter().filter(|scene| scene.verdict.is_accepted()).count(), rest)
     }
 }
 
-/// Returns the common properties of scenes in which a program fails.
+/// Returns the common properties of scenes in which a program fails, as HTML.
 pub(super) fn render_located(found: &LocatedFailure) -> String {
     let words = text(&one_line(&words::describe_located(found)));
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
 }
 
-/// Returns the book that counts.
-fn books(grade: &Grade) -> String {
+/// Returns the sentence which rule book counts.
+fn describe_books(grade: &Grade) -> String {
     let other = format_count(grade.differing() as u64, "scene");
     match (grade.rules, grade.differing()) {
         (fosssim_judge::Rules::Parity, _) => "by the original's rules".to_owned(),
@@ -171,7 +171,7 @@ fn books(grade: &Grade) -> String {
     }
 }
 
-/// Returns the points of a grade, or why there are none.
+/// Returns the points of a grade, or the reason why there are none.
 fn score_or_why(grade: &Grade) -> String {
     match grade.points {
         Some(reached) => score(reached, grade.max_points) + &extra(grade),
@@ -181,11 +181,11 @@ fn score_or_why(grade: &Grade) -> String {
 
 /// Returns the output of a build.
 fn printed_by(build: &Build) -> String {
-    render_output("What it printed", &build.output, &mut OUTPUTS.clone())
+    render_output("What it printed", &build.output, &mut OUTPUT_BUDGET.clone())
 }
 
-/// Returns who sees groups of this kind.
-const fn readers(visibility: Visibility) -> &'static str {
+/// Returns the readers of groups with this visibility.
+const fn describe_readers(visibility: Visibility) -> &'static str {
     match visibility {
         Visibility::Visible => "everybody",
         Visibility::Hidden => "staff",
@@ -194,16 +194,16 @@ const fn readers(visibility: Visibility) -> &'static str {
     }
 }
 
-/// Returns how many scenes of a group are accepted.
+/// Returns the number of accepted scenes of a group.
 fn accepted_of(group: &GroupGrade) -> usize {
     group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count()
 }
 
 impl<'a> Article<'a> {
-    /// Returns the details of a scene, cut to the room that is left for its card and its output.
+    /// Creates the details of a scene, reduced to the remaining space for its card and its output.
     fn new(scene: &'a SceneGrade, card: Option<&Card>, room: Room, room_of_outputs: &mut usize) -> Self {
-        let key = key(&scene.scene);
-        // A detail that a card shows with its values is not repeated.
+        let key = scene_key(&scene.scene);
+        // A detail is not repeated if the card shows it with values.
         let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
         let details = words::details(scene).into_iter().skip(usize::from(is_shown));
         let mistakes = mistakes(&scene.settled, is_shown);
@@ -221,25 +221,25 @@ impl<'a> Article<'a> {
         };
         let outputs = render_output("Standard output", &scene.stdout, room_of_outputs)
             + &render_output("Standard error", &scene.stderr, room_of_outputs);
-        let lines = difference(scene).into_iter().chain(details).collect();
+        let lines = describe_difference(scene).into_iter().chain(details).collect();
         Self { scene, key, lines, shown, outputs, motion }
     }
 }
 
-/// Returns a key that another scene's name does not have.
-pub(super) fn key(name: &str) -> String {
+/// Returns a key that is different for every name of a scene.
+pub(super) fn scene_key(name: &str) -> String {
     Sha256::digest(name.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Returns the output of a program, cut to the room that is left.
+/// Returns the output of a program, cut to the remaining space.
 fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();
     }
     let output = without_codes(output);
-    let shown: String = output.chars().take(OUTPUT).collect();
+    let shown: String = output.chars().take(MAX_OUTPUT_LENGTH).collect();
     let cut = if shown.len() < output.len() { "\n[cut short]" } else { "" };
-    // Hostile text grows when it is written out: what counts is its length on the page.
+    // The length counts after escaping, which makes hostile text longer.
     let shown = text(&shown);
     if shown.len() > *room {
         *room = 0;

@@ -1,8 +1,8 @@
-//! The scenes of a submission in a row, as tables of a class show them. The server's pages show these rows, too.
+//! The scenes of a submission as a row of colored cells, for tables of a class. The server's pages show the rows, too.
 use std::fmt::Write;
 
-/// Renders a row from the letters of its scenes, group by group with `|` between: accepted, wrong, without a trace that
-/// can be judged, or not run (`r`, `w`, `e`, `n`).
+/// Renders a row from the letters of its scenes, with `|` between groups. The letters mean: accepted, wrong, without a
+/// trace that can be judged, or not run (`r`, `w`, `e`, `n`).
 pub(super) fn html(letters: &str) -> String {
     let scenes = letters.replace('|', "");
     let words = format!("{} of {} scenes accepted", scenes.matches('r').count(), scenes.len());
@@ -19,15 +19,15 @@ pub(super) fn html(letters: &str) -> String {
             }
             place += run.len();
         }
-        draw(&mut svg, kind, &path);
+        draw_scenes(&mut svg, kind, &path);
     }
     let borders = letters.match_indices('|').enumerate().map(|(before, (at, _))| format!("M{} 0v1", at - before));
-    draw(&mut svg, "g", &borders.collect::<String>());
+    draw_scenes(&mut svg, "g", &borders.collect::<String>());
     svg + "</svg>"
 }
 
-/// Draws the scenes of one kind, or the borders of groups.
-fn draw(svg: &mut String, kind: &str, path: &str) {
+/// Draws the scenes of one state, or the borders of groups.
+fn draw_scenes(svg: &mut String, kind: &str, path: &str) {
     if !path.is_empty() {
         let _ = write!(svg, "<path class=\"h-{kind}\" d=\"{path}\"/>");
     }

@@ -1,18 +1,18 @@
-//! The points of a class as bars. The server's pages show these bars, too.
+//! The histogram of a class's points. The server's pages show it, too.
 use std::fmt::Write;
 
 /// The number of bars.
-const BARS: usize = 10;
+const BAR_COUNT: usize = 10;
 
-/// The height of the highest bar.
-const HEIGHT: usize = 108;
+/// The height of the highest bar, in pixels.
+const MAX_BAR_HEIGHT: usize = 108;
 
-/// Renders how many submissions reach which share of the points, of 1; nothing without any.
+/// Renders a histogram of shares of the points, from 0 to 1; empty without any.
 pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
-    let mut counts = [0_usize; BARS];
+    let mut counts = [0_usize; BAR_COUNT];
     for share in shares.filter(|share| share.is_finite()) {
-        // Of the bars that begin at or below the share, the last one; a share of 1 belongs to the last bar.
-        let bar = (1..BARS).filter(|&bar| share * BARS as f64 >= bar as f64).count();
+        // The last bar that begins at or below the share; a share of 1 belongs to the last bar.
+        let bar = (1..BAR_COUNT).filter(|&bar| share * BAR_COUNT as f64 >= bar as f64).count();
         counts[bar] += 1;
     }
     let most = counts.into_iter().max().unwrap_or(0);
@@ -28,7 +28,7 @@ pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
         words.join(", ")
     );
     for (bar, count) in counts.into_iter().enumerate() {
-        let (left, height) = (10 + 31 * bar, HEIGHT * count / most);
+        let (left, height) = (10 + 31 * bar, MAX_BAR_HEIGHT * count / most);
         if count > 0 {
             let _ = write!(
                 svg,

@@ -1,11 +1,12 @@
-//! Hostile text in HTML: it stays text.
+//! HTML with untrusted text in it, which is escaped.
 use crate::foreign::is_unseen;
 use crate::number::{format_count, format_pair, general};
 use fosssim_findings::CourseNote;
 use std::fmt::Write;
 
-/// Returns text in which what can't be seen, or turns the direction of writing, is written out as its code point.
-pub(super) fn visible(raw: &str) -> String {
+/// Returns text in which characters that are invisible, or change the direction of writing, are replaced by their code
+/// points.
+pub(super) fn show_hidden(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in raw.chars() {
         if c.is_control() && !matches!(c, '\n' | '\t') || is_unseen(c) {
@@ -20,7 +21,7 @@ pub(super) fn visible(raw: &str) -> String {
 /// Escapes visible text for an element or a quoted attribute.
 pub(super) fn text(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
-    for c in visible(raw).chars() {
+    for c in show_hidden(raw).chars() {
         match c {
             '&' => out.push_str("&amp;"),
             '<' => out.push_str("&lt;"),
@@ -48,20 +49,20 @@ pub(super) fn count_scenes(count: usize) -> String {
     format_count(count as u64, "scene")
 }
 
-/// Returns a course's own words on something, with a link that can be followed.
+/// Returns a course's note, with its link.
 pub(super) fn note(note: Option<&CourseNote>) -> String {
     let Some(note) = note else { return String::new() };
     let link = |address: &str| format!("<a href=\"{0}\" rel=\"noopener\">{0}</a>", text(address));
     format!(" <span class=\"hint\">The course: {}.</span> ", note.line(text, link))
 }
 
-/// Returns a line with its formulas set: Unicode's signs, and the index of a letter below it.
+/// Returns a line with its formulas in HTML: mathematical signs, and letters with subscripts.
 pub(super) fn formula(line: &str) -> String {
     let set = |line: String, index| line.replace(&format!("_{index}"), &format!("<sub>{index}</sub>"));
     ["cm", "a", "b", "i"].into_iter().fold(text(line), set)
 }
 
-/// Writes JSON for a data block: nothing in it ends the element.
+/// Writes JSON for a data block, so that nothing in it ends the element.
 pub(super) fn data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
@@ -71,8 +72,8 @@ pub(super) fn number(value: f64) -> String {
     text(&general(value))
 }
 
-/// Returns two numbers as markup; digits of the second that differ from the first are marked. Numbers that count as
-/// equal are shown without the digits that only rounding has made.
+/// Returns two numbers as HTML, with marks on the digits of the second that differ from the first. Numbers that count
+/// as equal are shown without the digits that only rounding changes.
 pub(super) fn mark_difference(expected: f64, actual: f64, differs: bool) -> (String, String) {
     if !differs {
         return (number(expected), number(actual));

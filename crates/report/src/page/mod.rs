@@ -1,8 +1,8 @@
-//! Reports as one HTML file: the essentials as text and SVG, the motion viewer on top.
+//! Reports as a single HTML file, with the essentials as text and SVG, and a motion viewer.
 //!
-//! The file loads nothing else, from no network and no second file. Its policy allows the one script and the one style
-//! sheet by their digests, and no evaluated code. All words of a submission, a scene or a path are text (`markup`).
-//! Without script only the viewer is missing, and the page can be printed.
+//! The file loads nothing else, from the network or from other files. Its policy allows one script and one style sheet
+//! by their digests, and no evaluated code. All text from a submission, a scene or a path is escaped (`markup`).
+//! Without script, only the viewer is missing, and the page can be printed.
 
 mod call;
 mod card;
@@ -36,45 +36,44 @@ use fosssim_model::scene::Scene;
 use sha2::{Digest, Sha256};
 use std::sync::LazyLock;
 
-/// The part of the script that makes elements, for a page around reports, too.
+/// The part of the viewer's script that creates elements, which the page around reports uses, too.
 pub const ELEMENTS: &str = include_str!("viewer/elements.js");
 
-/// The viewer's script. The server's pages have it, too.
+/// The viewer's script, which the server's pages contain, too.
 const VIEWER: &str = include!("viewer/viewer.in");
 const STYLE: &str = include_str!("style.css");
 
-/// The reference's run with a named mistake switched on.
+/// The reference's run with a named mistake.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WhatIf {
     /// The mistake's key in the catalogue.
     pub id: String,
-    /// The mistake in a sentence.
+    /// The mistake as a sentence.
     pub sentence: String,
-    /// The motion, in the window of the evidence.
+    /// The motion, in the evidence's window of steps.
     pub track: Track,
-    /// Whether it writes the same bytes as the submission.
+    /// Whether the run writes the same bytes as the submission.
     pub equal: bool,
 }
 
 /// One judged trace.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
-    /// Verdict, findings, explanations.
+    /// The verdict, the findings and the explanations.
     pub check: Check<'a>,
     /// The scene.
     pub scene: &'a Scene,
-    /// The data of the viewer; `None` leaves viewer and plots out.
+    /// The data of the viewer; `None` omits viewer and plots.
     pub evidence: Option<&'a Evidence>,
-    /// The proof of the first explanation.
+    /// The reference's run with the first explanation's mistake, as proof.
     pub what_if: Option<&'a WhatIf>,
-    /// The hints of the page. Hidden parts are not in the file at all.
+    /// The hints of the page. The file does not contain hidden parts.
     pub hints: Hints,
-    /// Whether the reader of the page has the trace, so that commands may name it.
+    /// Whether the reader of the page has the trace, so that commands can name it.
     pub has_trace: bool,
 }
 
-/// Returns the viewer's script without what only its authors need: indentation and lines that are comments. No text in
-/// it spans several lines.
+/// Returns the viewer's script without indentation and comments. No string in it spans several lines.
 fn script() -> &'static str {
     static SCRIPT: LazyLock<String> = LazyLock::new(|| {
         let lines = VIEWER.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
@@ -83,20 +82,20 @@ fn script() -> &'static str {
     &SCRIPT
 }
 
-/// Returns the style sheet of all pages, for a page of the same design.
+/// Returns the style sheet of all pages, for other pages with the same design.
 #[must_use]
 pub fn style() -> String {
     format!("{}{STYLE}", fosssim_render::plot::STYLE)
 }
 
-/// Returns the sources of script and style by which the policy of a page that shows a report in a frame allows the
-/// report's: a frame inherits the policy of the page around it.
+/// Returns the policy sources for the script and the style of a report. A page that shows a report in a frame must
+/// allow them, because a frame inherits the policy of the page around it.
 #[must_use]
 pub fn framed_digests() -> [String; 2] {
     [script(), &style()].map(|text| format!("'{}'", digest(text)))
 }
 
-/// Renders a file around a body: one style sheet, at most one script, and a policy that allows these and nothing else.
+/// Renders a file around a body: one style sheet, at most one script, and a policy that allows only these.
 fn document(title: &str, body: &str, script: &str) -> String {
     let style = style();
     let allowed = if script.is_empty() { "'none'".to_owned() } else { format!("'{}'", digest(script)) };
@@ -119,7 +118,7 @@ fn document(title: &str, body: &str, script: &str) -> String {
     )
 }
 
-/// Renders a template, which can't fail: it is written to memory.
+/// Renders a template, which can't fail, because it is written to memory.
 fn render_template(template: &impl Template) -> String {
     template.render().unwrap_or_default()
 }

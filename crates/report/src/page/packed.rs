@@ -1,5 +1,5 @@
-//! Motions as the viewer reads them: doubles, exact to the last bit, deflated and in base64; motions that would take
-//! too much room as rounded positions.
+//! Motions in the form that the viewer reads: exact doubles, deflated and in base64. Motions that would take too much
+//! space become rounded positions.
 //!
 //! A rounded motion is a block of bytes: a count of exact records as an 8-byte integer, these records as doubles, then
 //! for each record and coordinate the difference from the record before, in units, zigzag-coded, seven bits a byte, the
@@ -7,26 +7,26 @@
 use base64::Engine;
 use fosssim_evidence::{Evidence, Track};
 
-/// The greatest size of exact motions of one case on a page, in bytes. The largest course scene (11
-/// particles, 1,601 records) takes 384 KB with both of them.
-pub const EXACT: usize = 540_000;
+/// The maximum size of one case's exact motions on a page, in bytes. The largest course scene (11 particles, 1,601
+/// records) takes 384 KB with both of them.
+pub const MAX_EXACT_BYTES: usize = 540_000;
 
-/// More raw bytes than this are not even tried.
-const TRIED: usize = 12 * EXACT;
+/// The maximum size of raw motions that are compressed, in bytes; larger ones are rounded immediately.
+const MAX_COMPRESSED_BYTES: usize = 12 * MAX_EXACT_BYTES;
 
-/// The number of exact numbers in a rounded motion: those around steps with details.
-const KEPT: usize = 16_000;
+/// The maximum number of exact values in a rounded motion, which are those around steps with details.
+const MAX_EXACT_VALUES: usize = 16_000;
 
-/// The unit of rounded positions, as a part of the bodies' extent.
-const UNITS: f64 = 65536.0;
+/// The number of units of rounded positions in the bodies' extent.
+const UNITS_PER_EXTENT: f64 = 65536.0;
 
-/// The mark of a value that has no number of units, or is no number.
-const BEYOND: i64 = 1 << 40;
+/// The mark of a value that is NaN, or too large to be a number of units.
+const NO_UNIT_MARK: i64 = 1 << 40;
 
-/// The precision with which motions are kept.
+/// The precision of stored motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Precision {
-    /// Exactly where there is room.
+    /// Exact, if there is space for it; otherwise rounded.
     AsRoomAllows,
     /// Rounded.
     Rounded,
@@ -35,13 +35,13 @@ pub(super) enum Precision {
 /// The rounding of motions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rounding {
-    /// The unit of positions.
+    /// The unit of positions, a power of two.
     pub(super) unit: f64,
-    /// The records that are exact, counted from the first that is kept.
+    /// The indices of the exact records, from the first that is stored.
     pub(super) exact: Vec<usize>,
 }
 
-/// Motions of one case in base64.
+/// The motions of one case, in base64.
 #[derive(Debug)]
 pub(super) struct PackedMotions {
     pub(super) blocks: Vec<String>,
@@ -51,15 +51,15 @@ pub(super) struct PackedMotions {
 impl PackedMotions {
     pub(super) fn from_evidence(evidence: &Evidence, tracks: &[(&str, &Track)], precision: Precision) -> Self {
         let raw: usize = tracks.iter().map(|(_, track)| 8 * track.values.len()).sum();
-        if precision == Precision::AsRoomAllows && raw <= TRIED {
+        if precision == Precision::AsRoomAllows && raw <= MAX_COMPRESSED_BYTES {
             let blocks: Vec<String> = tracks.iter().map(|(_, track)| base64(&bytes(&track.values))).collect();
-            if blocks.iter().map(String::len).sum::<usize>() <= EXACT {
+            if blocks.iter().map(String::len).sum::<usize>() <= MAX_EXACT_BYTES {
                 return Self { blocks, rounded: None };
             }
         }
-        let rounded = Rounding { unit: unit(tracks, evidence.layout.particles), exact: exact(evidence) };
+        let rounded = Rounding { unit: position_unit(tracks, evidence.layout.particles), exact: exact(evidence) };
         let blocks =
-            tracks.iter().map(|(_, track)| base64(&round(track, evidence.layout.particles, &rounded))).collect();
+            tracks.iter().map(|(_, track)| base64(&round_track(track, evidence.layout.particles, &rounded))).collect();
         Self { blocks, rounded: Some(rounded) }
     }
 }
@@ -73,8 +73,8 @@ fn base64(bytes: &[u8]) -> String {
     base64::engine::general_purpose::STANDARD.encode(miniz_oxide::deflate::compress_to_vec(bytes, 8))
 }
 
-/// Returns a power of two, so that multiples are exact.
-fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
+/// Returns the unit of positions, a power of two, so that multiples are exact.
+fn position_unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (_, track) in tracks {
         for record in track.values.chunks_exact((4 * particles).max(1)) {
@@ -84,13 +84,13 @@ fn unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
         }
     }
     let extent = if high > low { high - low } else { 1.0 };
-    (extent / UNITS).log2().floor().exp2()
+    (extent / UNITS_PER_EXTENT).log2().floor().exp2()
 }
 
-/// Returns the records around steps with details, the first wrong steps before others.
+/// Returns the indices of the records around steps with details, first those around the first wrong steps.
 fn exact(evidence: &Evidence) -> Vec<usize> {
     let (layout, window) = (evidence.layout, evidence.window);
-    let room = KEPT / (4 * layout.particles).max(1);
+    let room = MAX_EXACT_VALUES / (4 * layout.particles).max(1);
     let per_step = layout.records_per_step() as usize;
     let mut records = Vec::new();
     for up in evidence.inspected.iter().filter(|up| up.step > window.first && up.step <= window.last) {
@@ -101,7 +101,7 @@ fn exact(evidence: &Evidence) -> Vec<usize> {
     records
 }
 
-fn round(track: &Track, particles: usize, rounded: &Rounding) -> Vec<u8> {
+fn round_track(track: &Track, particles: usize, rounded: &Rounding) -> Vec<u8> {
     let size = 4 * particles;
     let kept: Vec<usize> = rounded.exact.iter().copied().take_while(|&record| record < track.records).collect();
     let mut out = (kept.len() as u64).to_le_bytes().to_vec();
@@ -114,7 +114,7 @@ fn round(track: &Track, particles: usize, rounded: &Rounding) -> Vec<u8> {
             let units = (value / rounded.unit).round();
             #[expect(clippy::cast_possible_truncation, reason = "it is below 2^40")]
             #[expect(clippy::cast_precision_loss, reason = "a power of two")]
-            let now = if units.abs() < BEYOND as f64 { units as i64 } else { BEYOND };
+            let now = if units.abs() < NO_UNIT_MARK as f64 { units as i64 } else { NO_UNIT_MARK };
             let difference = now - *last;
             *last = now;
             let mut code = ((difference << 1) ^ (difference >> 63)).cast_unsigned();
@@ -168,7 +168,7 @@ mod tests {
         let value = |k: usize| if k == 12 { f64::NAN } else { (k as f64 * 0.37).sin() * (1.0 + k as f64) };
         let all = evidence(3, 20, value);
         let Rounding { unit, .. } = pack(&all, Precision::Rounded).rounded.expect("rounded");
-        let bytes = round(&all.submission, 3, &Rounding { unit, exact: vec![2, 5] });
+        let bytes = round_track(&all.submission, 3, &Rounding { unit, exact: vec![2, 5] });
         assert_eq!(u64::from_le_bytes(bytes[..8].try_into().expect("eight")), 2);
         assert_eq!(bytes[8..8 + 96], super::bytes(&all.submission.values[24..36])[..]);
         let (mut at, mut last) = (8 + 2 * 96, [0_i64; 6]);
@@ -184,7 +184,7 @@ mod tests {
                 }
                 *last += (code >> 1).cast_signed() ^ -(code & 1).cast_signed();
                 match value.is_nan() {
-                    true => assert_eq!(*last, BEYOND),
+                    true => assert_eq!(*last, NO_UNIT_MARK),
                     false => assert!((*last as f64 * unit - value).abs() <= 0.5 * unit, "{value}"),
                 }
             }

@@ -1,35 +1,35 @@
-//! Which parts of each scene's card fit on a page.
+//! The size budget of a page, which decides the parts of each scene's card that fit.
 use super::{Card, script};
 
-/// The greatest size of a page in bytes: it is mailed, and opened on old machines.
-pub const BUDGET: usize = 2_950_000;
+/// The maximum size of a page, in bytes: it is sent by mail, and opened on old machines.
+pub const PAGE_BUDGET: usize = 2_950_000;
 
-/// The bytes of a page for the output of programs, of all scenes together.
-pub(super) const OUTPUTS: usize = 200_000;
+/// The maximum number of bytes on a page for the output of programs, in all scenes together.
+pub(super) const OUTPUT_BUDGET: usize = 200_000;
 
-/// The part of it for pictures and tables, before the first motion has room.
-const STILL: usize = BUDGET / 3 * 2;
+/// The part of the budget for pictures and tables, before the first motion gets space.
+const PICTURE_BUDGET: usize = PAGE_BUDGET / 3 * 2;
 
-/// Which parts of a scene's card fit on the page; each has those before it, too.
+/// The parts of a scene's card that fit on the page; each level includes the lower ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
-    /// The card's words only.
+    /// Only the text.
     Words,
-    /// Pictures.
+    /// Also the pictures.
     Pictures,
-    /// The rounded motion.
+    /// Also the rounded motion.
     Rounded,
-    /// The exact motion.
+    /// The exact motion instead of the rounded one.
     Exact,
 }
 
-/// Shares out the room: words always, then pictures in the order of the cards; then their motions as small as they get;
-/// then, again in the order of the cards, exact motions.
-pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<Room> {
+/// Distributes the size budget. Text always fits. Pictures come next, in the order of the cards, then motions in their
+/// smallest form, and last exact motions, again in the order of the cards.
+pub(super) fn distribute<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<Room> {
     let count = cards.clone().count();
     let mut rooms = vec![Room::Words; count];
-    let mut left = BUDGET - 2 * script().len() - OUTPUTS - 1_000 * count.min(1_000);
-    let mut still = STILL.min(left);
+    let mut left = PAGE_BUDGET - 2 * script().len() - OUTPUT_BUDGET - 1_000 * count.min(1_000);
+    let mut still = PICTURE_BUDGET.min(left);
     for (card, room) in cards.clone().zip(&mut rooms) {
         let Some((html, _)) = card.map(Card::sizes) else { continue };
         if html <= still {
@@ -57,8 +57,8 @@ pub(super) fn share_out<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clon
     rooms
 }
 
-/// Returns the text of the page about cards that have no room on it.
-pub(super) fn left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[Room]) -> String {
+/// Returns the page's text about cards that do not fit.
+pub(super) fn describe_left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[Room]) -> String {
     let with_motion = cards.zip(rooms).filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0));
     let of: Vec<Room> = with_motion.map(|(_, room)| *room).collect();
     let without = of.iter().filter(|room| matches!(room, Room::Words | Room::Pictures)).count();
@@ -66,10 +66,10 @@ pub(super) fn left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms:
     let scenes = |count: usize| if count == 1 { "one scene is".to_owned() } else { format!("{count} scenes are") };
     let mut says = Vec::new();
     if without > 0 {
-        says.push(format!("{} without the motion here, which each of them says", scenes(without)));
+        says.push(format!("{} without the motion on this page", scenes(without)));
     }
     if rounded > 0 {
-        says.push(format!("{} here with a motion that is rounded, which its viewer says", scenes(rounded)));
+        says.push(format!("{} with a rounded motion on this page", scenes(rounded)));
     }
     if says.is_empty() {
         return String::new();
@@ -88,13 +88,13 @@ mod tests {
     fn card(html: usize, data: usize, rounded: usize) -> Card {
         let text = |length| "x".repeat(length);
         let kept = serde_json::json!({"html": text(html), "data": text(data), "rounded": text(rounded)});
-        Card::from_kept(&kept.to_string()).expect("a card")
+        Card::from_stored(&kept.to_string()).expect("a card")
     }
 
     fn rooms(cards: &[Card]) -> (Vec<Room>, String) {
         let all = || cards.iter().map(Some);
-        let rooms = share_out(all());
-        let says = left_out(all(), &rooms);
+        let rooms = distribute(all());
+        let says = describe_left_out(all(), &rooms);
         (rooms, says)
     }
 

@@ -1,18 +1,19 @@
-//! The smallest scene for a cause, on a page: the scene, both motions, the values that differ, the computation by hand.
+//! The smallest scene for a cause, on a page: the scene, both motions, the differing values, and the computation by
+//! hand.
 use super::{Card, case::mistakes, markup::text, render_template};
-use crate::{smallest::title, words::first_divergence};
+use crate::{smallest::title, words::describe_first};
 use askama::Template;
 use fosssim_findings::smallest::SmallestScene;
 
 /// Renders a smallest scene, the `number`-th of its page, with its card if there is one.
-pub(super) fn article(small: &SmallestScene, card: Option<&Card>, number: usize) -> String {
+pub(super) fn render_article(small: &SmallestScene, card: Option<&Card>, number: usize) -> String {
     let key = format!("small-{number}");
     let mistakes = mistakes(&small.explanations[..small.explanations.len().min(1)], card.is_some_and(Card::has_values));
     let shown = card.map_or_else(|| mistakes.clone(), |card| card.html(&key, &mistakes));
     render_template(&SmallestContent { small, card, number, key: &key, shown })
 }
 
-/// A smallest scene, its card, and what the card shows.
+/// A smallest scene and its card, for the template.
 #[derive(Template)]
 #[template(path = "smallest.html")]
 struct SmallestContent<'a> {
@@ -23,14 +24,14 @@ struct SmallestContent<'a> {
     shown: String,
 }
 
-/// Returns what is written as for a terminal, each with its name: the scene first.
+/// Returns the preformatted parts, each with its name; the scene comes first.
 pub(super) fn parts(small: &SmallestScene) -> Vec<(&'static str, &str)> {
     let parts = [Some(small.xml.as_str()), small.differs.as_deref(), small.by_hand.as_deref()];
     let named = ["The scene", "The values that differ", "By hand"].into_iter().zip(parts);
     named.filter_map(|(name, words)| Some((name, words?))).collect()
 }
 
-/// Renders text as a terminal shows it.
-pub(super) fn pre(label: &str, words: &str) -> String {
+/// Renders preformatted text.
+pub(super) fn format_pre(label: &str, words: &str) -> String {
     format!("<pre tabindex=\"0\" role=\"region\" aria-label=\"{label}\">{}</pre>\n", text(words.trim_end()))
 }

@@ -1,14 +1,15 @@
-//! All steps in a row: right, wrong by itself, wrong as a consequence. Heights distinguish them without color.
+//! The strip of all steps: right, wrong by itself, or wrong as a consequence. Heights distinguish the kinds without
+//! color.
 use fosssim_evidence::{Step, StepClass};
 use std::fmt::Write;
 
-/// The strip's size.
+/// The width of the strip.
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 26.0;
-/// More steps than this share columns, which show the worst of theirs.
-const COLUMNS: usize = 480;
+/// The maximum number of columns. More steps share columns, which show their worst step.
+const MAX_COLUMNS: usize = 480;
 
-/// Renders the strip, with its counts in words.
+/// Renders the strip, and its counts as text.
 pub(super) fn html(steps: &[Step]) -> String {
     let of = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
     let words = format!(
@@ -25,7 +26,7 @@ pub(super) fn html(steps: &[Step]) -> String {
         "<p>{words}.</p>\n<svg class=\"steps\" viewBox=\"0 0 {WIDTH} {HEIGHT}\" role=\"img\" aria-label=\"All steps: \
          {words}\" preserveAspectRatio=\"none\">"
     );
-    let columns = steps.len().min(COLUMNS);
+    let columns = steps.len().min(MAX_COLUMNS);
     let worst = |column: usize| {
         let range = column * steps.len() / columns..(column + 1) * steps.len() / columns;
         steps[range].iter().map(|step| step.class).max_by_key(|class| severity(*class)).unwrap_or(StepClass::Unknown)

@@ -221,7 +221,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
         looks_like: None,
     };
     let case = Case { check, scene, evidence: Some(&evidence), what_if: Some(&what_if), hints, has_trace: false };
-    let card = Card::for_case(&case, 3).and_then(|card| Card::from_kept(&card.to_kept()));
+    let card = Card::for_case(&case, 3).and_then(|card| Card::from_stored(&card.to_stored()));
     let why = Reason::Wrong(WrongTrace::Untold);
     let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, why);
     result.disclosure = Some(Disclosure::from_outcome(&outcome, Rules::Fair));
@@ -377,12 +377,12 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     // Both the mistake and its group lead there, and a terminal names the same scene.
     let text = crate::formats::Format::Text.render(&[grade.clone()]);
     assert!(text.contains(&format!("Scene to look at first\n  WA {small}: ")), "{text}");
-    let place = format!("<a href=\"#scene-{}\">{small}</a>", graded::key(small));
-    assert!(html.matches(&place).count() == 2 && html.contains(&format!("id=\"scene-{}\"", graded::key(small))));
+    let place = format!("<a href=\"#scene-{}\">{small}</a>", graded::scene_key(small));
+    assert!(html.matches(&place).count() == 2 && html.contains(&format!("id=\"scene-{}\"", graded::scene_key(small))));
 }
 
 fn with_results(marking: Marking, results: Vec<SceneResult>) -> fosssim_grading::GroupGrade {
-    score::group("Group", marking, results.into_iter().map(|result| (result, false)).collect())
+    score::grade_group("Group", marking, results.into_iter().map(|result| (result, false)).collect())
 }
 
 /// Nothing on a page to hand out tells of groups that students do not see: no name, no points, no mistake, no output.

@@ -1,4 +1,4 @@
-//! The contents of a trace, for programs. For people the summary's own text is the report.
+//! The contents of a trace as JSON. For people, the summary's own text is the report.
 use super::super::view::SCHEMA;
 use fosssim_model::trace::{Summary, TraceError};
 use serde_json::{Value, json};
@@ -24,15 +24,15 @@ pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
         "all_bytes_read": !summary.trace.unread,
         "sha256": (!summary.trace.unread).then(|| summary.trace.sha256.to_string()),
         "trailing_bytes": summary.trace.trailing,
-        "damage": summary.trace.stopped.as_ref().map(place),
-        "oddities": { "count": summary.notes.0, "first": summary.notes.1.as_ref().map(place) },
+        "damage": summary.trace.stopped.as_ref().map(describe_place),
+        "oddities": { "count": summary.notes.0, "first": summary.notes.1.as_ref().map(describe_place) },
         "polynomials_per_pass": summary.polynomials_per_pass,
         "first_collisions": summary.collisions.iter().map(collision).collect::<Vec<_>>(),
     });
     format!("{value:#}\n")
 }
 
-/// Returns a malformation and its place.
-pub(super) fn place(error: &TraceError) -> Value {
+/// Returns the damage of a trace and its place.
+pub(super) fn describe_place(error: &TraceError) -> Value {
     json!({ "offset": error.offset, "frame": error.frame, "step": error.step, "message": error.what.to_string() })
 }

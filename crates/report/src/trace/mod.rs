@@ -1,4 +1,4 @@
-//! Reports about traces: what one holds, and one step of it.
+//! Reports about traces: the contents of a trace, and one of its steps.
 
 mod info;
 mod show;

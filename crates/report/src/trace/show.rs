@@ -1,4 +1,4 @@
-//! One step of a trace, in words or as JSON.
+//! One step of a trace, as text or JSON.
 use super::super::{
     detect::polynomial,
     style::{Look, Style},
@@ -13,24 +13,24 @@ use serde_json::{Value, json};
 /// A record of the step.
 #[derive(Debug, Clone)]
 pub struct ShownRecord {
-    /// The record's number in the trace, from 0.
+    /// The index of the record in the trace, from 0.
     pub number: u64,
-    /// Byte offset of its beginning.
+    /// The byte offset of the record.
     pub offset: u64,
-    /// Whether it is the step's mid record.
+    /// Whether the record is the step's mid record.
     pub mid: bool,
     /// The record's content.
     pub frame: Frame,
-    /// The record's oddities, in words.
+    /// Remarks about unusual properties of the record.
     pub notes: Vec<String>,
 }
 
-/// A step to be shown.
+/// The content of a report on a step.
 #[derive(Debug, Clone, Copy)]
 pub struct ShownStep<'a> {
-    /// The step, from 1; 0 is the initial record.
+    /// The step number, from 1; 0 is the initial record.
     pub step: u32,
-    /// Steps of the scene.
+    /// The number of steps of the scene.
     pub steps: u32,
     /// The step's records.
     pub records: &'a [ShownRecord],
@@ -39,7 +39,7 @@ pub struct ShownStep<'a> {
 }
 
 impl ShownStep<'_> {
-    /// Renders the step for people: both records, only the end record if the mid record is equal.
+    /// Renders the step for people: both records, or only the end record if both are equal.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         let heading = match self.step {

@@ -1,15 +1,15 @@
-//! Sentences about the common properties of scenes in which a program crashes or runs into a limit.
+//! Sentences about the common properties of scenes in which a program crashes or exceeds a limit.
 use fosssim_findings::located::{Content, LocatedFailure};
 
-/// The greatest number of other contents that are named if the scenes can't distinguish them from the first one.
-const NAMED: usize = 2;
+/// The maximum number of named contents that the scenes can't distinguish from the first one.
+const MAX_NAMED_CONTENTS: usize = 2;
 
-/// Returns the contents that they have in common, with counts, and where the first of them ends.
+/// Returns the common contents, with counts, and the end of the first failing scene.
 #[must_use]
 pub fn describe_located(found: &LocatedFailure) -> String {
     let LocatedFailure { failing, contents, failed, with, without, first, step } = found;
     let Some((place, others)) = contents.split_first() else { return String::new() };
-    let scenes = format!("{with} scenes {}", place_of(place));
+    let scenes = format!("{with} scenes {}", describe_place(place));
     let which = if failed == with { format!("All {scenes}") } else { format!("{failed} of the {scenes}") };
     let verb = failing.name();
     let record = match step {
@@ -21,16 +21,16 @@ pub fn describe_located(found: &LocatedFailure) -> String {
         {record}."
     );
     if !others.is_empty() {
-        let (shown, more) = others.split_at(others.len().min(NAMED));
-        let shown: Vec<String> = shown.iter().map(place_of).collect();
+        let (shown, more) = others.split_at(others.len().min(MAX_NAMED_CONTENTS));
+        let shown: Vec<String> = shown.iter().map(describe_place).collect();
         let more = if more.is_empty() { String::new() } else { format!("; and {} more", more.len()) };
-        text += &format!(" Just as likely: those {}{more}.", shown.join("; those "));
+        text += &format!(" Equally likely: those {}{more}.", shown.join("; those "));
     }
     text
 }
 
-/// Returns `in which the failsafe moves a zone (held by: a half-plane)`.
-fn place_of(content: &Content) -> String {
+/// Returns a relative clause on the contents, such as `in which the failsafe moves a zone (held by: a half-plane)`.
+fn describe_place(content: &Content) -> String {
     let Content { family, value } = content;
     let value = value.as_ref().map(|[axis, value]| format!(" ({axis}: {value})"));
     let is_step = family.starts_with("a step ");

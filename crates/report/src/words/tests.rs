@@ -43,7 +43,7 @@ fn a_limit_says_how_far_the_trace_came() {
     );
     let crash = SceneResult { ended: Some(RunEnd::Signalled(11)), ..crash };
     assert!(summary(&crash).ends_with("; the last complete record is that of step 4 of 15"), "{}", summary(&crash));
-    assert!(!ending(&crash).contains("step"), "the same in many scenes: {}", ending(&crash));
+    assert!(!describe_ending(&crash).contains("step"), "the same in many scenes: {}", describe_ending(&crash));
     assert!(stopped(Limit::Memory(512 << 20), 0).ends_with("(512 MiB) at step 1 of 15"));
 }
 

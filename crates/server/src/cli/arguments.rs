@@ -1,10 +1,10 @@
-//! The command line as typed.
+//! The command line's arguments.
 use crate::db::Address;
 use axum_client_ip::ClientIpSource;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use std::{net::SocketAddr, num::NonZeroUsize, path::PathBuf};
 
-/// The service of fosssim-oracle: takes submissions, grades them, keeps the grades.
+/// The service of fosssim-oracle: receives submissions, grades them and keeps the grades.
 #[derive(Debug, Parser)]
 #[command(name = "fosssim-server", version, max_term_width = 100)]
 pub(super) struct Arguments {
@@ -17,7 +17,7 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum LogFormat {
-    /// For people.
+    /// Text for people.
     Text,
     /// One JSON object per line.
     Json,
@@ -36,7 +36,7 @@ pub(super) enum Command {
     Openapi,
 }
 
-/// The places of database and files.
+/// The locations of the database and the files.
 #[derive(Debug, Args)]
 pub(super) struct StorageArguments {
     /// The folder of the database, the artifacts and the jobs' working folders.
@@ -45,8 +45,8 @@ pub(super) struct StorageArguments {
     /// The database: sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME. A SQLite file in the data folder by default.
     #[arg(long, value_name = "ADDRESS", env = "FOSSSIM_DATABASE", hide_env_values = true)]
     pub(super) database: Option<Address>,
-    /// A bucket for artifacts instead of a folder in the data folder: s3://BUCKET/PREFIX. Its access is set by the
-    /// usual variables, AWS_ACCESS_KEY_ID and so on.
+    /// A bucket for artifacts instead of a folder in the data folder: s3://BUCKET/PREFIX. The usual variables such as
+    /// AWS_ACCESS_KEY_ID give access.
     #[arg(long, value_name = "s3://BUCKET/PREFIX", env = "FOSSSIM_STORE")]
     pub(super) store: Option<String>,
 }
@@ -54,13 +54,13 @@ pub(super) struct StorageArguments {
 /// The settings of workers.
 #[derive(Debug, Args)]
 pub(super) struct WorkloadArguments {
-    /// Scenes of one grading at one time.
+    /// The number of scenes that run in parallel in one grading.
     #[arg(long, value_name = "N", default_value = "1")]
     pub(super) threads: NonZeroUsize,
-    /// The grader; by default the program fosssim-oracle next to this one.
+    /// The grader; by default the program fosssim-oracle in the folder of this one.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) grader: Option<PathBuf>,
-    /// After this many seconds without a sign of a worker its jobs are given to others.
+    /// The number of seconds without a sign of life after which a worker's jobs are given to other workers.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) lease: u64,
     /// The number of failures after which a job is given up.
@@ -68,58 +68,58 @@ pub(super) struct WorkloadArguments {
     pub(super) tries: u32,
 }
 
-/// Serves: takes submissions, shows grades, and grades with workers of its own.
+/// Runs the server: receives submissions, shows grades, and grades with its own workers.
 #[derive(Debug, Args)]
 pub(super) struct ServiceArguments {
     #[command(flatten)]
     pub(super) place: StorageArguments,
-    /// The address on which the server listens. By default only this machine can reach it: put a proxy with HTTPS in
-    /// front for others.
+    /// The address on which the server listens. By default only this machine can reach it. For other machines, put a
+    /// proxy with HTTPS in front.
     #[arg(long, value_name = "ADDRESS:PORT", default_value = "127.0.0.1:8080", env = "FOSSSIM_LISTEN")]
     pub(super) listen: SocketAddr,
-    /// The address that people know the server by, such as https://grades.example.org. With https, cookies are for
-    /// HTTPS only.
+    /// The public address of the server, such as https://grades.example.org. With https, cookies are sent only over
+    /// HTTPS.
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
     pub(super) public_url: Option<String>,
-    /// Gradings at one time in this process; 0 leaves them to other workers. One per core by default.
+    /// The number of parallel gradings in this process; 0 leaves them to other workers. One per core by default.
     #[arg(long, value_name = "N", env = "FOSSSIM_WORKERS")]
     pub(super) workers: Option<usize>,
-    /// Requests that an account may send in a minute.
+    /// The number of requests that an account may send per minute.
     #[arg(long, value_name = "N", default_value = "600", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) requests_per_minute: u32,
-    /// After this many seconds of silence a request is given up.
+    /// The number of seconds without data after which a request is aborted.
     #[arg(long, value_name = "SECONDS", default_value_t = 30, value_parser = clap::value_parser!(u64).range(1..=3600))]
     pub(super) patience: u64,
-    /// Uploads and downloads of an account at one time.
+    /// The number of parallel uploads and downloads of an account.
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) transfers: u32,
     /// The header in which the proxy in front names a client's address, such as XRealIp or RightmostXForwardedFor.
-    /// Without it limits by address apply to the other end of a connection: the proxy.
+    /// Without it, limits by address apply to the proxy.
     #[arg(long, value_name = "HEADER", env = "FOSSSIM_CLIENT_ADDRESS")]
     pub(super) client_address: Option<ClientIpSource>,
-    /// MiB of uploads and reports that are kept of a person, in all courses; 0 for no limit.
+    /// The limit in MiB for the uploads and reports of a person, in all courses; 0 for no limit.
     #[arg(long, value_name = "MIB", default_value_t = 4096)]
     pub(super) keep_of_person: u64,
-    /// MiB of uploads and reports that are kept of a course; 0 for no limit.
+    /// The limit in MiB for the uploads and reports of a course; 0 for no limit.
     #[arg(long, value_name = "MIB", default_value_t = 1024 * 1024)]
     pub(super) keep_of_course: u64,
-    /// MiB of uploads and reports that are kept in all; 0 for no limit.
+    /// The limit in MiB for all uploads and reports; 0 for no limit.
     #[arg(long, value_name = "MIB", default_value_t = 0)]
     pub(super) keep_in_all: u64,
-    /// If fewer MiB than this are free on the data folder's disk, uploads are rejected, so that accepted ones can be
+    /// The number of free MiB on the data folder's disk below which uploads are rejected, so that accepted ones can be
     /// graded.
     #[arg(long, value_name = "MIB", default_value_t = 512)]
     pub(super) low_water: u64,
     #[command(flatten)]
     pub(super) provider: ProviderArguments,
-    /// The days for which uploads and reports are kept; 0 is forever. Grades and their history always stay.
+    /// The number of days for which uploads and reports are kept; 0 for no limit. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0, env = "FOSSSIM_KEEP_DAYS")]
     pub(super) keep_days: u32,
     /// Allow learning platforms without HTTPS, for tests on one machine.
     #[arg(long)]
     pub(super) lti_over_http: bool,
-    /// On a new server: make a course with an assignment and a student, and write a program with a mistake for them
-    /// to hand in.
+    /// On a new server, creates a course with an assignment and a student, and writes a program with a mistake to
+    /// submit.
     #[arg(long)]
     pub(super) example: bool,
     #[command(flatten)]
@@ -133,7 +133,7 @@ pub(super) struct ProviderArguments {
     /// secret is in --oidc-secret-file, or in the variable FOSSSIM_OIDC_SECRET.
     #[arg(long, value_name = "URL", env = "FOSSSIM_OIDC_ISSUER", requires = "oidc_client")]
     pub(super) oidc_issuer: Option<String>,
-    /// The name of this server at the provider: the client ID.
+    /// This server's client ID at the provider.
     #[arg(long, value_name = "ID", env = "FOSSSIM_OIDC_CLIENT", requires = "oidc_issuer")]
     pub(super) oidc_client: Option<String>,
     /// The file with the client secret.
@@ -142,23 +142,23 @@ pub(super) struct ProviderArguments {
     /// The provider's name on the sign-in page. Its host by default.
     #[arg(long, value_name = "NAME", env = "FOSSSIM_OIDC_LABEL", requires = "oidc_issuer")]
     pub(super) oidc_label: Option<String>,
-    /// Only people with a confirmed mail address in this domain sign in. An account that staff made is theirs if its
-    /// login is the part before the @.
+    /// Only people with a confirmed mail address in this domain can sign in. An account that staff made belongs to the
+    /// person whose address has the account's login before the @.
     #[arg(long, value_name = "DOMAIN", env = "FOSSSIM_OIDC_DOMAIN", requires = "oidc_issuer")]
     pub(super) oidc_domain: Option<String>,
 }
 
-/// Returns the scheme and host of an address that people type.
+/// Returns the scheme and host of a typed address.
 fn public_url(text: &str) -> Result<String, String> {
     let place = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
     let host = place.map(|place| place.trim_end_matches('/')).unwrap_or_default();
     if host.is_empty() || host.contains(['/', '?', '#', '@', ' ']) {
-        return Err("an address must be https://HOST or http://HOST:PORT, without a path".to_owned());
+        return Err("an address must be https://HOST or http://HOST:PORT without a path".to_owned());
     }
     Ok(text.trim_end_matches('/').to_owned())
 }
 
-/// Prints a link that signs an administrator in once: for administrators who have lost theirs.
+/// Prints a link that signs an administrator in once, for administrators who cannot sign in otherwise.
 #[derive(Debug, Args)]
 pub(super) struct AdminLinkArguments {
     #[command(flatten)]
@@ -166,7 +166,7 @@ pub(super) struct AdminLinkArguments {
     /// The administrator's login.
     #[arg(default_value = "admin")]
     pub(super) login: String,
-    /// The address that people know the server by.
+    /// The public address of the server.
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url,
         default_value = "http://127.0.0.1:8080")]
     pub(super) public_url: String,
@@ -178,22 +178,23 @@ pub(super) struct AdminLinkArguments {
 pub(super) struct BackupArguments {
     #[command(flatten)]
     pub(super) place: StorageArguments,
-    /// The folder to make.
+    /// The new folder for the backup.
     #[arg(value_name = "FOLDER")]
     pub(super) output: PathBuf,
 }
 
-/// Makes a data folder from a backup. The data folder, and the database of PostgreSQL, must be empty.
+/// Creates a data folder from a backup. The data folder must be empty, and so must a PostgreSQL database.
 #[derive(Debug, Args)]
 pub(super) struct RestoreArguments {
     #[command(flatten)]
     pub(super) place: StorageArguments,
-    /// The folder that `backup` made.
+    /// A folder that `backup` created.
     #[arg(value_name = "FOLDER")]
     pub(super) backup: PathBuf,
 }
 
-/// Reports by the exit code whether a server (by its address) or a worker (by its data folder) is well: for probes.
+/// Checks whether a server (by its address) or a worker (by its data folder) is healthy, and reports it by the exit
+/// code, for probes.
 #[derive(Debug, Args)]
 pub(super) struct HealthArguments {
     /// The server's address.
@@ -204,7 +205,7 @@ pub(super) struct HealthArguments {
     pub(super) data: PathBuf,
 }
 
-/// Checks an upload; the server calls this for each archive.
+/// Checks an upload; the server runs this command for each archive.
 #[derive(Debug, Args)]
 #[command(hide = true)]
 pub(super) struct LookThroughArguments {
@@ -219,23 +220,23 @@ pub(super) struct LookThroughArguments {
     pub(super) file: PathBuf,
 }
 
-/// Grades the submissions that wait in the queue.
+/// Grades the submissions in the queue.
 #[derive(Debug, Args)]
 pub(super) struct WorkerArguments {
     #[command(flatten)]
     pub(super) place: StorageArguments,
     #[command(flatten)]
     pub(super) work: WorkloadArguments,
-    /// Gradings at one time. One per core by default.
+    /// The number of parallel gradings. One per core by default.
     #[arg(long, value_name = "N")]
     pub(super) slots: Option<NonZeroUsize>,
-    /// The server on another machine to work for, by its address; then this worker needs no database.
+    /// The address of the server to work for, on another machine; then the worker needs no database.
     #[arg(long, value_name = "URL", conflicts_with = "database", value_parser = public_url)]
     pub(super) server: Option<String>,
-    /// The file with the worker's token, which an administrator makes on the page "Administration".
+    /// The file with the worker's token, which an administrator creates on the page "Administration".
     #[arg(long, value_name = "FILE")]
     pub(super) token_file: Option<PathBuf>,
-    /// The name of this worker. Host and process by default.
+    /// The name of this worker; by default the host and the process number.
     #[arg(long)]
     pub(super) name: Option<String>,
 }

@@ -1,4 +1,4 @@
-//! The places in the data folder.
+//! The folders and files in the data folder.
 use super::arguments::StorageArguments;
 use crate::{
     db::{Address, Database},
@@ -12,41 +12,41 @@ use std::{
     time::Duration,
 };
 
-/// The longest time that an unfinished upload or job is kept.
-const FORGOTTEN: Duration = Duration::from_secs(24 * 3600);
+/// The age after which an unfinished upload or job is removed.
+const LEFTOVER_AGE: Duration = Duration::from_secs(24 * 3600);
 
 /// The data folder's parts.
 #[derive(Debug, Clone)]
 pub(super) struct ServiceFolders {
-    /// Database and store, readable only by the server's user.
+    /// The folder of database and store, readable only by the server's user.
     pub(super) data: PathBuf,
     pub(super) incoming: PathBuf,
     pub(super) backups: PathBuf,
-    /// A program with a mistake, for who tries the service.
+    /// The file with a flawed program, for people who try the service.
     pub(super) flawed_program: PathBuf,
 }
 
 impl ServiceFolders {
-    /// Finds the data folder of a server that was here; makes none.
+    /// Finds the data folder of an earlier server, without creating one.
     pub(super) fn find(place: &StorageArguments) -> Result<Self> {
         if !place.data.exists() {
-            return Err(missing("data folder", &place.data));
+            return Err(missing_error("data folder", &place.data));
         }
         Self::find_database(place)
     }
 
-    /// Finds the folder for commands that need the database only, which may be elsewhere.
+    /// Finds the folder for commands that need only the database, which may be elsewhere.
     pub(super) fn find_database(place: &StorageArguments) -> Result<Self> {
         if place.database.is_none() && !place.data.exists() {
-            return Err(missing("data folder", &place.data));
+            return Err(missing_error("data folder", &place.data));
         }
         match database(place, &place.data) {
-            Address::Sqlite(file) if !file.is_file() => Err(missing("database", &file)),
+            Address::Sqlite(file) if !file.is_file() => Err(missing_error("database", &file)),
             _ => Self::open(place),
         }
     }
 
-    /// Makes the data folder, or checks that it is the server's alone.
+    /// Creates the data folder, or checks that only the server can access it.
     pub(super) fn open(place: &StorageArguments) -> Result<Self> {
         let data = std::path::absolute(&place.data)?;
         let data = data.as_path();
@@ -59,11 +59,10 @@ impl ServiceFolders {
         }
         let metadata = fs::metadata(data).with_context(|| format!("cannot read {}", data.display()))?;
         if !metadata.is_dir() {
-            bail!("{} must be a folder: name the server's own folder by --data", data.display());
+            bail!("{} must be a folder; choose the server's folder with --data", data.display());
         }
-        tempfile::tempfile_in(data).with_context(|| {
-            format!("cannot write in {}: name a folder of the server's own by --data", data.display())
-        })?;
+        tempfile::tempfile_in(data)
+            .with_context(|| format!("cannot write in {}; choose the server's folder with --data", data.display()))?;
         let mode = metadata.permissions().mode();
         if mode & 0o077 != 0 {
             tracing::warn!(folder = %data.display(), "others can read the data folder: chmod 700 it");
@@ -84,14 +83,13 @@ impl ServiceFolders {
         }
     }
 
-    /// Makes the folders of uploads and of jobs, and removes what dead servers and workers left behind in them long
-    /// ago.
+    /// Creates the folders of uploads and jobs, and removes old leftovers of killed servers and workers.
     pub(super) fn clear(&self) -> Result<()> {
         for folder in [self.incoming.clone(), self.data.join("work")] {
             fs::create_dir_all(&folder).with_context(|| format!("cannot make {}", folder.display()))?;
             for entry in fs::read_dir(&folder)?.flatten() {
                 let written = entry.metadata().and_then(|data| data.modified());
-                if written.is_ok_and(|written| written.elapsed().is_ok_and(|age| age > FORGOTTEN)) {
+                if written.is_ok_and(|written| written.elapsed().is_ok_and(|age| age > LEFTOVER_AGE)) {
                     drop(fs::remove_file(entry.path()).or_else(|_| fs::remove_dir_all(entry.path())));
                 }
             }
@@ -120,6 +118,6 @@ fn database(place: &StorageArguments, data: &Path) -> Address {
     place.database.clone().unwrap_or_else(|| Address::Sqlite(data.join("fosssim.db")))
 }
 
-fn missing(what: &str, path: &Path) -> Error {
-    anyhow!("there is no {what} {}: start the server once, or name its folder by --data", path.display())
+fn missing_error(what: &str, path: &Path) -> Error {
+    anyhow!("there is no {what} {}; start the server once, or choose its folder with --data", path.display())
 }

@@ -1,22 +1,22 @@
-//! `health`: whether a server or a worker is well, by the exit code: for probes of containers, which have no other
-//! tool.
+//! The command `health`, which reports by its exit code whether a server or a worker is healthy, for probes in
+//! containers without other tools.
 use super::{arguments::HealthArguments, heartbeat};
 use std::time::Duration;
 
-/// The longest time that the server may take.
-const PATIENCE: Duration = Duration::from_secs(5);
+/// The maximum time to wait for the server's answer.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(5);
 
-/// Returns whether it is.
+/// Prints the state of the server or worker, and returns whether it is healthy.
 pub(super) fn run(arguments: &HealthArguments) -> bool {
     let Some(server) = &arguments.server else {
         let alive = heartbeat::is_alive(&arguments.data);
         match alive {
             true => println!("alive"),
-            false => println!("no sign of life lately of a server or worker with --data {}", arguments.data.display()),
+            false => println!("no recent heartbeat of a server or worker with --data {}", arguments.data.display()),
         }
         return alive;
     };
-    let agent: ureq::Agent = ureq::Agent::config_builder().timeout_global(Some(PATIENCE)).build().into();
+    let agent: ureq::Agent = ureq::Agent::config_builder().timeout_global(Some(ANSWER_TIMEOUT)).build().into();
     match agent.get(format!("{server}/ready")).call() {
         Ok(_) => {
             println!("ready");

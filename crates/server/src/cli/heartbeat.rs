@@ -1,5 +1,5 @@
-//! Signs of life for monitors of this process: systemd (`Type=notify` with `WatchdogSec`), and probes that read a file
-//! in the data folder.
+//! Heartbeats for monitors of this process: systemd (`Type=notify` with `WatchdogSec`), and probes that read a file in
+//! the data folder.
 use sd_notify::NotifyState;
 use std::{
     fs,
@@ -7,19 +7,19 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// The file that is touched, in the data folder.
-const FILE: &str = "alive";
+/// The name of the heartbeat file in the data folder.
+const HEARTBEAT_FILE: &str = "alive";
 
-/// The time between two signs, unless the watchdog wants them sooner.
-const EVERY: Duration = Duration::from_secs(10);
+/// The time between two heartbeats, unless the watchdog requires a shorter one.
+const BEAT_INTERVAL: Duration = Duration::from_secs(10);
 
-/// The longest time that a check of the process itself may take.
-const PATIENCE: Duration = Duration::from_secs(10);
+/// The maximum duration of a health check of the process.
+const CHECK_TIMEOUT: Duration = Duration::from_secs(10);
 
-/// A process that has been silent for this time counts as dead.
-const SILENCE: Duration = Duration::from_secs(60);
+/// The time without a heartbeat after which a process counts as dead.
+const MAX_SILENCE: Duration = Duration::from_secs(60);
 
-/// Reports that the process has begun its work.
+/// Reports that the process is ready.
 pub(super) fn say_ready() {
     tell(&[NotifyState::Ready]);
 }
@@ -35,27 +35,27 @@ fn tell(state: &[NotifyState<'_>]) {
     }
 }
 
-/// Gives signs forever, whenever a check finds that all is well.
+/// Sends a heartbeat whenever a health check succeeds, forever.
 pub(super) async fn beat(data: PathBuf, is_well: impl AsyncFn() -> bool) {
     let watchdog = sd_notify::watchdog_enabled();
-    let every = watchdog.map_or(EVERY, |watchdog| (watchdog / 3).min(EVERY));
+    let every = watchdog.map_or(BEAT_INTERVAL, |watchdog| (watchdog / 3).min(BEAT_INTERVAL));
     loop {
-        match tokio::time::timeout(PATIENCE, is_well()).await {
+        match tokio::time::timeout(CHECK_TIMEOUT, is_well()).await {
             Ok(true) => {
                 if watchdog.is_some() {
                     tell(&[NotifyState::Watchdog]);
                 }
-                // A disk that is full is no reason to be started again.
-                drop(fs::write(data.join(FILE), b""));
+                // A full disk must not cause a restart.
+                drop(fs::write(data.join(HEARTBEAT_FILE), b""));
             }
-            _ => tracing::warn!("no sign of life: the database does not answer"),
+            _ => tracing::warn!("no heartbeat is sent, because the database does not answer"),
         }
         tokio::time::sleep(every).await;
     }
 }
 
-/// Returns whether a process with this data folder has given a sign lately.
+/// Returns whether a process with this data folder has sent a heartbeat recently.
 pub(super) fn is_alive(data: &Path) -> bool {
-    let touched = fs::metadata(data.join(FILE)).and_then(|data| data.modified());
-    touched.is_ok_and(|touched| SystemTime::now().duration_since(touched).is_ok_and(|age| age < SILENCE))
+    let touched = fs::metadata(data.join(HEARTBEAT_FILE)).and_then(|data| data.modified());
+    touched.is_ok_and(|touched| SystemTime::now().duration_since(touched).is_ok_and(|age| age < MAX_SILENCE))
 }

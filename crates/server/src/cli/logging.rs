@@ -1,9 +1,9 @@
-//! The log, on standard error. Messages can be read alone; what varies is in fields. Secrets are in neither: types that
-//! hold one do not show it.
+//! The log, on standard error. Messages are constant, and variable parts are in fields. The log contains no secrets,
+//! because types that hold one do not show it.
 use super::arguments::LogFormat;
 use tracing_subscriber::{Layer, filter::LevelFilter, fmt, layer::SubscriberExt, util::SubscriberInitExt};
 
-/// Begins to log.
+/// Starts the log.
 pub(super) fn begin(format: LogFormat) {
     let level = match std::env::var("FOSSSIM_LOG").as_deref() {
         Ok("debug") => LevelFilter::DEBUG,
@@ -11,8 +11,8 @@ pub(super) fn begin(format: LogFormat) {
         Ok("error") => LevelFilter::ERROR,
         _ => LevelFilter::INFO,
     };
-    // A log that can't be written, as on a full disk, is no reason to stop answering. A report of the fault would be
-    // written to the same log, and panic.
+    // If the log can't be written, for example on a full disk, the service must go on. A report of the error would go
+    // to the same log, and panic.
     let log = fmt::layer().with_writer(std::io::stderr).with_target(false).log_internal_errors(false);
     let log = match format {
         LogFormat::Text => log.with_ansi(std::io::IsTerminal::is_terminal(&std::io::stderr())).boxed(),

@@ -1,4 +1,4 @@
-//! `look-through`: examines an uploaded file in a process of its own, which may be ended at any moment.
+//! The command `look-through`, which checks an uploaded file in a separate process that can be killed at any time.
 use super::arguments::LookThroughArguments;
 use crate::web;
 use anyhow::Result;

@@ -28,7 +28,7 @@ pub fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<u8> {
-    // This command uses neither threads nor a log: it has little memory, and prints only its answer.
+    // This command uses neither threads nor a log, because it has little memory and prints only its answer.
     if let Command::LookThrough(arguments) = &arguments.command {
         return look::run(arguments).map(|()| 0);
     }
@@ -49,7 +49,7 @@ fn run(arguments: &Arguments) -> Result<u8> {
     })
 }
 
-/// Returns a token that is canceled by the first SIGINT or SIGTERM; a second one ends the process immediately.
+/// Returns a token that the first SIGINT or SIGTERM cancels; a second one ends the process immediately.
 fn until_signalled() -> Result<CancellationToken> {
     use tokio::signal::unix::{SignalKind, signal};
     let (mut interrupt, mut terminate) = (signal(SignalKind::interrupt())?, signal(SignalKind::terminate())?);
@@ -65,7 +65,7 @@ fn until_signalled() -> Result<CancellationToken> {
                 std::process::exit(130);
             }
             heartbeat::say_stopping();
-            tracing::info!("stopping; jobs are given back (once more to stop immediately)");
+            tracing::info!("stopping; jobs are returned to the queue (press again to stop immediately)");
             cancelled.cancel();
         }
     });

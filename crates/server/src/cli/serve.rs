@@ -1,9 +1,9 @@
-//! `serve`: the server, with workers of its own.
+//! The command `serve`: the server, with its own workers.
 use super::{
     arguments::{AdminLinkArguments, ProviderArguments, ServiceArguments},
     folders::ServiceFolders,
     heartbeat, until_signalled,
-    worker::{LocalWorkers, grader, policy},
+    worker::{LocalWorkers, find_grader, policy},
 };
 use crate::{
     db::{self, Address, Database},
@@ -27,27 +27,27 @@ use std::{
     time::{Duration, SystemTime, UNIX_EPOCH},
 };
 
-/// A day in seconds.
-const DAY: u64 = 24 * 3600;
+/// The number of seconds of a day.
+const DAY_SECONDS: u64 = 24 * 3600;
 
-/// A mebibyte.
+/// The number of bytes of a mebibyte.
 const MIB: u64 = 1 << 20;
 
-/// The longest time that the grader may take to answer.
-const ANSWER: Duration = Duration::from_secs(20);
+/// The maximum time to wait for the grader's answer.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
 
-/// The time between two searches for data that are no longer kept.
-const GIVE_UP_EVERY: Duration = Duration::from_secs(DAY / 4);
+/// The time between two searches for expired data.
+const CLEANUP_INTERVAL: Duration = Duration::from_secs(DAY_SECONDS / 4);
 
 pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     let stop = until_signalled()?;
-    // First of all: a server that can't listen leaves nothing behind.
+    // Listen first, so that a server that can't listen changes nothing.
     let listener = tokio::net::TcpListener::bind(arguments.listen).await.with_context(|| {
-        format!("cannot listen on {}; name another address by --listen ADDRESS:PORT", arguments.listen)
+        format!("cannot listen on {}; choose another address with --listen ADDRESS:PORT", arguments.listen)
     })?;
     let folders = ServiceFolders::open(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
-    bring_up_to_date(&database, &folders, &address).await?;
+    update_tables(&database, &folders, &address).await?;
     let store = folders.store(&arguments.place)?;
     folders.clear()?;
     let notifier = Notifier::default();
@@ -58,9 +58,9 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     let provider = provider(&arguments.provider)?;
     let lti = Arc::new(Lti::new(arguments.lti_over_http));
     let options = Options {
-        suites: suites(arguments.work.grader.as_deref()).await,
-        grader: grader(arguments.work.grader.as_deref()).ok(),
-        checker: checker(arguments.work.grader.as_deref()).await,
+        suites: read_suites(arguments.work.grader.as_deref()).await,
+        grader: find_grader(arguments.work.grader.as_deref()).ok(),
+        checker: read_checker(arguments.work.grader.as_deref()).await,
         incoming: folders.incoming.clone(),
         low_water: arguments.low_water * MIB,
         public: public.clone(),
@@ -83,13 +83,13 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
         async move { ledger::tick(&database, &policy).await }
     };
     tokio::spawn(lti::send_scores(database.clone(), notifier.clone(), policy, lti, look, stop.clone()));
-    let keep = (arguments.keep_days > 0).then(|| Duration::from_secs(u64::from(arguments.keep_days) * DAY));
-    tokio::spawn(give_up(database.clone(), store.clone(), keep));
+    let keep = (arguments.keep_days > 0).then(|| Duration::from_secs(u64::from(arguments.keep_days) * DAY_SECONDS));
+    tokio::spawn(clean_up(database.clone(), store.clone(), keep));
     let slots = match arguments.workers {
         Some(workers) => NonZeroUsize::new(workers),
         None => Some(std::thread::available_parallelism().unwrap_or(NonZeroUsize::MIN)),
     };
-    let grader = slots.map(|_| grader(arguments.work.grader.as_deref())).transpose()?;
+    let grader = slots.map(|_| find_grader(arguments.work.grader.as_deref())).transpose()?;
     let working = grader.map(|grader| {
         let local =
             LocalWorkers { folders: folders.clone(), database: database.clone(), store, notifier, policy, grader };
@@ -100,7 +100,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     greet(&app, [&local, &public], example, arguments.work.grader.as_deref()).await?;
     heartbeat::say_ready();
     let seen = database.clone();
-    tokio::spawn(heartbeat::beat(folders.data.clone(), async move || seen.is_well().await));
+    tokio::spawn(heartbeat::beat(folders.data.clone(), async move || seen.is_healthy().await));
     let serving = net::serve(listener, web::router(app), stop.clone());
     match working {
         None => serving.await?,
@@ -114,7 +114,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     Ok(())
 }
 
-/// Returns the provider at which people sign in. Its secret is no option, which lists of processes show.
+/// Returns the provider at which people sign in. Its secret is not an option, because lists of processes show options.
 fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
     let ProviderArguments { oidc_issuer, oidc_client, oidc_secret_file, oidc_label, oidc_domain } = arguments;
     let (Some(issuer), Some(client)) = (oidc_issuer, oidc_client) else { return Ok(None) };
@@ -126,77 +126,77 @@ fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
     Ok(Some(Provider::new(issuer.clone(), client, secret, oidc_label.clone(), oidc_domain.clone())?))
 }
 
-/// Prints to standard output, for people and scripts, where the server listens and how to sign in. The log is on
-/// standard error and holds no secrets. With an example, it prints also where the example's program is.
+/// Prints the server's address and a way to sign in to standard output, for people and scripts. The log is on standard
+/// error and contains no secrets. With an example, the path of its program is printed, too.
 async fn greet(app: &App, [local, public]: [&str; 2], example: Option<&Path>, grader: Option<&Path>) -> Result<()> {
     let link = app.first_link().await.map_err(|problem| anyhow!("{}", problem.detail))?;
     let mut output = std::io::stdout();
     writeln!(output, "Listening on {local}")?;
     if let Some(link) = link {
-        writeln!(output, "Sign in as administrator, once, by {public}/welcome/{}", link.reveal())?;
+        writeln!(output, "Sign in as administrator, once, at {public}/welcome/{}", link.reveal())?;
     }
     if let Some(program) = example {
         let link = app.example().await.map_err(|problem| anyhow!("{}: {}", problem.detail, problem.remedy))?;
         if let Some(link) = link {
-            writeln!(output, "Sign in as a student, once, by {public}/welcome/{}", link.reveal())?;
+            writeln!(output, "Sign in as a student, once, at {public}/welcome/{}", link.reveal())?;
         }
         if !program.exists() {
             let place = program.to_str().context("the data folder's name is not UTF-8")?;
-            answer(grader, &["demo", "--program", place])
+            run_grader(grader, &["demo", "--program", place])
                 .await
-                .context("no program with a mistake could be written")?;
+                .context("the program with a mistake could not be written")?;
         }
-        writeln!(output, "A program with a mistake, to hand in: {}", program.display())?;
+        writeln!(output, "A program with a mistake, to submit: {}", program.display())?;
     }
     Ok(output.flush()?)
 }
 
-/// Removes from time to time, forever, what is older than is kept, and what a killed server left behind.
-async fn give_up(database: Database, store: Store, keep: Option<Duration>) {
+/// Deletes expired artifacts and leftovers of killed servers, periodically.
+async fn clean_up(database: Database, store: Store, keep: Option<Duration>) {
     loop {
-        match retention::give_up(&database, &store, keep, retention::LEAST_AGE).await {
-            Ok(found) if found == retention::GivenUp::default() => {}
+        match retention::give_up(&database, &store, keep, retention::MIN_AGE).await {
+            Ok(found) if found == retention::RemovalCounts::default() => {}
             Ok(found) => tracing::info!(found.submissions, found.artifacts, "old uploads and reports were removed"),
             Err(error) => tracing::warn!(%error, "old uploads and reports could not be removed"),
         }
-        tokio::time::sleep(GIVE_UP_EVERY).await;
+        tokio::time::sleep(CLEANUP_INTERVAL).await;
     }
 }
 
-/// Gets the suites that come with the grader. A server whose workers are elsewhere may have no grader.
-async fn suites(named: Option<&Path>) -> Suites {
-    let asked = async { Ok(Suites::read(&answer(named, &["suite", "list", "--format", "json"]).await?)?) };
+/// Reads the names of the grader's suites. A server whose workers are elsewhere may have no grader.
+async fn read_suites(named: Option<&Path>) -> Suites {
+    let asked = async { Ok(Suites::read(&run_grader(named, &["suite", "list", "--format", "json"]).await?)?) };
     asked.await.unwrap_or_else(|error: anyhow::Error| {
         tracing::warn!(error = format!("{error:#}"), "the grader does not list its suites: any name is accepted");
         Suites::default()
     })
 }
 
-/// Gets the page that checks traces in a browser from the grader. A grader that was built without it has none.
-async fn checker(named: Option<&Path>) -> Option<String> {
-    let asked = async { Ok(String::from_utf8(answer(named, &["page", "--output", "-"]).await?)?) };
+/// Reads the page that checks traces in a browser from the grader; `None` if the grader was built without it.
+async fn read_checker(named: Option<&Path>) -> Option<String> {
+    let asked = async { Ok(String::from_utf8(run_grader(named, &["page", "--output", "-"]).await?)?) };
     let asked = asked.await.inspect_err(|error: &anyhow::Error| {
         tracing::info!(error = format!("{error:#}"), "there is no page at /check that checks traces in a browser");
     });
     asked.ok().filter(|page| !page.is_empty())
 }
 
-/// Returns the grader's answer to these words.
-async fn answer(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
-    let mut command = tokio::process::Command::new(grader(named)?);
+/// Runs the grader with arguments and returns its standard output.
+async fn run_grader(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
+    let mut command = tokio::process::Command::new(find_grader(named)?);
     command.args(words).stdin(std::process::Stdio::null()).kill_on_drop(true);
-    let said = tokio::time::timeout(ANSWER, command.output()).await.context("it does not answer")??;
+    let said = tokio::time::timeout(ANSWER_TIMEOUT, command.output()).await.context("it does not answer")??;
     if !said.status.success() {
         bail!("{}", String::from_utf8_lossy(&said.stderr).trim());
     }
     Ok(said.stdout)
 }
 
-/// Updates the tables; a SQLite database that holds something is copied before.
-async fn bring_up_to_date(database: &Database, folders: &ServiceFolders, address: &Address) -> Result<()> {
+/// Updates the tables. A SQLite database with data is copied before.
+async fn update_tables(database: &Database, folders: &ServiceFolders, address: &Address) -> Result<()> {
     let version = db::version(database).await?;
     if version > 0 && version < db::LATEST && matches!(address, Address::Sqlite(_)) {
-        let copy = copy_before(database, &folders.backups, version).await;
+        let copy = back_up(database, &folders.backups, version).await;
         let copy = copy.context("the backup before the tables change")?;
         tracing::info!(copy = %copy.display(), "the database was copied before its tables change");
     }
@@ -207,9 +207,9 @@ async fn bring_up_to_date(database: &Database, folders: &ServiceFolders, address
     Ok(())
 }
 
-/// Copies a SQLite database into a new file, which gets its name only when it is whole. A file that a killed server
-/// left is removed.
-async fn copy_before(database: &Database, backups: &Path, version: i64) -> Result<PathBuf> {
+/// Copies a SQLite database into a new file, which gets its name when it is complete. An incomplete file of a killed
+/// server is removed.
+async fn back_up(database: &Database, backups: &Path, version: i64) -> Result<PathBuf> {
     std::fs::create_dir_all(backups)?;
     for entry in std::fs::read_dir(backups)?.flatten() {
         if entry.file_name().to_string_lossy().contains(".partial") {

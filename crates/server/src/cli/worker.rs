@@ -1,4 +1,4 @@
-//! `worker`: grades what waits in the queue.
+//! The command `worker`, which grades the jobs of the queue.
 use super::{
     arguments::{WorkerArguments, WorkloadArguments},
     folders::ServiceFolders,
@@ -30,9 +30,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
     let folders = ServiceFolders::find_database(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
     if db::version(&database).await? != db::LATEST {
-        bail!(
-            "the tables of {address} are not those of this version: start the server first, it brings them up to date"
-        );
+        bail!("the tables of {address} have another version; start the server first, which updates them");
     }
     let store = folders.store(&arguments.place)?;
     let notifier = Notifier::default();
@@ -42,11 +40,11 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
         store,
         notifier,
         policy: policy(&arguments.work),
-        grader: grader(arguments.work.grader.as_deref())?,
+        grader: find_grader(arguments.work.grader.as_deref())?,
     };
     heartbeat::say_ready();
     let seen = database.clone();
-    tokio::spawn(heartbeat::beat(local.folders.data.clone(), async move || seen.is_well().await));
+    tokio::spawn(heartbeat::beat(local.folders.data.clone(), async move || seen.is_healthy().await));
     local.work(&arguments.work, arguments.slots, arguments.name.as_deref(), stop).await?;
     database.close().await;
     Ok(())
@@ -57,18 +55,18 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let token = std::fs::read_to_string(token_file)
         .with_context(|| format!("cannot read the token in {}", token_file.display()))?;
     let token = token.trim();
-    // The text is not repeated: it may be another secret.
+    // The text is not repeated, because it may be another secret.
     if !token.starts_with("fsw_") || !token.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_') {
         bail!("{} holds no worker's token (fsw_...)", token_file.display());
     }
-    let grader = grader(arguments.work.grader.as_deref())?;
+    let grader = find_grader(arguments.work.grader.as_deref())?;
     let folders = ServiceFolders::open(&arguments.place)?;
     let name = unique_name(arguments.name.as_deref());
     folders.clear()?;
     let source = RemoteSource::new(server, token, &name);
     let folder = folders.work(&name);
     heartbeat::say_ready();
-    // A worker that can't reach its server is well: it keeps trying, and keeps what it holds.
+    // A worker that can't reach its server is healthy: it keeps trying, and keeps its jobs.
     tokio::spawn(heartbeat::beat(folders.data.clone(), async || true));
     let slots = slots(arguments.slots);
     tracing::info!(worker = name, server, slots, grader = %grader.display(), "working");
@@ -80,36 +78,36 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     Ok(())
 }
 
-/// Makes a worker's name unique: the process adds what distinguishes two workers of one name.
+/// Makes a worker's name unique, by adding the process number.
 fn unique_name(name: Option<&str>) -> String {
-    let name = strip_controls(name.map_or_else(host, str::to_owned).as_str());
+    let name = strip_controls(name.map_or_else(host_name, str::to_owned).as_str());
     format!("{name}.{}.{}", std::process::id(), &secret::random_hex()[..6])
 }
 
-/// Returns the requested slots, or one per core.
+/// Returns the requested number of slots, or the number of cores.
 fn slots(slots: Option<NonZeroUsize>) -> usize {
     slots.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
 
-/// Returns the queue's patience as the arguments have it.
+/// Returns the queue's policy from the arguments.
 pub(super) fn policy(work: &WorkloadArguments) -> QueuePolicy {
     let lease = Duration::from_secs(work.lease);
     QueuePolicy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
 }
 
-/// Returns the named grader, or the one next to this program.
-pub(super) fn grader(named: Option<&Path>) -> Result<PathBuf> {
+/// Returns the given grader, or the one in the folder of this program.
+pub(super) fn find_grader(named: Option<&Path>) -> Result<PathBuf> {
     let path = match named {
         Some(path) => path.to_owned(),
         None => std::env::current_exe()?.with_file_name("fosssim-oracle"),
     };
     if !path.is_file() {
-        bail!("no grader at {}: build fosssim-oracle, or name it by --grader", path.display());
+        bail!("there is no grader at {}; build fosssim-oracle, or choose it with --grader", path.display());
     }
     std::path::absolute(&path).context("the grader's path")
 }
 
-/// Workers that hold the database themselves.
+/// Workers that access the database directly.
 pub(super) struct LocalWorkers {
     pub(super) folders: ServiceFolders,
     pub(super) database: Database,
@@ -148,11 +146,11 @@ impl LocalWorkers {
     }
 }
 
-fn host() -> String {
+fn host_name() -> String {
     std::fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default().trim().to_owned()
 }
 
-/// Returns a name as a file name.
+/// Returns a name without control characters, for use as a file name.
 fn strip_controls(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || c == '-' { c } else { '_' };
     let plain: String = name.chars().map(safe).take(60).collect();

@@ -1,12 +1,12 @@
-//! The address of the database, which never shows its password.
+//! The address of the database, which is always printed without its password.
 use std::{fmt, path::PathBuf, str::FromStr};
 
 /// A database's address as given: `sqlite:FILE` or `postgres://USER:PASSWORD@HOST/NAME`.
 #[derive(Clone, PartialEq, Eq)]
 pub enum Address {
-    /// A file.
+    /// A SQLite database file.
     Sqlite(PathBuf),
-    /// The whole address, which may hold a password.
+    /// The whole address of a PostgreSQL database, which may contain a password.
     Postgres(String),
 }
 
@@ -21,8 +21,8 @@ impl FromStr for Address {
             text.strip_prefix("sqlite://").or_else(|| text.strip_prefix("sqlite:")).filter(|file| !file.is_empty());
         match file {
             Some(file) => Ok(Self::Sqlite(file.into())),
-            // The text may hold a password: it is not repeated.
-            None => Err("a database is sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME".to_owned()),
+            // The text may hold a password, so the error does not repeat it.
+            None => Err("a database must be sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME".to_owned()),
         }
     }
 }
@@ -32,10 +32,10 @@ impl fmt::Display for Address {
         match self {
             Self::Sqlite(file) => write!(f, "sqlite:{}", file.display()),
             Self::Postgres(url) => {
-                // The password may hold an @ of its own; the host can't.
+                // The password may contain an @; the host can't.
                 let rest = url.split_once("://").map_or("", |(_, rest)| rest);
                 let place = rest.rsplit_once('@').map_or(rest, |(_, place)| place);
-                // A query may hold `password=...` as well.
+                // A query may contain `password=...`, too.
                 write!(f, "postgres://{}", place.split('?').next().unwrap_or_default())
             }
         }

@@ -4,22 +4,22 @@ use thiserror::Error;
 /// The reason why a statement failed.
 #[derive(Debug, Error)]
 pub enum DbError {
-    /// The database can't be reached or is going away: the same may succeed a moment later.
+    /// The database can't be reached or is shutting down; a retry may succeed.
     #[error("the database can't be reached: {0}")]
     Unavailable(String),
-    /// Another transaction was in the way: the same may succeed a moment later.
+    /// Another transaction is in conflict; a retry may succeed.
     #[error("the database is busy: {0}")]
     Busy(String),
-    /// A row like it exists already; the statement's author knows which.
+    /// A similar row exists already; the statement's author knows which.
     #[error("it exists already: {0}")]
     Conflict(String),
-    /// A statement is wrong, or a value is not as expected.
+    /// A statement is wrong, or a value has an unexpected form.
     #[error("the database refused: {0}")]
     Other(String),
 }
 
 impl DbError {
-    /// Returns whether the same may succeed a moment later.
+    /// Returns whether a retry may succeed.
     pub fn is_transient(&self) -> bool {
         matches!(self, Self::Unavailable(_) | Self::Busy(_))
     }
@@ -38,7 +38,7 @@ impl From<sqlx::Error> for DbError {
                     return Self::Conflict(text);
                 }
                 let code = refusal.code().unwrap_or_default();
-                // SQLite's codes are numbers, whose lower byte is the kind.
+                // SQLite's codes are numbers; the lower byte is the kind.
                 let kind = if code.len() < 5 { code.parse::<u32>().ok().map(|code| code & 0xff) } else { None };
                 match (kind, code.as_ref()) {
                     // BUSY and LOCKED.
@@ -47,10 +47,10 @@ impl From<sqlx::Error> for DbError {
                     (Some(8 | 10 | 13 | 14), _) => Self::Unavailable(text),
                     // PostgreSQL: serialization failure, deadlock, lock not available.
                     (None, "40001" | "40P01" | "55P03") => Self::Busy(text),
-                    // Read-only, as while another server takes over; a statement that took too long.
+                    // Read-only, for example during a failover; or a statement timeout.
                     (None, "25006" | "57014") => Self::Unavailable(text),
-                    // Connection lost, shutting down, starting up; a full disk, no memory, too many connections; files
-                    // that can't be used; its own faults.
+                    // Connection lost, shutting down, starting up; disk or memory full, too many connections; unusable
+                    // files; internal errors.
                     (None, code) if ["08", "53", "57P", "58", "XX"].iter().any(|class| code.starts_with(class)) => {
                         Self::Unavailable(text)
                     }

@@ -1,11 +1,11 @@
-//! The tables and their changes over time. A change is a file of its own, applied once and never edited afterwards; all
-//! that are missing are applied in one transaction, so that a database is never between two versions.
+//! The tables and their changes. A change is a separate file, which is applied once and never edited afterwards. All
+//! missing changes are applied in one transaction, so that a database is never between two versions.
 use super::{Database, DbError, Dialect};
 use crate::{secret::hex, values};
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
-/// Every change, oldest first. The number of a change is its place in this list, from 1.
+/// All changes, the oldest first. The number of a change is its position in this list, from 1.
 const MIGRATIONS: [(&str, &str); 29] = [
     ("first tables", include_str!("migrations/0001_first_tables.sql")),
     ("people", include_str!("migrations/0002_people.sql")),
@@ -38,30 +38,30 @@ const MIGRATIONS: [(&str, &str); 29] = [
     ("no passwords", include_str!("migrations/0029_no_passwords.sql")),
 ];
 
-/// The version that this program works with.
+/// The version of the tables that this program uses.
 pub const LATEST: i64 = MIGRATIONS.len() as i64;
 
-/// PostgreSQL's name for the lock that keeps two servers from migrating at once; the number is arbitrary.
-const LOCK: i64 = 0x6673_6f5f_6d69_6772;
+/// PostgreSQL's number of the lock that prevents two servers from migrating in parallel; an arbitrary number.
+const LOCK_NUMBER: i64 = 0x6673_6f5f_6d69_6772;
 
-/// The reason why the tables can't be brought up to date.
+/// The reason why the tables can't be updated.
 #[derive(Debug, Error)]
 pub enum MigrateError {
-    /// A newer program has been here.
+    /// A newer program has changed the tables.
     #[error(
         "the database has version {found}, this program knows versions up to {LATEST}: start the newer program, or \
         restore the backup that it made"
     )]
     Newer {
-        /// The database's version.
+        /// The version of the database's tables.
         found: i64,
     },
-    /// A change differs from the one that was applied.
+    /// A change differs from the applied one.
     #[error("change {number} ({name}) was applied with other contents: this program was built from changed sources")]
     Changed {
-        /// The migration's place in the list.
+        /// The number of the change, from 1.
         number: i64,
-        /// The migration's name.
+        /// The name of the change.
         name: &'static str,
     },
     /// The database failed.
@@ -87,15 +87,16 @@ pub async fn version(database: &Database) -> Result<i64, DbError> {
     transaction.one("SELECT coalesce(max(number), 0) AS n FROM schema_change", values![]).await?.int("n")
 }
 
-/// Applies the changes that are missing and returns how many these were. Several servers may do so at the same time.
+/// Applies the missing changes and returns their number. Several servers may do so in parallel.
 ///
 /// # Errors
-/// When a newer program has used the database, or it fails; nothing has changed then.
+///
+/// When a newer program has used the database, or the database fails; nothing has changed then.
 pub async fn migrate(database: &Database) -> Result<usize, MigrateError> {
     let mut transaction = database.begin().await?;
     if transaction.dialect() == Dialect::Postgres {
-        // Held until this transaction ends.
-        transaction.rows("SELECT CAST(pg_advisory_xact_lock(?) AS TEXT) AS held", values![LOCK]).await?;
+        // The lock is held until the transaction ends.
+        transaction.rows("SELECT CAST(pg_advisory_xact_lock(?) AS TEXT) AS held", values![LOCK_NUMBER]).await?;
     }
     transaction
         .script(

@@ -1,9 +1,9 @@
-//! The database: PostgreSQL or SQLite behind one type, with the same statements. It runs statements and does not know
-//! what is stored: the rooms above write the statements.
+//! The database: PostgreSQL or SQLite behind one type, with the same statements. It runs statements; the modules that
+//! use it write them.
 //!
 //! Every statement runs inside a transaction, and leaves nothing behind in the session, so that the service works
-//! behind a pooler that hands another connection to every transaction (PgBouncer). All times are milliseconds since
-//! 1970 by the database's own clock, written as `{now}`; a worker's clock is never used.
+//! behind a pooler that gives every transaction another connection (PgBouncer). All times are milliseconds since 1970
+//! by the database's clock, written as `{now}`; a worker's clock is never used.
 
 mod address;
 mod fault;
@@ -34,23 +34,23 @@ use std::{
 };
 use tokio::sync::Semaphore;
 
-/// The time that a statement waits for a connection, or for SQLite's one writer, before it gives up.
-const PATIENCE: Duration = Duration::from_secs(30);
+/// The maximum time that a statement waits for a connection, or for SQLite's only writer.
+const WAIT_LIMIT: Duration = Duration::from_secs(30);
 
-/// Connections to PostgreSQL that one process holds at most.
-const CONNECTIONS: u32 = 10;
+/// The maximum number of connections to PostgreSQL per process.
+const MAX_CONNECTIONS: u32 = 10;
 
-/// How many of the connections are only for requests with priority.
-const FOR_THE_FIRST: u32 = 3;
+/// The number of connections that are reserved for requests with priority.
+const PRIORITY_CONNECTIONS: u32 = 3;
 
-/// The statement that begins a transaction in PostgreSQL. A process that freezes in a transaction must not keep its
+/// The statement that begins a transaction in PostgreSQL. A process that hangs in a transaction must not keep its
 /// locks, and no statement may wait forever. The settings end with the transaction, as a pooler requires.
 const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s'; SET LOCAL lock_timeout = '20s'; \
                      SET LOCAL statement_timeout = '60s'";
 
-/// Returns whether a connection can be used again; else the pool closes it and opens a new one. A connection whose
-/// COMMIT and ROLLBACK both failed, as on a full disk, counts as in a transaction forever and could begin no other. A
-/// connection from before the last failure of the database may lead to a server that is read-only now, or stopped.
+/// Returns whether a connection can be used again; otherwise the pool closes it and opens a new one. A connection whose
+/// COMMIT and ROLLBACK both failed, for example on a full disk, stays in a transaction forever. A connection from
+/// before the last failure of the database may lead to a server that is now read-only or stopped.
 fn is_good(connection: &impl Connection, faults: &Faults, age: Duration) -> bool {
     !connection.is_in_transaction() && faults.trust(age)
 }
@@ -65,21 +65,21 @@ fn postgres_options(url: &str) -> Result<PgConnectOptions, DbError> {
         .disable_statement_logging())
 }
 
-/// An open database. Cloning it is cheap and shares the connections.
+/// An open database. Clones are cheap and share the connections.
 #[derive(Debug, Clone)]
 pub struct Database {
     engine: Engine,
     faults: Faults,
-    /// Whether a newer program has changed the tables: then nothing is written any more.
+    /// Whether a newer program has changed the tables, so that nothing may be written.
     is_outdated: Arc<AtomicBool>,
-    /// The turns of requests without priority: only this many use, or wait for, the connections.
+    /// The turns of requests without priority, which limit how many of them use, or wait for, the connections.
     turns: Arc<Semaphore>,
     goes_first: bool,
 }
 
 #[derive(Debug, Clone)]
 enum Engine {
-    /// One connection writes, since SQLite has one writer anyway; readers do not wait for it.
+    /// SQLite has one writer, so one connection writes; readers do not wait for it.
     Sqlite {
         writer: SqlitePool,
         readers: SqlitePool,
@@ -87,40 +87,41 @@ enum Engine {
     Postgres(PgPool),
 }
 
-/// Which database it is.
+/// The kind of database.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Dialect {
-    /// The embedded database: a file next to the artifacts.
+    /// The embedded database, in a file next to the artifacts.
     Sqlite,
-    /// The distributed database.
+    /// The database of a separate server.
     Postgres,
 }
 
 impl Database {
-    /// Opens a database; a SQLite file is made when it is missing. The tables are [`migrate`]'s concern.
+    /// Opens a database, and creates a SQLite file if it does not exist; [`migrate`] creates the tables.
     ///
     /// # Errors
-    /// When it can't be reached within half a minute.
+    ///
+    /// When the database can't be reached within half a minute.
     pub async fn open(address: &Address) -> Result<Self, DbError> {
         let turns = match address {
-            // The writer's queue is short then: a request with priority waits for at most one other.
+            // The writer's queue stays short, so that a request with priority waits for at most one other.
             Address::Sqlite(_) => 1,
-            Address::Postgres(_) => CONNECTIONS - FOR_THE_FIRST,
+            Address::Postgres(_) => MAX_CONNECTIONS - PRIORITY_CONNECTIONS,
         };
         let faults = Faults::default();
         let good = faults.clone();
         let engine = match address {
             Address::Sqlite(file) => {
-                // FULL: a commit that was confirmed survives a power cut.
+                // FULL: a confirmed commit survives a power cut.
                 let options = SqliteConnectOptions::new()
                     .filename(file)
                     .create_if_missing(true)
                     .journal_mode(SqliteJournalMode::Wal)
                     .synchronous(SqliteSynchronous::Full)
                     .foreign_keys(true)
-                    // Removed rows are overwritten.
+                    // Overwrite removed rows.
                     .pragma("secure_delete", "ON")
-                    .busy_timeout(PATIENCE)
+                    .busy_timeout(WAIT_LIMIT)
                     .disable_statement_logging();
                 let pool = |connections| {
                     let good = good.clone();
@@ -129,7 +130,7 @@ impl Database {
                             Box::pin(std::future::ready(Ok(is_good(connection, &good, about.age))))
                         })
                         .max_connections(connections)
-                        .acquire_timeout(PATIENCE)
+                        .acquire_timeout(WAIT_LIMIT)
                         .idle_timeout(None)
                         .max_lifetime(None)
                 };
@@ -141,8 +142,8 @@ impl Database {
                     .before_acquire(move |connection, about| {
                         Box::pin(std::future::ready(Ok(is_good(connection, &good, about.age))))
                     })
-                    .max_connections(CONNECTIONS)
-                    .acquire_timeout(PATIENCE)
+                    .max_connections(MAX_CONNECTIONS)
+                    .acquire_timeout(WAIT_LIMIT)
                     .connect_with(postgres_options(url)?)
                     .await?;
                 Engine::Postgres(pool)
@@ -152,8 +153,8 @@ impl Database {
         Ok(Self { engine, faults, is_outdated: Arc::default(), turns, goes_first: false })
     }
 
-    /// Returns the database with priority, for callers that requests must not delay: workers, whose leases run out.
-    /// However many uploads arrive, grades are kept and waiting jobs are claimed.
+    /// Returns the database with priority, for callers that other requests must not delay, such as workers, whose
+    /// leases expire. Grades are stored and waiting jobs are claimed even during many uploads.
     #[must_use]
     pub fn first(&self) -> Self {
         Self { goes_first: true, ..self.clone() }
@@ -164,11 +165,11 @@ impl Database {
         if self.goes_first {
             return Ok(None);
         }
-        let turn = tokio::time::timeout(PATIENCE, self.turns.clone().acquire_owned()).await;
+        let turn = tokio::time::timeout(WAIT_LIMIT, self.turns.clone().acquire_owned()).await;
         Ok(turn.map_err(|_| sqlx::Error::PoolTimedOut)?.ok())
     }
 
-    /// Returns which database it is.
+    /// Returns the kind of database.
     pub fn dialect(&self) -> Dialect {
         match self.engine {
             Engine::Sqlite { .. } => Dialect::Sqlite,
@@ -176,17 +177,18 @@ impl Database {
         }
     }
 
-    /// Begins a transaction that writes. It sees what was committed before, and has no effect unless
-    /// [`Transaction::commit`] succeeds.
+    /// Begins a transaction that writes. It sees earlier commits, and has no effect unless [`Transaction::commit`]
+    /// succeeds.
     ///
     /// # Errors
+    ///
     /// When the database can't be reached, or is busy for half a minute.
     pub async fn begin(&self) -> Result<Transaction, DbError> {
         if self.is_outdated.load(Ordering::Relaxed) {
             return Err(DbError::Unavailable("a newer program has changed its tables".to_owned()));
         }
         match &self.engine {
-            // A transaction that begins as a reader could not become the writer when another has written meanwhile.
+            // A transaction that begins as a reader could not become the writer after another commit.
             Engine::Sqlite { writer, .. } => {
                 self.limit_wait(Inner::Sqlite, || writer.begin_with("BEGIN IMMEDIATE"), true).await
             }
@@ -194,24 +196,25 @@ impl Database {
         }
     }
 
-    /// Begins a transaction that writes, and waits this long for earlier ones.
+    /// Begins a transaction that writes, and waits at most `patience` for earlier ones.
     ///
     /// # Errors
-    /// As [`Database::begin`]; immediately if it does not wait for others.
+    ///
+    /// The errors of [`Database::begin`], at the latest after `patience`.
     pub async fn begin_within(&self, patience: Duration) -> Result<Transaction, DbError> {
         let begun = Instant::now();
         loop {
             let tried = Instant::now();
             match self.begin().await {
-                Err(error) if error.is_transient() && tried.elapsed() >= PATIENCE && begun.elapsed() < patience => {}
+                Err(error) if error.is_transient() && tried.elapsed() >= WAIT_LIMIT && begun.elapsed() < patience => {}
                 other => return other,
             }
         }
     }
 
-    /// Returns whether the database answers; from when it has tables of a newer program on, nothing is written any
-    /// more.
-    pub async fn is_well(&self) -> bool {
+    /// Returns whether the database answers and has no tables of a newer program. If it has, nothing is written from
+    /// then on.
+    pub async fn is_healthy(&self) -> bool {
         let version = version(self).await;
         if version.as_ref().is_ok_and(|version| *version > LATEST) {
             self.is_outdated.store(true, Ordering::Relaxed);
@@ -219,9 +222,10 @@ impl Database {
         version.is_ok()
     }
 
-    /// Begins a transaction that only reads, and sees one state of the database.
+    /// Begins a transaction that only reads, and sees one consistent state.
     ///
     /// # Errors
+    ///
     /// When the database can't be reached.
     pub async fn read(&self) -> Result<Transaction, DbError> {
         match &self.engine {
@@ -233,7 +237,7 @@ impl Database {
         }
     }
 
-    /// Waits for a turn, where they are counted, and for a transaction to begin.
+    /// Waits for a turn, if turns are counted, and for a transaction to begin.
     async fn limit_wait<T, F: Future<Output = Result<T, sqlx::Error>>>(
         &self,
         make: fn(T) -> Inner,
@@ -248,9 +252,10 @@ impl Database {
         begun.map_err(|error| self.faults.note(error))
     }
 
-    /// Copies a SQLite database into a new file, consistently and while others write; PostgreSQL has its own tools.
+    /// Copies a SQLite database into a new file, consistently, while others write; PostgreSQL has its own tools.
     ///
     /// # Errors
+    ///
     /// When the file exists or can't be written, or the database is PostgreSQL.
     pub async fn copy_to(&self, file: &std::path::Path) -> Result<(), DbError> {
         match &self.engine {
@@ -263,7 +268,7 @@ impl Database {
         }
     }
 
-    /// Closes all connections; their transactions end first.
+    /// Closes all connections after their transactions have ended.
     pub async fn close(&self) {
         match &self.engine {
             Engine::Sqlite { writer, readers } => {

@@ -1,7 +1,7 @@
-//! One text for both engines: the few words in which they differ are in braces.
+//! One text of a statement for both engines; the parts that differ are in braces.
 use super::Dialect;
 
-/// Returns the parts of a script for this engine: lines between `-- only sqlite` or `-- only postgres` and `-- end` are
+/// Returns the parts of a script for an engine: lines between `-- only sqlite` or `-- only postgres` and `-- end` are
 /// for one engine only.
 pub(super) fn parts(script: &str, dialect: Dialect) -> String {
     let other = match dialect {
@@ -20,7 +20,7 @@ pub(super) fn parts(script: &str, dialect: Dialect) -> String {
     kept
 }
 
-/// Renders the statement for the engine: `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of table
+/// Renders the statement for an engine. `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of table
 /// definitions, and `{each}` are the rows of a JSON array that is a value, `wanted.value`. `{strpos}` gives the place
 /// of a text in another, `{quoted}` makes JSON of a text, and PostgreSQL numbers its placeholders. Statements hold no
 /// other braces or question marks: values are never part of a statement's text.
@@ -32,7 +32,7 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             ("{id}", "INTEGER PRIMARY KEY AUTOINCREMENT"),
             ("{strict}", "STRICT"),
             ("{queue}", "STRICT"),
-            // SQLite has one writer: no other connection can hold a row.
+            // SQLite has one writer, so no other connection can lock a row.
             ("{skip locked}", ""),
             ("{for update}", ""),
             ("{each}", "json_each(?) AS wanted"),
@@ -41,22 +41,23 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             ("{quoted}", "json_quote"),
         ],
         Dialect::Postgres => [
-            // Not now(), which is constant within a transaction: a lease counts from the moment when it is given.
+            // now() is not used, because it is constant within a transaction: a lease counts from the moment when it is
+            // given.
             ("{now}", "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)"),
             ("{int}", "BIGINT"),
             ("{id}", "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"),
             ("{strict}", ""),
-            // Rows of the queue change five times each, so they get free space next to them, and dead rows are swept
+            // Rows of the queue change five times each, so they get free space next to them, and dead rows are removed
             // early.
             ("{queue}", "WITH (fillfactor = 70, autovacuum_vacuum_scale_factor = 0.02)"),
-            // NO KEY: rows that refer to this one may be written meanwhile. Otherwise two transactions could wait for
-            // each other: one that holds such a row and then refers to this one, and one that holds this row and then
-            // changes those.
+            // NO KEY allows other transactions to write rows that refer to this one. Otherwise two transactions could
+            // wait for each other: one that holds such a row and then refers to this one, and one that holds this row
+            // and then changes those.
             ("{skip locked}", "FOR NO KEY UPDATE SKIP LOCKED"),
             ("{for update}", "FOR NO KEY UPDATE"),
             ("{each}", "json_array_elements_text(CAST(? AS json)) AS wanted (value)"),
             ("{strpos}", "strpos"),
-            // Rows that refer to it can't be written meanwhile either.
+            // Rows that refer to this one can't be written either.
             ("{for removal}", "FOR UPDATE"),
             ("{quoted}", "to_json"),
         ],

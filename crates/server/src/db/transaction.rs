@@ -7,8 +7,8 @@ use std::{
 };
 use tokio::sync::OwnedSemaphorePermit;
 
-/// A transaction. Dropped without [`commit`](Self::commit), it has no effect. Without priority it holds a turn as long
-/// as it lasts ([`Database::first`](super::Database::first)).
+/// A transaction. Dropping it without [`commit`](Self::commit) rolls it back. Without priority it holds a turn until it
+/// ends ([`Database::first`](super::Database::first)).
 #[derive(Debug)]
 pub struct Transaction {
     inner: Inner,
@@ -17,7 +17,7 @@ pub struct Transaction {
     turn: Turn,
 }
 
-/// The time of the last fault that may come from connections: older connections are dropped.
+/// The time of the last failure that connections may have caused; older connections are closed.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Faults(Arc<Mutex<Option<Instant>>>);
 
@@ -28,7 +28,7 @@ impl Faults {
         last.is_none_or(|last| last.elapsed() > age)
     }
 
-    /// Notes a failure. That all connections are in use is none of theirs.
+    /// Records a failure, unless it only says that all connections are in use.
     pub(super) fn note(&self, error: sqlx::Error) -> DbError {
         let is_of_pool = matches!(error, sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed);
         let error = DbError::from(error);
@@ -39,7 +39,7 @@ impl Faults {
     }
 }
 
-/// A turn, where one was needed.
+/// A turn, if one was needed.
 pub(super) type Turn = Option<OwnedSemaphorePermit>;
 
 #[derive(Debug)]
@@ -48,7 +48,8 @@ pub(super) enum Inner {
     Postgres(sqlx::Transaction<'static, Postgres>),
 }
 
-/// A query with its values, as the engine's own type. Not kept prepared: a name for it would live in the session.
+/// Creates a query with its values, as the engine's own type. The query is not prepared, because a prepared statement
+/// would stay in the session.
 macro_rules! query {
     ($database:ty, $text:expr, $values:expr) => {{
         let mut query = sqlx::query::<$database>(AssertSqlSafe($text)).persistent(false);
@@ -67,7 +68,7 @@ impl Transaction {
         Self { inner, faults, turn }
     }
 
-    /// Returns which database it is.
+    /// Returns the kind of database.
     pub fn dialect(&self) -> Dialect {
         match self.inner {
             Inner::Sqlite(_) => Dialect::Sqlite,
@@ -114,36 +115,40 @@ impl Transaction {
     /// Runs a statement and reads its rows.
     ///
     /// # Errors
-    /// The database's error, or a row's.
+    ///
+    /// An error of the database or of a row.
     pub async fn all<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<T>, DbError> {
         self.rows(statement, values).await?.iter().map(T::from_row).collect()
     }
 
-    /// Runs a statement that has one row or none, and reads it.
+    /// Runs a statement with at most one row, and reads it.
     ///
     /// # Errors
-    /// The database's error, or the row's.
+    ///
+    /// An error of the database or of the row.
     pub async fn find<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<T>, DbError> {
         self.row(statement, values).await?.as_ref().map(T::from_row).transpose()
     }
 
-    /// Runs a statement that has one row or none.
+    /// Runs a statement with at most one row.
     ///
     /// # Errors
+    ///
     /// An error of the database.
     pub async fn row(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<Row>, DbError> {
         Ok(self.rows(statement, values).await?.into_iter().next())
     }
 
-    /// Runs a statement that has exactly one row.
+    /// Runs a statement with exactly one row.
     ///
     /// # Errors
-    /// The database's error, also that there is no row.
+    ///
+    /// An error of the database, or no row.
     pub async fn one(&mut self, statement: &'static str, values: &[Value]) -> Result<Row, DbError> {
         self.row(statement, values).await?.ok_or_else(|| DbError::Other(format!("no row: {statement}")))
     }
 
-    /// Runs statements that are separated by semicolons and take no values: definitions of tables.
+    /// Runs several statements that are separated by semicolons and take no values, such as definitions of tables.
     pub(super) async fn script(&mut self, script: &str) -> Result<(), DbError> {
         let script = statement::parts(script, self.dialect());
         let text = AssertSqlSafe(statement::text(&script, self.dialect()));
@@ -154,9 +159,10 @@ impl Transaction {
         Ok(())
     }
 
-    /// Makes everything permanent that this transaction wrote. After an error this is uncertain: query it.
+    /// Commits the transaction. After an error the result is uncertain, and must be queried.
     ///
     /// # Errors
+    ///
     /// An error of the database.
     pub async fn commit(self) -> Result<(), DbError> {
         let committed = match self.inner {

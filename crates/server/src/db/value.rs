@@ -1,14 +1,14 @@
-//! The values of statements and of their answers. Two types are enough: integers (numbers, times, yes and no) and text
-//! (names, digests, JSON); points are text, too, so that they stay the same to the last digit.
+//! The values of statements and of their answers. Two types are sufficient: integers (numbers, times, booleans) and
+//! text (names, digests, JSON). Points are text, too, so that they stay exact.
 use super::DbError;
 use sqlx::{Row as _, postgres::PgRow, sqlite::SqliteRow};
 
 /// A value for a statement's next `?`.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum Value {
-    /// An integer, or nothing.
+    /// An integer or NULL.
     Int(Option<i64>),
-    /// Text, or nothing.
+    /// Text or NULL.
     Text(Option<String>),
 }
 
@@ -35,14 +35,14 @@ from! {
     Option<&str> => |value| Self::Text(value.map(str::to_owned));
 }
 
-/// The values of a statement, in the order of its `?`.
+/// Lists the values of a statement, in the order of its `?`.
 #[macro_export]
 macro_rules! values {
     ($($value:expr),* $(,)?) => { &[$($crate::db::Value::from($value)),*] };
 }
 
-/// A row of an answer. Columns are read by name; a missing column, or one of another type, is a fault of the statement
-/// and ends in [`DbError::Other`].
+/// A row of a result. Columns are read by name. A missing column, or one of another type, is an error in the statement
+/// ([`DbError::Other`]).
 #[derive(Debug)]
 pub struct Row(pub(super) Inner);
 
@@ -53,18 +53,20 @@ pub(super) enum Inner {
 }
 
 impl Row {
-    /// Returns an integer.
+    /// Reads an integer.
     ///
     /// # Errors
-    /// When the column holds nothing, or something else.
+    ///
+    /// When the column is NULL or has another type.
     pub fn int(&self, column: &str) -> Result<i64, DbError> {
         self.maybe_int(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
     }
 
-    /// Returns an integer, or nothing.
+    /// Reads an integer, or `None` for NULL.
     ///
     /// # Errors
-    /// When the column holds something else.
+    ///
+    /// When the column has another type.
     pub fn maybe_int(&self, column: &str) -> Result<Option<i64>, DbError> {
         Ok(match &self.0 {
             Inner::Sqlite(row) => row.try_get(column)?,
@@ -75,15 +77,17 @@ impl Row {
     /// Reads text.
     ///
     /// # Errors
-    /// When the column holds nothing, or something else.
+    ///
+    /// When the column is NULL or has another type.
     pub fn text(&self, column: &str) -> Result<String, DbError> {
         self.maybe_text(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
     }
 
-    /// Reads text, or nothing.
+    /// Reads text, or `None` for NULL.
     ///
     /// # Errors
-    /// When the column holds something else.
+    ///
+    /// When the column has another type.
     pub fn maybe_text(&self, column: &str) -> Result<Option<String>, DbError> {
         Ok(match &self.0 {
             Inner::Sqlite(row) => row.try_get(column)?,
@@ -91,21 +95,23 @@ impl Row {
         })
     }
 
-    /// Yes or no, stored as 1 or 0.
+    /// Reads a boolean, stored as 1 or 0.
     ///
     /// # Errors
-    /// When the column holds something else.
+    ///
+    /// When the column has another type.
     pub fn flag(&self, column: &str) -> Result<bool, DbError> {
         Ok(self.int(column)? != 0)
     }
 }
 
-/// A type that a column may hold.
+/// The type of a column's value.
 pub trait Column: Sized {
     /// Reads the value of a column.
     ///
     /// # Errors
-    /// When it holds something else.
+    ///
+    /// When the column has another type.
     fn read(row: &Row, column: &str) -> Result<Self, DbError>;
 }
 
@@ -127,16 +133,17 @@ columns! {
     bool => flag;
 }
 
-/// A type as which a whole row is read.
+/// A type that is read from a whole row.
 pub trait FromRow: Sized {
-    /// Reads the value of a column.
+    /// Reads the value from a row.
     ///
     /// # Errors
-    /// When a column is not there, or holds something else.
+    ///
+    /// When a column is missing or has another type.
     fn from_row(row: &Row) -> Result<Self, DbError>;
 }
 
-/// Types with fields that have the names of their columns, or the given names.
+/// Declares types whose fields have the names of their columns, or the given names.
 macro_rules! from_row {
     ($($type:ty { $($field:ident $(= $column:literal)?),* $(,)? })*) => {
         $(impl $crate::db::FromRow for $type {
@@ -148,8 +155,8 @@ macro_rules! from_row {
 }
 pub(crate) use from_row;
 
-/// A value with fields that have the names of their columns, or the given names; fields behind the semicolon are
-/// written out.
+/// Creates a value whose fields have the names of their columns, or the given names; fields after the semicolon have
+/// expressions.
 macro_rules! read_row {
     ($row:ident => $type:ident { $($field:ident $(= $column:literal)?),* $(,)?; $($rest:tt)* }) => {
         $type { $($field: $crate::db::read_row!(@ $row $field $($column)?),)* $($rest)* }

@@ -1,4 +1,4 @@
-//! Numbers for monitors: counted by indexes. Simultaneous requests share one answer, and hold one connection.
+//! Numbers for monitors, which are counted by indexes. Simultaneous requests share one answer and one connection.
 use crate::{
     db::{Database, DbError},
     health,
@@ -9,19 +9,19 @@ use crate::{
 use std::time::{Duration, Instant};
 use tokio::sync::Mutex;
 
-/// The time for which an answer is used.
-const FRESH: Duration = Duration::from_secs(1);
+/// The time for which an answer is reused.
+const MAX_AGE: Duration = Duration::from_secs(1);
 
 /// The last answer.
 #[derive(Debug, Default)]
 pub struct Counts(Mutex<Option<(Instant, Metrics)>>);
 
 impl Counts {
-    /// Returns the numbers of this moment, or of a moment ago.
+    /// Returns the present numbers, or those of a moment ago.
     pub(super) async fn read(&self, database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
         let mut last = self.0.lock().await;
         if let Some((at, metrics)) = last.as_ref()
-            && at.elapsed() < FRESH
+            && at.elapsed() < MAX_AGE
         {
             return Ok(metrics.clone());
         }
@@ -34,13 +34,13 @@ impl Counts {
 async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
     let mut transaction = database.read().await?;
     let mut metrics = Metrics::default();
-    // Numbers are given out once, also where rows are removed.
+    // Numbers are assigned only once, even if rows are removed.
     let statement = "SELECT (SELECT coalesce(max(id), 0) FROM submission) AS submissions,
         (SELECT coalesce(max(id), 0) FROM result) AS results";
     let row = transaction.one(statement, values![]).await?;
     metrics.submissions = row.int("submissions")?;
     let mut graded = row.int("results")?;
-    // The rare results: each job that was given up has a result, too.
+    // These results are rare, and each job that was given up has a result, too.
     for kind in ["failed try", "late answer", "buried"] {
         let n = transaction.one("SELECT count(*) AS n FROM event WHERE kind = ?", values![kind]).await?.int("n")?;
         graded -= if kind == "buried" { n } else { 0 };

@@ -1,7 +1,7 @@
-//! Roles and their rights. Requests reach the database only through one of these, and each offers only what its role
-//! allows: a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with their own
-//! submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with the jobs that it holds. The type that a
-//! handler takes names the role that it serves; without such a type it has nothing to read from.
+//! Roles and their rights. Requests reach the database only through a role, and each offers only what it allows. The
+//! roles are a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with their own
+//! submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with its jobs. The type that a handler takes names
+//! the role that it serves; a handler without such a type cannot read data.
 
 mod accounts;
 mod assignments;
@@ -51,7 +51,7 @@ use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
 use submissions::standings::SharedStandings;
 use tokio::sync::OnceCell;
 
-/// The parts of the service. Only this room uses those that hold data; all rooms may read the others.
+/// The parts of the service. Only this module uses those that hold data; all modules may read the others.
 #[derive(Debug, Clone)]
 pub struct App(Arc<Parts>);
 
@@ -60,17 +60,17 @@ struct Parts {
     database: Database,
     store: Store,
     notifier: Notifier,
-    /// The queue's patience.
+    /// The policy of the queue.
     policy: QueuePolicy,
-    /// Numbers for monitors.
+    /// The numbers for monitors.
     counts: Counts,
-    /// Whether there is room, and whether it can be written.
+    /// The state of the data folder's disk: its free space, and whether it can be written.
     storage: Storage,
-    /// Counts requests by account.
+    /// The request limits of accounts.
     throttle: Throttle,
-    /// The standings of classes, shared by simultaneous requests.
+    /// The standings of classes, which simultaneous requests share.
     standings: SharedStandings,
-    /// The key that signs data for a later check; it is stored nowhere else.
+    /// The key that signs data for a later check, read from the database when it is first needed.
     signing_key: OnceCell<String>,
     instruments: Instruments,
     options: Options,
@@ -79,29 +79,29 @@ struct Parts {
 /// The settings of the service.
 #[derive(Debug, Default)]
 pub struct Options {
-    /// The suites that come with the grader.
+    /// The suites of the grader.
     pub suites: Suites,
-    /// The grader, if there is one: it checks suites before they grade submissions.
+    /// The grader, if there is one; it checks suites before they grade submissions.
     pub grader: Option<PathBuf>,
-    /// The page that checks traces in a browser, where the grader has it.
+    /// The page that checks traces in a browser, if the grader has it.
     pub checker: Option<String>,
-    /// The folder of uploads that are not stored yet.
+    /// The folder of uploads before they are stored.
     pub incoming: PathBuf,
-    /// Uploads are rejected when fewer bytes are free on that disk.
+    /// The number of free bytes on the disk below which uploads are rejected.
     pub low_water: u64,
-    /// The address that people know the service by.
+    /// The public address of the service.
     pub public: String,
-    /// The source of a request's own address: the other end of its connection, or a header of the proxy.
+    /// The source of a client's address: the other end of the connection, or a header of the proxy.
     pub client_address: Option<ClientIpSource>,
-    /// The longest time that a body may pause.
+    /// The maximum pause within a request's body.
     pub patience: Duration,
-    /// Requests of one account in a minute.
+    /// The maximum number of requests of one account per minute.
     pub requests_per_minute: u32,
-    /// Transfers at one time, and bytes that are kept.
+    /// The limits of parallel transfers and of stored bytes.
     pub limits: TransferLimits,
-    /// The provider by which people sign in.
+    /// The provider at which people sign in, if there is one.
     pub provider: Option<Provider>,
-    /// Speaks with learning platforms.
+    /// The client of learning platforms.
     pub lti: Arc<Lti>,
 }
 
@@ -117,7 +117,7 @@ pub use accounts::throttle::Throttle;
 pub use accounts::turns::ArchiveTurn;
 
 impl App {
-    /// Creates an app on this database and store.
+    /// Creates an app with a database and a store.
     pub fn new(
         database: Database,
         store: Store,
@@ -149,19 +149,20 @@ impl App {
         &self.0.instruments
     }
 
-    /// Returns a link that signs in once, as people open it.
+    /// Returns the address of a link that signs in once.
     pub fn welcome_address(&self, secret: &NewSecret) -> String {
         format!("{}/welcome/{}", self.public, secret.reveal())
     }
 
-    /// Returns whether people come by HTTPS.
+    /// Returns whether people use HTTPS.
     pub fn is_secure(&self) -> bool {
         self.public.starts_with("https://")
     }
 
-    /// Checks that there is room for an upload.
+    /// Checks that there is space for an upload.
     ///
     /// # Errors
+    ///
     /// When the disk is nearly full.
     pub fn ensure_room(&self) -> Result<(), crate::problem::Problem> {
         self.0.storage.ensure_room()

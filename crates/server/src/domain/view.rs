@@ -1,11 +1,11 @@
-//! The values that the service shows: the same to the API, to pages and to exports.
+//! The values that the service shows in the API, on pages and in exports.
 use super::{App, Settings};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, from_row, read_row},
     health,
     late::Lateness,
     queue::{self, Lane, Progress},
-    shown::{ShownGrade, hour},
+    shown::{ShownGrade, round_to_hour},
     store::Artifact,
     task::{Outcome, OutputFile, Suite, Task},
     values,
@@ -14,17 +14,17 @@ use serde::Serialize;
 use std::ops::Deref;
 use utoipa::ToSchema;
 
-/// Somebody's account.
+/// An account of a person.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Account {
     /// The account's number.
     #[serde(skip)]
     pub(crate) id: i64,
-    /// The name in addresses and tables.
+    /// The account's name in addresses and tables.
     pub login: String,
     /// The name of its owner.
     pub name: String,
-    /// Whether it may do everything.
+    /// Whether the account is an administrator's.
     pub is_admin: bool,
 }
 
@@ -48,23 +48,23 @@ pub struct Assignment {
     pub title: String,
     /// Whether students see the assignment.
     pub visible: bool,
-    /// The rules by which it is graded.
+    /// The settings for grading and uploads.
     pub settings: Settings,
-    /// The time since which students see groups that the suite hides, in milliseconds since 1970.
+    /// The time since which students see the groups that the suite hides, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub published_at: Option<i64>,
-    /// The number of its changes: a change that names an earlier one is rejected.
+    /// The number of the assignment's changes; a change that is based on an earlier one is rejected.
     pub revision: i64,
 }
 
-/// A submission, and its result.
+/// A submission with its result.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Submission {
     /// The submission's number on this server.
     pub id: i64,
-    /// The how-manieth of its owner in this assignment.
+    /// The number of the submission among those of its owner to the assignment, from 1.
     pub number: i64,
-    /// The assignment.
+    /// The name of the assignment in addresses.
     pub assignment: String,
     /// The assignment's title.
     pub title: String,
@@ -72,37 +72,37 @@ pub struct Submission {
     pub login: String,
     /// The owner's name.
     pub name: String,
-    /// `program`, `sources` or `traces`.
+    /// The submission's form: `program`, `sources` or `traces`.
     pub form: String,
     /// The file's name.
     pub file_name: String,
-    /// The submission's SHA-256.
+    /// The SHA-256 of the submission's bytes.
     pub digest: String,
     /// The submission's size in bytes.
     pub size: i64,
-    /// The time when it arrived, in milliseconds since 1970.
+    /// The time of the upload, in milliseconds since 1970.
     pub created_at: i64,
     /// The time when its bytes and reports were removed; the grade and its history stay.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removed_at: Option<i64>,
     /// The submission's state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `canceled`.
     pub state: String,
-    /// The number of jobs that are graded before it, while it waits.
+    /// The number of jobs before this one while it waits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead: Option<i64>,
-    /// The seconds after which its grade may be expected, while it waits and there are workers.
+    /// The expected number of seconds until the grade, while the submission waits and there are workers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_seconds: Option<u64>,
-    /// The progress of the grading while it runs.
+    /// The progress of the grading, while it runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<Progress>,
     /// The result that counts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grade: Option<ResultView>,
-    /// The delay of a late submission, if it costs points; points that staff gave lose nothing.
+    /// The delay of a late submission that loses points; points from staff lose nothing.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub late: Option<Lateness>,
-    /// The words of staff about the submission.
+    /// The comment of staff on the submission.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark: Option<Mark>,
     /// Whether groups that the suite hides are left out of the grade, its history and its reports until staff publishes
@@ -111,7 +111,7 @@ pub struct Submission {
     pub is_withheld: bool,
     #[serde(skip)]
     pub(super) is_published: bool,
-    /// The reason why the grader failed on it last; for staff.
+    /// The last error of the grader on the submission; for staff.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
     #[serde(skip)]
@@ -120,13 +120,13 @@ pub struct Submission {
     pub(super) account: i64,
 }
 
-/// The words of staff about a submission, and the request of its owner.
+/// The comment of staff on a submission, and the request of its owner.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Mark {
-    /// Points that count instead of the grader's.
+    /// The points that count instead of the grader's.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<String>,
-    /// The reason, or another comment.
+    /// The reason for other points, or another comment.
     pub comment: String,
     /// The author of the mark.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -134,7 +134,7 @@ pub struct Mark {
     /// The time of the mark, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marked_at: Option<i64>,
-    /// The question of the owner.
+    /// The owner's question about the grade.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub request: Option<String>,
     /// The time of the request, in milliseconds since 1970.
@@ -142,16 +142,15 @@ pub struct Mark {
     pub requested_at: Option<i64>,
 }
 
-/// A result.
+/// A result of a grading.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ResultView {
     #[serde(skip)]
     pub(crate) result: i64,
-    /// The result.
+    /// The outcome of the grading.
     #[serde(flatten)]
     pub outcome: Outcome,
-    /// The time when it was graded, in milliseconds since 1970. The full hour while groups that the suite hides are
-    /// withheld.
+    /// The time of the grading, in milliseconds since 1970; rounded to the hour while hidden groups are withheld.
     pub created_at: i64,
 }
 
@@ -163,15 +162,14 @@ impl Deref for ResultView {
     }
 }
 
-/// The way in which a result came to count.
+/// A change of the result that counts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct History {
-    /// The time of the change, in milliseconds since 1970. The full hour while groups that the suite hides are
-    /// withheld.
+    /// The time of the change, in milliseconds since 1970; rounded to the hour while hidden groups are withheld.
     pub changed_at: i64,
-    /// The reason, as students read it.
+    /// The reason for the change, for students.
     pub reason: String,
-    /// The person who wanted it; `None` for the grader.
+    /// The person who requested the change; `None` for the grader.
     pub by: Option<String>,
     /// The verdict before the change.
     pub old_code: Option<String>,
@@ -185,41 +183,41 @@ pub struct History {
     pub result: i64,
     /// The grader's version.
     pub version: String,
-    /// The grader's SHA-256, where it is known.
+    /// The SHA-256 of the grader, if it is known.
     pub grader: String,
-    /// Rules, suite and upload in short.
+    /// The rules, the suite and the upload, as one line.
     pub by_what: String,
-    /// The complete task, from which it can be graded again: rules, suite, digests. For staff.
+    /// The complete task (rules, suite, digests), by which the grading can be repeated. For staff.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub task: String,
 }
 
-/// An event.
+/// An event of the audit log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Event {
-    /// The event's number, which only grows.
+    /// The event's number, which always grows.
     pub id: i64,
     /// The time of the event, in milliseconds since 1970.
     pub happened_at: i64,
     /// The event's kind.
     pub kind: String,
-    /// The person who did it; `None` for the service.
+    /// The person who caused the event; `None` for the service.
     pub actor: Option<String>,
-    /// The course, by its name in addresses.
+    /// The name of the course in addresses.
     pub course: Option<String>,
-    /// The assignment, by its name in addresses.
+    /// The name of the assignment in addresses.
     pub assignment: Option<String>,
-    /// The submission that it is about.
+    /// The number of the event's submission on this server.
     pub submission: Option<i64>,
     /// The number of the submission among those of its owner to the assignment.
     pub number: Option<i64>,
     /// The login of the submission's owner.
     pub owner: Option<String>,
-    /// In words.
+    /// The event as a sentence.
     pub text: String,
 }
 
-/// Events; the rest of the statement selects them.
+/// Selects events; the argument is the rest of the statement.
 macro_rules! events {
     ($which:literal) => {
         concat!(
@@ -238,43 +236,43 @@ macro_rules! events {
 }
 pub(super) use events;
 
-/// The queue and who works on it.
+/// The queue and its workers.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Queue {
-    /// Waiting uploads.
+    /// The number of waiting uploads.
     pub waiting: i64,
-    /// Waiting jobs of regrades.
+    /// The number of waiting jobs of regrades.
     pub regrades: i64,
-    /// Running jobs.
+    /// The number of running jobs.
     pub running: i64,
-    /// Jobs that were given up, for staff to review.
+    /// The number of jobs that were given up, for staff to review.
     pub buried: i64,
-    /// Workers that were seen lately.
+    /// The workers that were seen recently.
     pub workers: Vec<QueueWorker>,
 }
 
-/// A worker.
+/// A worker and its state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct QueueWorker {
     /// The worker's name.
     pub name: String,
     /// The worker's version.
     pub version: String,
-    /// The number of gradings that it does at one time.
+    /// The maximum number of parallel gradings of the worker.
     pub slots: i64,
-    /// The number of jobs that it runs now.
+    /// The number of jobs that the worker runs at present.
     pub running: i64,
-    /// The time when it was last seen, in milliseconds since 1970.
+    /// The time of the last sign of life, in milliseconds since 1970.
     pub seen_at: i64,
-    /// The time since which it takes no jobs because it can't grade.
+    /// The time since which the worker takes no jobs because it can't grade, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_since: Option<i64>,
-    /// The number of its faults.
+    /// The number of the worker's consecutive faults.
     pub faults: i64,
     /// The last fault.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
-    /// The time of the last fault.
+    /// The time of the last fault, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault_at: Option<i64>,
 }
@@ -287,7 +285,7 @@ from_row! {
     QueueWorker { name, version, slots, running, seen_at, aside_since, faults, fault, fault_at }
 }
 
-/// The columns of submissions; the rest of the statement selects the rows.
+/// Selects submissions; the argument is the rest of the statement.
 macro_rules! submissions {
     ($rest:literal) => {
         concat!(
@@ -334,7 +332,7 @@ impl FromRow for Submission {
             state: row.maybe_text("state")?.unwrap_or_else(|| "cancelled".to_owned()),
             ahead: None,
             expected_seconds: None,
-            progress: progress(row)?,
+            progress: read_progress(row)?,
             grade: row.maybe_int("result")?.map(|result| read_grade(row, result)).transpose()?,
             is_withheld: false,
             is_published: row.maybe_int("published_at")?.is_some(),
@@ -346,15 +344,15 @@ impl FromRow for Submission {
     }
 }
 
-/// Returns the progress of a job, while it runs and its worker reports it.
-fn progress(row: &Row) -> Result<Option<Progress>, DbError> {
+/// Returns the progress of a job, if it runs and its worker reports it.
+fn read_progress(row: &Row) -> Result<Option<Progress>, DbError> {
     let is_running = row.maybe_text("state")?.as_deref() == Some("running");
     let read = |column| Ok::<_, DbError>(row.maybe_int(column)?.and_then(|number| u32::try_from(number).ok()));
     Ok(read("scenes_done")?.zip(read("scenes")?).filter(|_| is_running).map(|(done, all)| Progress { done, all }))
 }
 
 impl Submission {
-    /// Lets points that staff gave count instead of the grader's; they lose nothing for being late.
+    /// Replaces the grader's points by those from staff, which lose nothing for being late.
     pub(super) fn overrule(&mut self) {
         let Some(grade) = &mut self.grade else { return };
         let given = self.mark.as_ref().and_then(|mark| mark.points.clone());
@@ -374,26 +372,26 @@ pub(super) async fn submissions_of(
     transaction.all(statement, values![assignment, account]).await
 }
 
-/// The number of submissions that are read at a time.
-const PAGE: i64 = 500;
+/// The number of submissions that are read in one statement.
+const PAGE_SIZE: i64 = 500;
 
-/// Returns the submissions to an assignment after this number, oldest first: a page of them, none after the last.
+/// Returns a page of the submissions to an assignment after a number, oldest first; empty after the last.
 pub(super) async fn submissions_after(
     transaction: &mut Transaction,
     assignment: i64,
     after: i64,
 ) -> Result<Vec<Submission>, DbError> {
     let statement = submissions!("submission.assignment = ? AND submission.id > ? ORDER BY submission.id LIMIT ?");
-    transaction.all(statement, values![assignment, after, PAGE]).await
+    transaction.all(statement, values![assignment, after, PAGE_SIZE]).await
 }
 
-/// Returns the submissions of these numbers.
+/// Returns the submissions with the given numbers.
 pub(super) async fn submissions_named(transaction: &mut Transaction, ids: &[i64]) -> Result<Vec<Submission>, DbError> {
     let statement = submissions!("submission.id IN (SELECT CAST(wanted.value AS {int}) FROM {each})");
     transaction.all(statement, values![serde_json::to_string(ids).unwrap_or_default()]).await
 }
 
-/// Returns a submission of a course with its place in the queue and its reports.
+/// Returns a submission of a course, with its position in the queue and its reports.
 pub(super) async fn submission(
     transaction: &mut Transaction,
     app: &App,
@@ -425,8 +423,8 @@ pub(super) async fn submission(
     Ok(Some(submission))
 }
 
-/// Returns how a grade came to count; with `withheld` as if there were no hidden groups. Only staff sees names of the
-/// course's suites.
+/// Returns the history of a grade; `withheld` leaves out hidden groups. Only staff sees names of the course's own
+/// suites.
 pub(super) async fn history(
     transaction: &mut Transaction,
     submission: i64,
@@ -459,13 +457,13 @@ pub(super) async fn history(
         };
         let ((old_code, old_points), (new_code, new_points)) = (old, new);
         let old_points = given.clone().or(old_points);
-        // Points by hand go before the grader's until staff takes them back.
+        // Points from staff count instead of the grader's until staff removes them.
         if row.maybe_int("old_result")? == Some(row.int("result")?) {
             given = row.maybe_text("given")?;
         }
         Ok(read_row!(row => History {
             reason, by = "login", result, version, grader;
-            changed_at: if withheld { hour(row.int("changed_at")?) } else { row.int("changed_at")? },
+            changed_at: if withheld { round_to_hour(row.int("changed_at")?) } else { row.int("changed_at")? },
             old_code,
             old_points,
             new_code,
@@ -477,7 +475,7 @@ pub(super) async fn history(
     rows.iter().map(read).collect()
 }
 
-/// Describes a task in short: by its suite, hints and rules.
+/// Describes a task by its suite, hints and rules.
 fn describe_task(task: &str, is_staff: bool) -> String {
     let Ok(task) = serde_json::from_str::<Task>(task) else { return String::new() };
     let suite = match task.suite {
@@ -506,7 +504,7 @@ pub(super) struct Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
-    /// Creates a change with words only.
+    /// Creates an entry that contains only text.
     pub(super) fn new(kind: &'static str, actor: i64, text: &'a str) -> Self {
         Self { kind, actor, course: None, assignment: None, submission: None, text }
     }
@@ -520,9 +518,9 @@ pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Re
     transaction.execute(statement, values![kind, actor, course, assignment, submission, text]).await.map(drop)
 }
 
-/// Returns the queue as all staff may see it.
+/// Returns the queue in the form for staff.
 pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Queue, DbError> {
-    // Each by its index: few of all jobs are of this kind.
+    // Each count has its own index, because few jobs are of each kind.
     let statement = "SELECT
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS waiting,
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,

@@ -1,4 +1,5 @@
-//! Asking platforms: for tokens, and by these for their services. Answers are short, come soon, and lead nowhere else.
+//! Requests to platforms, for tokens and to their services. Answers have limits of size and time, and redirections are
+//! not followed.
 use super::{Platform, keys};
 use crate::{
     db::{Database, DbError},
@@ -23,30 +24,30 @@ pub(crate) mod scope {
     pub(crate) const MEMBERS: &str = "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly";
 }
 
-/// The longest time that a platform may take.
-const PATIENCE: Duration = Duration::from_secs(20);
+/// The maximum time to wait for a platform's answer.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
 
-/// The longest answer that is read.
+/// The maximum size of an answer, in bytes.
 const ANSWER: u64 = 8 << 20;
 
-/// The time for which an assertion of ours is valid, in seconds.
-const ASSERTION: u64 = 300;
+/// The lifetime of this service's assertions, in seconds.
+const ASSERTION_LIFETIME: u64 = 300;
 
-/// The time before their end at which tokens are renewed.
-const MARGIN: Duration = Duration::from_secs(30);
+/// The time before expiry at which tokens are renewed.
+const RENEWAL_MARGIN: Duration = Duration::from_secs(30);
 
-/// The longest wait that a platform may request.
-const LONGEST_WAIT: Duration = Duration::from_secs(3600);
+/// The maximum wait that a platform can request.
+const MAX_WAIT: Duration = Duration::from_secs(3600);
 
 /// The reason why a platform did not fulfill a request.
 #[derive(Debug, Clone, Error)]
 pub enum ServiceFault {
     /// The platform does not answer, or is overloaded; a later request may succeed.
-    #[error("it does not answer as it should: {why}")]
+    #[error("it returned an unexpected answer: {why}")]
     Away {
-        /// The platform's message, or what happened.
+        /// The platform's message, or a description of the error.
         why: String,
-        /// The wait before the next request that it wishes.
+        /// The wait that the platform requests before the next request.
         after: Option<Duration>,
     },
     /// The platform rejects the request.
@@ -71,21 +72,21 @@ impl From<DbError> for ServiceFault {
 pub(super) struct ServiceAnswer {
     pub(super) status: u16,
     body: Vec<u8>,
-    /// The header `Link`.
+    /// The value of the header `Link`.
     pub(super) link: Option<String>,
     after: Option<Duration>,
 }
 
 impl ServiceAnswer {
-    /// Reads the answer's content, which is `what` in words.
+    /// Parses the answer's content; `what` names it in errors.
     pub(super) fn read<T: DeserializeOwned>(&self, what: &str) -> Result<T, ServiceFault> {
         let read = serde_json::from_slice(&self.body);
         read.map_err(|error| ServiceFault::Refused(format!("{what} can't be read: {error}")))
     }
 
-    /// Returns the answer, if it reports success.
+    /// Returns the answer if it reports success.
     pub(super) fn successful(self) -> Result<Self, ServiceFault> {
-        // The beginning of its words, for people: one line.
+        // The beginning of the platform's text, on one line, for people.
         let said: String = String::from_utf8_lossy(&self.body).chars().take(200).collect();
         let said: String = said.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         let text = format!("{} {said}", self.status);
@@ -99,19 +100,19 @@ impl ServiceAnswer {
     }
 }
 
-/// A request to a service.
+/// A request to a platform's service.
 #[derive(Debug, Clone)]
 pub(super) struct Ask {
     pub(super) address: String,
     pub(super) accept: &'static str,
-    /// A body and its type: then it is a POST.
+    /// The body and its type; `None` for a GET request.
     pub(super) body: Option<(&'static str, Vec<u8>)>,
 }
 
-/// Tokens by platform and scope, each with its end.
+/// The tokens by platform and scope, each with its expiry.
 type Tokens = HashMap<(i64, String), (String, Instant)>;
 
-/// Asks platforms.
+/// The client for requests to platforms.
 pub struct Client {
     agent: Agent,
     pub(super) over_http: bool,
@@ -133,7 +134,7 @@ struct Token {
 
 impl Client {
     pub(super) fn new(over_http: bool) -> Self {
-        Self { agent: net::agent(over_http, PATIENCE), over_http, tokens: Mutex::default() }
+        Self { agent: net::agent(over_http, ANSWER_TIMEOUT), over_http, tokens: Mutex::default() }
     }
 
     /// Reads a file that a platform publishes.
@@ -147,7 +148,7 @@ impl Client {
             let host = Url::parse(&ask.address).ok().and_then(|url| url.host_str().map(str::to_owned));
             let host = host.unwrap_or_else(|| "somewhere else".to_owned());
             return Err(ServiceFault::Refused(format!(
-                "its service is on {host}, which is not one of the platform's hosts: an administrator may add it"
+                "its service is on {host}, which is not one of the platform's hosts; an administrator can add it"
             )));
         };
         let (agent, ask) = (self.agent.clone(), ask.clone());
@@ -156,7 +157,7 @@ impl Client {
         asked.map_err(ServiceFault::from_outage)?
     }
 
-    /// Calls a service, with a token for this scope; once more with a new one when the platform no longer knows it.
+    /// Calls a service with a token for a scope, and again with a new token if the platform rejects the first.
     pub(super) async fn call(
         &self,
         database: &Database,
@@ -174,7 +175,7 @@ impl Client {
         self.send(platform, ask, Some(&token)).await?.successful()
     }
 
-    /// Returns a token for a scope, by an assertion that this service signed (SEC 4.1, RFC 7523).
+    /// Returns a token for a scope, requested with an assertion that this service signed (SEC 4.1, RFC 7523).
     async fn token(&self, database: &Database, platform: &Platform, scope: &str) -> Result<String, ServiceFault> {
         let key = (platform.id, scope.to_owned());
         if let Some((token, ends)) = self.tokens.lock().unwrap_or_else(PoisonError::into_inner).get(&key)
@@ -183,13 +184,13 @@ impl Client {
             return Ok(token.clone());
         }
         let settings = &platform.settings;
-        let now = now();
+        let now = now_seconds();
         let assertion = keys::signing_key(database).await?.sign(&json!({
             "iss": settings.client_id,
             "sub": settings.client_id,
             "aud": settings.audience.as_ref().unwrap_or(&settings.token_url),
             "iat": now,
-            "exp": now + ASSERTION,
+            "exp": now + ASSERTION_LIFETIME,
             "jti": secret::random_hex(),
         }))?;
         let body = url::form_urlencoded::Serializer::new(String::new())
@@ -208,15 +209,15 @@ impl Client {
         if token.access_token.is_empty() || token.access_token.bytes().any(|c| !c.is_ascii_graphic()) {
             return Err(ServiceFault::Refused("its token is invalid".to_owned()));
         }
-        let lasts = Duration::from_secs(token.expires_in.unwrap_or(0).min(24 * 3600)).saturating_sub(MARGIN);
+        let lasts = Duration::from_secs(token.expires_in.unwrap_or(0).min(24 * 3600)).saturating_sub(RENEWAL_MARGIN);
         let kept = (token.access_token.clone(), Instant::now() + lasts);
         self.tokens.lock().unwrap_or_else(PoisonError::into_inner).insert(key, kept);
         Ok(token.access_token)
     }
 }
 
-/// Seconds since 1970.
-pub(super) fn now() -> u64 {
+/// Returns the number of seconds since 1970.
+pub(super) fn now_seconds() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs())
 }
 
@@ -235,9 +236,9 @@ fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) ->
     let mut answer = answer.map_err(ServiceFault::from_outage)?;
     let header = |name: &str| answer.headers().get(name).and_then(|value| value.to_str().ok()).map(str::to_owned);
     let link = header("link");
-    // In seconds; as a date it is passed over, and the queue's own patience holds.
+    // The value is in seconds; a date is ignored, and the queue's own delay applies.
     let after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
     let status = answer.status().as_u16();
     let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(ServiceFault::from_outage)?;
-    Ok(ServiceAnswer { status, body, link, after: after.map(|after| after.min(LONGEST_WAIT)) })
+    Ok(ServiceAnswer { status, body, link, after: after.map(|after| after.min(MAX_WAIT)) })
 }

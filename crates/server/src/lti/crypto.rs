@@ -1,5 +1,5 @@
-//! Tokens are signed by RS256, which every platform knows (SEC 5.1.1), and by nothing else: other algorithms are
-//! rejected before any key is read, so that no public key is ever taken for a shared secret.
+//! Signed tokens. Only RS256, which every platform supports (SEC 5.1.1), is accepted. Other algorithms are rejected
+//! before a key is read, so that a public key is never used as a shared secret.
 use crate::problem::ensure;
 use jsonwebtoken::{
     Algorithm, DecodingKey, DecodingKeyKind, EncodingKey, Header, Validation,
@@ -13,8 +13,8 @@ use ring::{
 };
 use serde::{Serialize, de::DeserializeOwned};
 
-/// The greatest difference between clocks, in seconds.
-pub(super) const LEEWAY: u64 = 60;
+/// The maximum difference between clocks, in seconds.
+pub(super) const CLOCK_LEEWAY: u64 = 60;
 
 struct Rs256Signer(RsaKeyPair);
 
@@ -41,7 +41,7 @@ struct Rs256Verifier {
 
 impl Verifier<Vec<u8>> for Rs256Verifier {
     fn verify(&self, message: &[u8], signed: &Vec<u8>) -> Result<(), signature::Error> {
-        // Keys below 2048 bits are none.
+        // Reject keys below 2048 bits.
         RsaPublicKeyComponents { n: &self.n, e: &self.e }
             .verify(&RSA_PKCS1_2048_8192_SHA256, message, signed)
             .map_err(|_| signature::Error::new())
@@ -73,11 +73,11 @@ static PROVIDER: CryptoProvider =
     CryptoProvider { signer_factory: signer, verifier_factory: verifier, key_utils: KeyUtils::new_unimplemented() };
 
 fn install() {
-    // The second time it exists already, and the store reports that.
+    // If a provider is installed already, the error can be ignored.
     let _: Result<(), &CryptoProvider> = PROVIDER.install_default();
 }
 
-/// Signs claims by a private key (PKCS#1, DER) of this name.
+/// Signs claims with the private key (PKCS#1, DER) that is called `kid`.
 pub(super) fn sign(claims: &impl Serialize, kid: &str, der: &[u8]) -> Result<String, Error> {
     install();
     let header = Header { kid: Some(kid.to_owned()), ..Header::new(Algorithm::RS256) };
@@ -92,7 +92,7 @@ pub(super) struct PublicKey {
     pub(super) e: String,
 }
 
-/// Returns the claims of a token that this key signed, that an issuer made for this audience, and that is not too old.
+/// Returns the claims of a token that the key signed, that an issuer made for an audience, and that is not too old.
 pub(super) fn verify<T: DeserializeOwned + Clone>(
     token: &str,
     key: &PublicKey,
@@ -101,7 +101,7 @@ pub(super) fn verify<T: DeserializeOwned + Clone>(
 ) -> Result<T, Error> {
     install();
     let mut validation = Validation::new(Algorithm::RS256);
-    validation.leeway = LEEWAY;
+    validation.leeway = CLOCK_LEEWAY;
     validation.validate_nbf = true;
     validation.set_required_spec_claims(&["exp", "iss", "aud", "sub"]);
     validation.set_issuer(&[issuer]);

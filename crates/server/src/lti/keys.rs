@@ -1,5 +1,5 @@
-//! The service's own keys. The first is made on demand. A new key signs after an hour, when platforms had the time to
-//! read it, and the one before it is published until the next.
+//! The service's own keys. The first is created on demand. A new key signs after an hour, so that platforms have time
+//! to read it, and the one before it is published until the next.
 use super::crypto;
 use crate::{
     db::{Database, DbError, Row, Transaction},
@@ -10,11 +10,11 @@ use rsa::{RsaPrivateKey, pkcs1::EncodeRsaPrivateKey, rand_core::OsRng, traits::P
 use serde::Serialize;
 use serde_json::{Value, json};
 
-/// Bits of a key; what every platform takes.
-const BITS: usize = 2048;
+/// The number of bits of a key, which every platform accepts.
+const KEY_BITS: usize = 2048;
 
-/// The time in which a new key is only published.
-const FIRST_TOLD: i64 = 3600 * 1000;
+/// The time for which a new key is published before it signs, in milliseconds.
+const PUBLICATION_TIME: i64 = 3600 * 1000;
 
 /// A key of the service.
 pub(super) struct SigningKey {
@@ -29,27 +29,28 @@ impl SigningKey {
     }
 }
 
-/// Makes a key, which signs from an hour on, or immediately if it is the first.
+/// Creates a key, which signs after an hour, or immediately if it is the first.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn new_key(database: &Database) -> Result<(), DbError> {
-    let made = tokio::task::spawn_blocking(make).await.map_err(|error| DbError::Other(error.to_string()))?;
+    let made = tokio::task::spawn_blocking(generate).await.map_err(|error| DbError::Other(error.to_string()))?;
     let (private, modulus, exponent) = made?;
     let mut transaction = database.begin().await?;
     let statement =
         "INSERT INTO platform_key (kid, private_key, modulus, exponent, created_at) VALUES (?, ?, ?, ?, {now})";
     transaction.execute(statement, values![secret::random_hex(), private, modulus, exponent]).await?;
-    // The new key, and the key that signs so far.
+    // Keep the new key, and the key that signs at present.
     let statement = "UPDATE platform_key SET retired_at = {now} WHERE retired_at IS NULL
         AND id NOT IN (SELECT id FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC LIMIT 2)";
     transaction.execute(statement, values![]).await?;
     transaction.commit().await
 }
 
-fn make() -> Result<(String, String, String), DbError> {
-    let other = |error: String| DbError::Other(format!("no key can be made: {error}"));
-    let key = RsaPrivateKey::new(&mut OsRng, BITS).map_err(|error| other(error.to_string()))?;
+fn generate() -> Result<(String, String, String), DbError> {
+    let other = |error: String| DbError::Other(format!("no key can be created: {error}"));
+    let key = RsaPrivateKey::new(&mut OsRng, KEY_BITS).map_err(|error| other(error.to_string()))?;
     let der = key.to_pkcs1_der().map_err(|error| other(error.to_string()))?;
     let text = |bytes: &[u8]| URL_SAFE_NO_PAD.encode(bytes);
     Ok((text(der.as_bytes()), text(&key.n().to_bytes_be()), text(&key.e().to_bytes_be())))
@@ -59,10 +60,10 @@ async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
     let statement = "SELECT kid, private_key, modulus, exponent,
            CAST(CASE WHEN created_at <= {now} - ? THEN 1 ELSE 0 END AS {int}) AS is_known
         FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC";
-    transaction.rows(statement, values![FIRST_TOLD]).await
+    transaction.rows(statement, values![PUBLICATION_TIME]).await
 }
 
-/// Returns all keys, the newest first; the first is made when there is none.
+/// Returns all keys, the newest first, and creates the first one if there is none.
 async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
     let found = rows(&mut database.read().await?).await?;
     if !found.is_empty() {
@@ -72,7 +73,7 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
     rows(&mut database.read().await?).await
 }
 
-/// Returns the key that signs: the newest that platforms had the time to read of, or the oldest.
+/// Returns the key that signs: the newest that platforms had time to read, or the oldest.
 pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbError> {
     let rows = all(database).await?;
     let known = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));

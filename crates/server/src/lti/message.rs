@@ -1,8 +1,8 @@
-//! A platform's message about a person who comes from it (LTI 5), and the part of it that is trusted.
+//! A platform's message about a person who comes from it (LTI 5), and the trusted parts of it.
 use super::{
     Platform,
-    client::{now, scope},
-    crypto::{self, LEEWAY, PublicKey},
+    client::{now_seconds, scope},
+    crypto::{self, CLOCK_LEEWAY, PublicKey},
     keys,
 };
 use crate::{
@@ -14,34 +14,34 @@ use serde::{Deserialize, Serialize};
 use serde_json::{Map, Value, json};
 use thiserror::Error;
 
-/// The age up to which a message is accepted, in seconds.
-const OLDEST: u64 = 3600;
+/// The maximum age of an accepted message, in seconds.
+const MAX_MESSAGE_AGE: u64 = 3600;
 
-/// The reason why a message is not believed.
+/// The reason why a message is rejected.
 #[derive(Debug, Clone, PartialEq, Eq, Error)]
 pub enum Rejection {
-    /// The message is no signed message, or signed by another algorithm than RS256.
+    /// The message is not signed, or is signed with another algorithm than RS256.
     #[error("the message is not signed by RS256 with a named key")]
     Form,
-    /// The platform has no key of this name.
-    #[error("the platform publishes no key of the name that the message is signed with")]
+    /// The platform has no key with this name.
+    #[error("the platform publishes no key with the name in the message")]
     UnknownKey,
-    /// The platform's keys can't be had.
+    /// The platform's keys can't be read.
     #[error("the platform's keys can't be read now")]
     NoKeys,
     /// The signature is not the platform's.
     #[error("the message was not signed by the platform")]
     Signature,
-    /// The message is too old, or of the future.
+    /// The message is too old, or from the future.
     #[error("the message is too old, or a clock is wrong")]
     Time,
-    /// The message answers another question.
-    #[error("the message is not for this sign-in: {0} is another one")]
+    /// The message answers another request.
+    #[error("the message is not for this sign-in: {0} differs")]
     Foreign(&'static str),
     /// The message comes from an unregistered deployment.
-    #[error("deployment {0} is not among those that an administrator named")]
+    #[error("deployment {0} is not registered; an administrator can add it")]
     Deployment(String),
-    /// A part is missing, or not understood.
+    /// A part is missing or not understood.
     #[error("the message is not understood: {0}")]
     Content(String),
 }
@@ -49,9 +49,9 @@ pub enum Rejection {
 /// The role of a person in a platform's course.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LtiRole {
-    /// A learner.
+    /// The person is a learner.
     Student,
-    /// An instructor, a teaching assistant, or an administrator.
+    /// The person is an instructor, a teaching assistant, or an administrator.
     Staff,
 }
 
@@ -65,42 +65,42 @@ impl LtiRole {
     }
 }
 
-/// A person as a platform describes them.
+/// A person in a platform's description.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LtiPerson {
-    /// The platform's name for the person, which never changes.
+    /// The platform's identifier of the person, which never changes.
     pub subject: String,
-    /// The person's role in the course there; `None` for parents, guests and others, and for people who left.
+    /// The person's role in the platform's course; `None` for parents, guests and others, and for people who left.
     pub role: Option<LtiRole>,
     /// The person's name, if the platform gives it.
     pub name: Option<String>,
-    /// The person's address, if the platform gives it; used for a login's name only.
+    /// The person's address, if the platform gives it; used only to propose a login.
     pub email: Option<String>,
 }
 
-/// A person and where they come from.
+/// A person, and the place that the person comes from.
 #[derive(Debug, Clone)]
 pub struct Message {
     /// The person.
     pub person: LtiPerson,
-    /// The place from which the person comes.
+    /// The place that the person comes from.
     pub arrival: Arrival,
 }
 
-/// The place from which a person comes.
+/// The place on a platform that a person comes from.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Arrival {
-    /// The deployment.
+    /// The deployment of this service on the platform.
     pub deployment: String,
-    /// The course there.
+    /// The course on the platform.
     pub context: Context,
-    /// The link, unless one is requested.
+    /// The link that the person followed; `None` if the platform requests a new one.
     pub resource: Option<Resource>,
     /// The assignment that the link names.
     pub assignment: Option<String>,
-    /// The column of the grade book that belongs to the link, if scores may be sent there.
+    /// The address of the grade book's column for the link, if scores may be sent there.
     pub line_item: Option<String>,
-    /// The address at which columns can be made, if that is permitted.
+    /// The address for creating columns, if that is permitted.
     pub line_items: Option<String>,
     /// The address of the course's list of members.
     pub memberships: Option<String>,
@@ -111,12 +111,12 @@ pub struct Arrival {
 /// A course of a platform.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Context {
-    /// The course's name for programs.
+    /// The course's identifier on the platform.
     pub id: String,
-    /// The course's name for people.
+    /// The course's title on the platform.
     #[serde(default)]
     pub title: Option<String>,
-    /// The course's short name for people.
+    /// The course's short name on the platform.
     #[serde(default)]
     pub label: Option<String>,
 }
@@ -124,22 +124,22 @@ pub struct Context {
 /// A link in a platform's course.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Resource {
-    /// The resource's name for programs.
+    /// The link's identifier on the platform.
     pub id: String,
-    /// The resource's name for people.
+    /// The link's title on the platform.
     #[serde(default)]
     pub title: Option<String>,
 }
 
-/// The wishes of a platform when a link must be chosen (DL 4.4.1).
+/// The parameters of a platform's request to choose a link (DL 4.4.1).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeepLinking {
-    /// The address for the answer.
+    /// The platform's address for the answer.
     pub deep_link_return_url: String,
-    /// The types of items that may be chosen.
+    /// The types of items that the platform accepts.
     #[serde(default)]
     pub accept_types: Vec<String>,
-    /// Sent back as it is.
+    /// Data that are returned unchanged.
     #[serde(default)]
     pub data: Option<String>,
 }
@@ -197,14 +197,14 @@ struct Claims {
     email: Option<String>,
 }
 
-/// Returns the name of the key with which a message claims to be signed.
+/// Returns the name of the key that a message claims to be signed with.
 pub(super) fn key_of(token: &str) -> Result<String, Rejection> {
     let header = jsonwebtoken::decode_header(token).map_err(|_| Rejection::Form)?;
     ensure(header.alg == Algorithm::RS256, Rejection::Form)?;
     header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Rejection::Form)
 }
 
-/// Reads the content of a message that this key signed; `nonce` is the digest of the nonce that was sent.
+/// Reads the content of a message that `key` signed; `nonce` is the digest of the nonce that was sent.
 pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &str) -> Result<Message, Rejection> {
     let settings = &platform.settings;
     let claims: Claims =
@@ -217,7 +217,7 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
             ErrorKind::MissingRequiredClaim(name) => Rejection::Content(format!("{name} is missing")),
             _ => Rejection::Content(error.to_string()),
         })?;
-    // SEC 5.1.3, 3 to 5: with several audiences, and if there is an authorized party at all, that party is this
+    // SEC 5.1.3, 3 to 5: if there are several audiences, or an authorized party, the authorized party must be this
     // service.
     let several = matches!(&claims.aud, TokenAudience::Many(all) if all.len() > 1);
     if matches!(&claims.aud, TokenAudience::One(audience) if *audience != settings.client_id) {
@@ -226,8 +226,8 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     if (several && claims.azp.is_none()) || claims.azp.as_ref().is_some_and(|azp| *azp != settings.client_id) {
         return Err(Rejection::Foreign("the authorized party"));
     }
-    let now = now();
-    ensure(claims.iat <= now + LEEWAY && now <= claims.iat + OLDEST + LEEWAY, Rejection::Time)?;
+    let now = now_seconds();
+    ensure(claims.iat <= now + CLOCK_LEEWAY && now <= claims.iat + MAX_MESSAGE_AGE + CLOCK_LEEWAY, Rejection::Time)?;
     ensure(
         crate::store::Digest::from_bytes(claims.nonce.as_bytes()).as_str() == nonce,
         Rejection::Foreign("the nonce"),
@@ -281,20 +281,20 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     })
 }
 
-/// Returns the name of a person, whole or made of its parts.
+/// Returns the full name of a person, or the name joined from its parts.
 pub(super) fn name_of(whole: Option<String>, parts: [Option<String>; 2]) -> Option<String> {
     let spoken = parts.into_iter().flatten().collect::<Vec<_>>().join(" ");
     whole.or(Some(spoken)).filter(|name| !name.trim().is_empty())
 }
 
-/// Returns the role of a person in the course by the platform's roles (LTI A.2.3). Roles in the institution or system
-/// give no role in the course, except that a sole role as its administrator does.
+/// Returns the role of a person in the course from the platform's roles (LTI A.2.3). Roles in the institution or system
+/// give no role in the course, except for a sole role as administrator.
 pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     const COURSE: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
-    // The simple names are deprecated, and still sent.
+    // The simple names are deprecated, but still in use.
     let in_course = |role: &str| -> Option<String> {
         let rest = role.strip_prefix(COURSE)?;
-        // A principal role, or a part of one: #Instructor, /Instructor#TeachingAssistant.
+        // A principal role, or a sub-role: #Instructor, /Instructor#TeachingAssistant.
         match rest.strip_prefix('/') {
             Some(part) => part.split('#').next().map(str::to_owned),
             None => rest.strip_prefix('#').map(str::to_owned),
@@ -316,7 +316,7 @@ pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     (named.is_empty() && roles.iter().any(administers)).then_some(LtiRole::Staff)
 }
 
-/// Returns the answer to a request for a link: one link to an assignment (DL 4.5), as a signed token.
+/// Returns the answer to a request for a link as a signed token, with one link to an assignment (DL 4.5).
 ///
 /// # Errors
 /// An error of the database.
@@ -327,7 +327,7 @@ pub async fn deep_linking_response(
     launch: &str,
     (slug, title): (&str, &str),
 ) -> Result<String, DbError> {
-    let now = now();
+    let now = now_seconds();
     let mut claims = json!({
         "iss": platform.settings.client_id,
         "aud": [platform.settings.issuer],

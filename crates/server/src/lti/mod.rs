@@ -1,6 +1,6 @@
 //! Learning platforms, by LTI 1.3 with its three services ("LTI Advantage"): people come from a platform's course to an
-//! assignment, a roster is read, and scores go back. This room knows the platforms' words: messages, keys, tokens,
-//! services. `domain` decides who may do what by them.
+//! assignment, a roster is read, and scores go back. This module implements the protocol: messages, keys, tokens,
+//! services. `domain` decides about permissions.
 //!
 //! Written against the specifications of 1EdTech: LTI Core 1.3 ("LTI"), Security Framework 1.0 ("SEC"), Deep Linking
 //! 2.0 ("DL"), Names and Role Provisioning Services 2.0 ("NRPS"), and Assignment and Grade Services 2.0 ("AGS").
@@ -28,7 +28,7 @@ pub(crate) use client::scope;
 
 use trust::Trust;
 
-/// The parts that speaking with platforms takes.
+/// The state for communication with platforms.
 #[derive(Debug)]
 pub struct Lti {
     /// The client for platforms' tokens and services.
@@ -43,20 +43,21 @@ impl Default for Lti {
 }
 
 impl Lti {
-    /// Creates the part for platforms; with `over_http` these may be reached without TLS: for trials on one machine.
+    /// Creates the state. `over_http` allows platforms without TLS, for trials on one machine.
     pub fn new(over_http: bool) -> Self {
         Self { client: Client::new(over_http), trust: Trust::default() }
     }
 
-    /// Returns whether platforms may be reached, and the service used by them, without TLS.
+    /// Returns whether platforms and this service may be used without TLS.
     pub fn over_http(&self) -> bool {
         self.client.over_http
     }
 
-    /// Reads a platform's message about a person who comes from it, and checks all of it (SEC 5.1.3).
+    /// Reads a platform's message about a person who comes from it, and checks it completely (SEC 5.1.3).
     ///
     /// # Errors
-    /// Its fault.
+    ///
+    /// The reason why the message is rejected.
     pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Rejection> {
         let kid = message::key_of(token)?;
         let key = self.trust.key(&self.client, platform, &kid).await?;

@@ -1,4 +1,4 @@
-//! A platform as an administrator registers it.
+//! A platform, as an administrator registers it.
 use crate::{
     db::{DbError, FromRow, Row},
     problem::{Problem, ensure},
@@ -8,52 +8,52 @@ use serde::{Deserialize, Serialize};
 use url::Url;
 use utoipa::ToSchema;
 
-/// A platform's addresses: all of them are on its page for tools.
+/// The addresses of a platform, which are on the platform's page for tools.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlatformWish {
-    /// The issuer of its messages ("platform ID").
+    /// The issuer of the platform's messages ("platform ID").
     #[schema(value_type = Word)]
     pub issuer: String,
     /// The platform's name for this service ("client ID").
     #[schema(value_type = Word)]
     pub client_id: String,
-    /// The address at which it signs people in ("authentication request URL").
+    /// The address at which the platform signs people in ("authentication request URL").
     #[schema(value_type = HttpsUrl)]
     pub login_url: String,
-    /// The address of tokens for its services ("access token URL").
+    /// The address of tokens for the platform's services ("access token URL").
     #[schema(value_type = HttpsUrl)]
     pub token_url: String,
-    /// The address of its public keys ("public keyset URL").
+    /// The address of the platform's public keys ("public keyset URL").
     #[schema(value_type = HttpsUrl)]
     pub keys_url: String,
-    /// The audience of requests for tokens, if it is not the address for tokens.
+    /// The audience of requests for tokens, if it differs from the address for tokens.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Word>)]
     pub audience: Option<String>,
-    /// The deployments from which people may come. A rejected sign-in shows the number of a new one.
+    /// The deployments from which people may come. The page of a rejected sign-in shows the number of a new one.
     #[schema(value_type = Vec<Word>, min_items = 1, max_items = 1000)]
     pub deployments: Vec<String>,
-    /// Further hosts of its services, in addition to those of the addresses above.
+    /// Further hosts of the platform's services, in addition to those of the other addresses.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<Host>, max_items = 50)]
     pub hosts: Vec<String>,
 }
 
-/// A platform.
+/// A registered platform.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Platform {
-    /// The platform's number here.
+    /// The platform's number on this server.
     #[serde(skip)]
     pub(crate) id: i64,
-    /// The platform's name here.
+    /// The platform's name on this server.
     pub name: String,
-    /// The platform's words about itself.
+    /// The registered addresses and deployments.
     #[serde(flatten)]
     pub settings: PlatformWish,
 }
 
-/// Returns an address that may be called: by HTTPS, with a host, with nothing hidden in it.
+/// Returns an address that may be called: HTTPS with a host, and without hidden parts.
 pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     let url = Url::parse(text).ok()?;
     let secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
@@ -61,7 +61,7 @@ pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     (secure && plain && url.has_host() && text.len() <= 2000).then_some(url)
 }
 
-/// Returns the host and port, as they are in an origin.
+/// Returns the host and port, in the form of an origin.
 fn place(url: &Url) -> String {
     match (url.host_str(), url.port()) {
         (Some(host), Some(port)) => format!("{host}:{port}"),
@@ -70,10 +70,11 @@ fn place(url: &Url) -> String {
 }
 
 impl PlatformWish {
-    /// Checks that the registration makes sense.
+    /// Checks that the registration is valid.
     ///
     /// # Errors
-    /// The first value that makes no sense.
+    ///
+    /// The first invalid value.
     pub fn check(&self, over_http: bool) -> Result<(), Problem> {
         let is_word = |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {
@@ -110,7 +111,7 @@ impl FromRow for Platform {
 }
 
 impl Platform {
-    /// Returns the hosts that its services may be on.
+    /// Returns the hosts of the platform's services.
     fn places(&self, over_http: bool) -> Vec<String> {
         let settings = &self.settings;
         let own = [&settings.login_url, &settings.token_url, &settings.keys_url, &settings.issuer];
@@ -118,8 +119,8 @@ impl Platform {
         own.chain(settings.hosts.iter().cloned()).collect()
     }
 
-    /// Returns an address of one of its services. A message may name any; this service calls only hosts that an
-    /// administrator named, so that a message can't make it call others, or show them its token.
+    /// Returns an address of one of the platform's services. Only hosts that an administrator registered are allowed,
+    /// so that a message can't make this service call others, or send them its token.
     pub(crate) fn service(&self, text: &str, over_http: bool) -> Option<Url> {
         let url = address(text, over_http)?;
         self.places(over_http).contains(&place(&url)).then_some(url)

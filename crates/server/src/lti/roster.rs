@@ -7,12 +7,12 @@ use super::{
 use crate::db::Database;
 use serde::Deserialize;
 
-/// More pages or members than this are no course.
-const PAGES: usize = 500;
-const MEMBERS: usize = 50_000;
+/// The maximum number of pages of a list of members.
+const MAX_PAGES: usize = 500;
+const MAX_MEMBERS: usize = 50_000;
 
 /// The media type of a page of members.
-const KIND: &str = "application/vnd.ims.lti-nrps.v2.membershipcontainer+json";
+const MEDIA_TYPE: &str = "application/vnd.ims.lti-nrps.v2.membershipcontainer+json";
 
 #[derive(Deserialize)]
 struct RosterPage {
@@ -34,7 +34,8 @@ struct Member {
 /// Reads all pages of the members of a course.
 ///
 /// # Errors
-/// The platform's error, or what is wrong with its answer; then none of it is used.
+///
+/// The platform's error, or the fault of its answer; no members are used then.
 pub async fn fetch(
     client: &Client,
     database: &Database,
@@ -43,21 +44,21 @@ pub async fn fetch(
 ) -> Result<Vec<LtiPerson>, ServiceFault> {
     let mut members = Vec::new();
     let mut next = Some(address.to_owned());
-    for _ in 0..PAGES {
+    for _ in 0..MAX_PAGES {
         let Some(address) = next else { return Ok(members) };
-        let ask = Ask { address, accept: KIND, body: None };
+        let ask = Ask { address, accept: MEDIA_TYPE, body: None };
         let told = client.call(database, platform, scope::MEMBERS, &ask).await?;
         let page: RosterPage = told.read("its members")?;
-        members.extend(page.members.into_iter().filter_map(read));
-        if members.len() > MEMBERS {
+        members.extend(page.members.into_iter().filter_map(to_person));
+        if members.len() > MAX_MEMBERS {
             break;
         }
-        next = told.link.as_deref().and_then(following);
+        next = told.link.as_deref().and_then(next_page);
     }
-    Err(ServiceFault::Refused("its list of members has no end".to_owned()))
+    Err(ServiceFault::Refused(format!("its list of members is longer than {MAX_PAGES} pages or {MAX_MEMBERS} members")))
 }
 
-fn read(member: Member) -> Option<LtiPerson> {
+fn to_person(member: Member) -> Option<LtiPerson> {
     if member.user_id.is_empty() || member.user_id.len() > 255 {
         return None;
     }
@@ -71,11 +72,11 @@ fn read(member: Member) -> Option<LtiPerson> {
 }
 
 /// Returns the address of the next page in a header `Link` (RFC 8288).
-fn following(header: &str) -> Option<String> {
+fn next_page(header: &str) -> Option<String> {
     let mut rest = header;
     while let Some((_, after)) = rest.split_once('<') {
         let (address, after) = after.split_once('>')?;
-        // Parameters reach to the next link, which begins with a bracket.
+        // The parameters end at the next link, which begins with a bracket.
         let (parameters, further) = after.split_at(after.find('<').unwrap_or(after.len()));
         let is_next = parameters.split([';', ',']).any(|parameter| {
             parameter.split_once('=').is_some_and(|(name, value)| {
@@ -105,7 +106,7 @@ mod tests {
             ("", None),
             ("<https://a/2", None),
         ] {
-            assert_eq!(following(header).as_deref(), next, "{header}");
+            assert_eq!(next_page(header).as_deref(), next, "{header}");
         }
     }
 }

@@ -1,9 +1,9 @@
-//! The score of a person's work on an assignment for a platform (AGS 3.4), and the time of sending it.
+//! Scores of people's work on assignments, for platforms (AGS 3.4).
 //!
 //! Every change of a grade puts a job into the queue, in the same transaction. The job holds no score: the score is
-//! read when it is sent, so that many changes are one message. Each content has a time of its own, which only grows and
-//! stays the same however often it is sent; a platform keeps the newest content. A message that arrives twice, or late,
-//! therefore changes nothing.
+//! read when it is sent, so that many changes are one message. Each content has a time, which only grows and is the
+//! same in every repetition; a platform keeps the newest content. A message that arrives twice, or late, therefore
+//! changes nothing.
 use super::Platform;
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
@@ -16,19 +16,20 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// The work of a job.
+/// The job of sending a score.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Order {
-    /// The platform's link.
+    /// The number of the platform's link.
     pub(super) link: i64,
-    /// The student.
+    /// The number of the student's account.
     pub(super) account: i64,
-    /// Whether the score is sent even if the platform got the same before.
+    /// Whether the score is sent even if the platform has received it before.
     #[serde(default)]
     pub(super) again: bool,
 }
 
-/// The links of platforms that get students' scores, with the students; the rest of the statement selects them.
+/// Selects the links of platforms that receive students' scores, with the students; the argument is the rest of the
+/// statement.
 macro_rules! orders {
     ($which:literal) => {
         concat!(
@@ -46,26 +47,26 @@ macro_rules! orders {
     };
 }
 
-/// Notes that the counting result of a submission has changed: the platforms of its owner get the score.
+/// Records that the counting result of a submission has changed, so that the owner's platforms receive the score.
 pub(crate) async fn note_change(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
     let rows = transaction.rows(orders!("submission.id = ?"), values![submission]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
-/// Notes that the results of a regrade begin to count.
+/// Records that the results of a regrade count from now on.
 pub(crate) async fn note_regrade(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
     let statement = orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ?)");
     let rows = transaction.rows(statement, values![campaign]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
-/// Sends all scores of an assignment, with `again` also those that platforms have, and returns their number.
+/// Enqueues all scores of an assignment, with `again` even those that platforms have, and returns their number.
 pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, again: bool) -> Result<usize, DbError> {
     let rows = transaction.rows(orders!("submission.assignment = ?"), values![assignment]).await?;
     enqueue(transaction, &rows, again).await
 }
 
-/// Sends the score of an account to the link by which it just arrived.
+/// Enqueues the score of an account for the link by which its person just arrived.
 pub(crate) async fn note_arrival(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
     let statement = orders!("submission.account = ? AND platform_link.id = ?");
     let rows = transaction.rows(statement, values![account, link]).await?;
@@ -86,26 +87,26 @@ async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Re
     Ok(rows.len())
 }
 
-/// A score on its way.
+/// A score that is ready to be sent.
 #[derive(Debug, Clone)]
 pub(super) struct Parcel {
     pub(super) order: Order,
     pub(super) platform: Platform,
-    /// The platform's name for the person.
+    /// The platform's identifier of the person.
     pub(super) subject: String,
-    /// The column of the grade book, when it is known.
+    /// The address of the grade book's column, if it is known.
     pub(super) line_item: Option<String>,
-    /// The address at which the column is otherwise found or made.
+    /// The address for finding or creating the column otherwise.
     pub(super) line_items: Option<String>,
     pub(super) resource: String,
     pub(super) slug: String,
     pub(super) title: String,
     pub(super) content: Value,
-    /// The time when the content became so, in milliseconds since 1970.
+    /// The time of the score, in milliseconds since 1970.
     pub(super) stamp: i64,
 }
 
-/// Returns the score to send for an order; `None` if there is nothing to send (any more). Gives the content its time.
+/// Returns the score to send for an order, with its time; `None` if there is nothing to send.
 pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Result<Option<Parcel>, DbError> {
     let statement =
         "SELECT platform.id, platform.name, platform.settings, platform_account.subject, platform_link.line_item,
@@ -149,9 +150,9 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
     })))
 }
 
-/// Returns the worth of a person's work on an assignment: the most points of all their submissions. Until there are
-/// points the platform learns that they follow, and if the grader failed, that staff must check it; it never gets an
-/// undeserved zero. Hidden, unpublished groups are left out, because platforms show all that they get.
+/// Returns the score of a person's work on an assignment: the most points of all submissions. Until there are points,
+/// the platform is informed that they follow, and if the grader failed, that staff must check the work; it never
+/// receives an undeserved zero. Hidden, unpublished groups are left out, because platforms show every score.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown,
            mark.points AS mark, submission.created_at, assignment.settings, extension.due_at AS own_due FROM submission
@@ -199,7 +200,7 @@ async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -
     })
 }
 
-/// Notes that a platform has the score, unless there is something newer by now.
+/// Records that a platform has the score, unless there is a newer one.
 pub(super) async fn note_sent(transaction: &mut Transaction, parcel: &Parcel) -> Result<(), DbError> {
     let statement =
         "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
@@ -212,13 +213,13 @@ pub(super) async fn note_sent(transaction: &mut Transaction, parcel: &Parcel) ->
     note(transaction, parcel.order, "score sent", &format!("{what}, to {}", parcel.platform.name)).await
 }
 
-/// Notes why a platform does not take a score, for staff.
+/// Records the reason why a platform rejects a score, for staff.
 pub(super) async fn note_rejection(transaction: &mut Transaction, order: Order, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE platform_score SET fault = ? WHERE link = ? AND account = ? AND sent_at IS NULL";
     transaction.execute(statement, values![fault, order.link, order.account]).await.map(drop)
 }
 
-/// Notes that a job was tried too often; returns whether it was a job of this kind.
+/// Records that a job was tried too often; returns whether it was a job of this lane.
 pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault: &str) -> Result<bool, DbError> {
     let Ok(order) = serde_json::from_str::<Order>(payload) else { return Ok(false) };
     note_rejection(transaction, order, fault).await?;
@@ -226,7 +227,7 @@ pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault:
     Ok(true)
 }
 
-/// Writes an event about a score, for the staff of its course.
+/// Writes an event about a score into the course's log.
 async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &str) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, course, assignment, text)
         SELECT {now}, ?, assignment.course, assignment.id, account.login || ': ' || CAST(? AS TEXT)
@@ -235,18 +236,19 @@ async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &st
     transaction.execute(statement, values![kind, text, order.account, order.link]).await.map(drop)
 }
 
-/// The state of the column of a link.
+/// The state of a link's column in the grade book.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum ColumnState {
-    /// The column is known.
+    /// The column is known; the value is its address.
     Known(String),
-    /// The caller must have it made; others wait this long.
+    /// The column is unknown, and the caller must create it; other callers wait.
     Unclaimed,
-    /// Another caller makes the column.
+    /// Another caller creates the column.
     Claimed,
 }
 
-/// Returns the state of the column of a link; a caller that gets [`ColumnState::Unclaimed`] calls [`column_made`] soon.
+/// Returns the state of the column of a link; a caller that receives [`ColumnState::Unclaimed`] must soon call
+/// [`column_made`].
 pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<ColumnState, DbError> {
     let statement = "UPDATE platform_link SET making_until = {now} + ?
         WHERE id = ? AND line_item IS NULL
@@ -259,7 +261,7 @@ pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i6
     Ok(row.maybe_text("line_item")?.map_or(ColumnState::Claimed, ColumnState::Known))
 }
 
-/// Stores the column that was found or made for a link; `None` lets another caller try.
+/// Stores the column that was found or created for a link; `None` lets another caller try.
 pub(super) async fn keep_column(
     transaction: &mut Transaction,
     link: i64,

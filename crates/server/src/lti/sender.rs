@@ -1,4 +1,4 @@
-//! Sends scores to platforms: jobs of their own lane, done by the server itself.
+//! Sends scores to platforms, as jobs of a separate lane that the server runs itself.
 use super::{
     Lti, ServiceFault,
     client::{Ask, scope},
@@ -16,35 +16,34 @@ use tokio::sync::Semaphore;
 use tokio_util::sync::CancellationToken;
 use url::Url;
 
-/// The number of simultaneous messages: a platform that hangs delays only a few.
-const AT_ONE_TIME: usize = 4;
+/// The number of parallel messages, so that a hanging platform delays only a few.
+const MAX_PARALLEL: usize = 4;
 
-/// The time between two searches without a notification.
-const LOOK_EVERY: Duration = Duration::from_secs(2);
+/// The time between two searches for jobs without a notification.
+const SEARCH_INTERVAL: Duration = Duration::from_secs(2);
 
-/// The number of tries while a platform does not answer, with waits up to an hour: more than a day in all.
-const PATIENT: u32 = 32;
+/// The number of tries while a platform does not answer, with waits up to an hour: more than a day altogether.
+const MAX_OUTAGE_TRIES: u32 = 32;
 
-/// The number of tries while a platform rejects scores: it may have been set up wrongly, and mended soon.
-const REFUSED: u32 = 6;
+/// The number of tries while a platform rejects scores, because its configuration may be corrected.
+const MAX_REJECTED_TRIES: u32 = 6;
 
-/// A message takes no longer.
-const MOST: Duration = Duration::from_secs(600);
+/// The maximum duration of a message.
+const MAX_DURATION: Duration = Duration::from_secs(600);
 
-/// The longest wait between two tries.
-const LONGEST_WAIT: Duration = Duration::from_secs(3600);
+/// The maximum wait between two tries.
+const MAX_WAIT: Duration = Duration::from_secs(3600);
 
-/// The time, in milliseconds, in which no other caller has a column made; others check at the same interval whether it
-/// exists.
-const MAKING: i64 = 90_000;
-const LOOKS: u32 = 100;
-const LOOK_AGAIN: Duration = Duration::from_millis(250);
+/// The time in which no other caller creates a column, in milliseconds; others check for it at the same interval.
+const COLUMN_CREATION_TIME: i64 = 90_000;
+const MAX_POLLS: u32 = 100;
+const POLL_INTERVAL: Duration = Duration::from_millis(250);
 
-/// The holder of the jobs.
+/// The claimant of the jobs.
 const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", token: None };
 
-/// Sends scores until `stop` is canceled. A score that was sent and not noted then is sent once more, which changes
-/// nothing. `look` finds jobs of silent servers; it is called before each claim.
+/// Sends scores until `stop` is canceled. If recording a sent score fails, it is sent again, which changes nothing.
+/// `look` finds jobs of silent servers; it is called before each claim.
 pub async fn run<F: Future<Output = Result<(), DbError>>>(
     database: Database,
     notifier: Notifier,
@@ -53,7 +52,7 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
     look: impl Fn() -> F,
     stop: CancellationToken,
 ) {
-    let room = Arc::new(Semaphore::new(AT_ONE_TIME));
+    let room = Arc::new(Semaphore::new(MAX_PARALLEL));
     let mut subscription = notifier.subscribe();
     while !stop.is_cancelled() {
         tokio::select! {
@@ -75,19 +74,19 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
         }
         tokio::select! {
             () = stop.cancelled() => return,
-            _ = subscription.wait(LOOK_EVERY) => {}
+            _ = subscription.wait(SEARCH_INTERVAL) => {}
         }
     }
 }
 
-/// Returns the next job, and a place to do it in.
+/// Returns the next job, and a permit to run it.
 async fn take<F: Future<Output = Result<(), DbError>>>(
     database: &Database,
     policy: &QueuePolicy,
     room: &Arc<Semaphore>,
     look: impl Fn() -> F,
 ) -> Result<Option<(Claim, tokio::sync::OwnedSemaphorePermit)>, DbError> {
-    // A server without platforms never writes for them.
+    // A server without platforms makes no write transactions for them.
     if !queue::is_due(&mut database.read().await?, Lane::Passback).await? {
         return Ok(None);
     }
@@ -107,7 +106,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
             sent = &mut sending => break sent,
             () = tokio::time::sleep(policy.renew_every()) => {
                 let mut transaction = database.begin().await?;
-                queue::renew(&mut transaction, policy, &claim.lease, None, MOST).await?;
+                queue::renew(&mut transaction, policy, &claim.lease, None, MAX_DURATION).await?;
                 transaction.commit().await?;
             }
         }
@@ -115,7 +114,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
     let mut transaction = database.begin().await?;
     match sent {
         Ok(parcel) => {
-            // A sender that lost the lease sends the same as the next one, at the same time.
+            // A sender that lost the lease sends the same score as the next one, with the same time.
             if queue::complete(&mut transaction, &claim.lease).await? == Completion::Done
                 && let Some(parcel) = parcel
             {
@@ -126,10 +125,10 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
             let text = fault.to_string();
             tracing::warn!(job = claim.lease.job, fault = text, "a platform rejected a score");
             let (tries, least) = match &fault {
-                ServiceFault::Away { after, .. } => (PATIENT, after.unwrap_or_default()),
-                ServiceFault::Refused(_) => (REFUSED, Duration::ZERO),
+                ServiceFault::Away { after, .. } => (MAX_OUTAGE_TRIES, after.unwrap_or_default()),
+                ServiceFault::Refused(_) => (MAX_REJECTED_TRIES, Duration::ZERO),
             };
-            let patient = QueuePolicy { max_failures: tries, longest_wait: LONGEST_WAIT, ..*policy };
+            let patient = QueuePolicy { max_failures: tries, longest_wait: MAX_WAIT, ..*policy };
             let failure = queue::fail(&mut transaction, &patient, &claim.lease, &text, least).await?;
             match (failure, serde_json::from_str::<Order>(&claim.payload)) {
                 (Failure::Buried, _) => {
@@ -143,7 +142,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
     transaction.commit().await
 }
 
-/// Sends the score that is due, and returns it; `None` if there is none.
+/// Sends the next due score and returns it; `None` if no score is due.
 async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Parcel>, ServiceFault> {
     let order: Order = serde_json::from_str(&claim.payload)
         .map_err(|error| ServiceFault::Refused(format!("the job can't be read: {error}")))?;
@@ -157,7 +156,7 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Pa
     };
     let mut body = parcel.content.clone();
     body["userId"] = json!(parcel.subject);
-    body["timestamp"] = json!(calendar::exact(parcel.stamp));
+    body["timestamp"] = json!(calendar::format_iso(parcel.stamp));
     let ask = Ask {
         address: scores(&line_item)?,
         accept: "application/json",
@@ -165,13 +164,13 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Pa
     };
     match lti.client.call(database, &parcel.platform, scope::SCORE, &ask).await {
         Ok(_) => Ok(Some(parcel)),
-        // It knows something newer already (AGS 3.4.8).
+        // The platform has a newer score already (AGS 3.4.8).
         Err(ServiceFault::Refused(said)) if said.starts_with("409") => Ok(Some(parcel)),
         Err(fault) => Err(fault),
     }
 }
 
-/// Returns the address of a column's scores: its own with `/scores` at the path's end (AGS 3.4).
+/// Returns the address of a column's scores: the column's, with `/scores` at the end of the path (AGS 3.4).
 fn scores(line_item: &str) -> Result<String, ServiceFault> {
     let wrong = || ServiceFault::Refused("the address of its grade book's column is invalid".to_owned());
     let mut url = Url::parse(line_item).map_err(|_| wrong())?;
@@ -186,19 +185,19 @@ struct LineItem {
     link: Option<String>,
 }
 
-/// Returns the column of a link that has none yet. One message has it found or made, and the others wait for it.
+/// Returns the column of a link that has none yet. One message finds or creates it, and the others wait.
 async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<String, ServiceFault> {
     let Some(container) = &parcel.line_items else {
         return Err(ServiceFault::Refused("its grade book has no column for this link".to_owned()));
     };
     let link = parcel.order.link;
-    for _ in 0..LOOKS {
+    for _ in 0..MAX_POLLS {
         let mut transaction = database.begin().await?;
-        let column = score::column(&mut transaction, link, MAKING).await?;
+        let column = score::column(&mut transaction, link, COLUMN_CREATION_TIME).await?;
         transaction.commit().await?;
         match column {
             ColumnState::Known(address) => return Ok(address),
-            ColumnState::Claimed => tokio::time::sleep(LOOK_AGAIN).await,
+            ColumnState::Claimed => tokio::time::sleep(POLL_INTERVAL).await,
             ColumnState::Unclaimed => {
                 let made = find_or_make(database, lti, parcel, container).await;
                 let mut transaction = database.begin().await?;
@@ -208,10 +207,10 @@ async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<St
             }
         }
     }
-    Err(ServiceFault::Away { why: "the column of its grade book is still being made".to_owned(), after: None })
+    Err(ServiceFault::Away { why: "the column of its grade book is still being created".to_owned(), after: None })
 }
 
-/// Gets the column of a link from a platform, or has the platform make one (AGS 3.2).
+/// Finds the column of a link on a platform, or creates it (AGS 3.2).
 async fn find_or_make(
     database: &Database,
     lti: &Lti,

@@ -1,5 +1,5 @@
-//! The keys of platforms, as they publish them: kept for an hour, and read again when one is not known, because
-//! platforms change their keys.
+//! The keys that platforms publish. They are kept for an hour, and read again if one is unknown, because platforms
+//! change their keys.
 use super::{Client, Platform, Rejection, crypto::PublicKey};
 use serde::Deserialize;
 use std::{
@@ -9,15 +9,15 @@ use std::{
 };
 
 /// The time for which keys are used without reading them again.
-const FRESH: Duration = Duration::from_secs(3600);
+const KEY_LIFETIME: Duration = Duration::from_secs(3600);
 
-/// When the platform does not answer, earlier keys are valid for a day.
-const STALE: Duration = Duration::from_secs(24 * 3600);
+/// The time for which keys are used if the platform does not answer.
+const STALE_LIFETIME: Duration = Duration::from_secs(24 * 3600);
 
-/// The pause between two requests because of unknown keys: strangers may name any.
-const PAUSE: Duration = Duration::from_secs(5);
+/// The pause between two requests because of unknown keys, which strangers can name freely.
+const MIN_PAUSE: Duration = Duration::from_secs(5);
 
-/// The keys of platforms, by number.
+/// The keys of platforms, by the platform's number.
 #[derive(Debug, Default)]
 pub(super) struct Trust(Mutex<HashMap<i64, KnownKeys>>);
 
@@ -44,8 +44,8 @@ struct PublishedKey {
     r#use: Option<String>,
 }
 
-/// Returns the keys of a set that sign by RS256; others are not ours to judge.
-fn usable(set: KeySet) -> Vec<PublicKey> {
+/// Returns the keys of a set for RS256; others are ignored.
+fn usable_keys(set: KeySet) -> Vec<PublicKey> {
     let keys = set.keys.into_iter().filter_map(|key| serde_json::from_value::<PublishedKey>(key).ok());
     let usable = keys.filter(|key| {
         key.kty == "RSA"
@@ -61,28 +61,28 @@ impl Trust {
         known.get(&platform.id).filter(|known| known.address == platform.settings.keys_url).cloned()
     }
 
-    /// Returns a platform's key of this name.
+    /// Returns the platform's key with a name.
     pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Rejection> {
         let named = |known: &KnownKeys| known.keys.iter().find(|key| key.kid == kid).cloned();
         let known = self.find_keys(platform);
         if let Some(known) = &known {
-            if known.read_at.is_some_and(|at| at.elapsed() < FRESH)
+            if known.read_at.is_some_and(|at| at.elapsed() < KEY_LIFETIME)
                 && let Some(key) = named(known)
             {
                 return Ok(key);
             }
-            if known.asked_at.elapsed() < PAUSE {
+            if known.asked_at.elapsed() < MIN_PAUSE {
                 return named(known).ok_or(Rejection::UnknownKey);
             }
         }
         let asked = client.get(platform, &platform.settings.keys_url).await;
-        let keys = asked.and_then(|answer| answer.read("its keys").map(usable));
+        let keys = asked.and_then(|answer| answer.read("its keys").map(usable_keys));
         let (now, address) = (Instant::now(), platform.settings.keys_url.clone());
         let newly = match keys {
             Ok(keys) => KnownKeys { address, keys, read_at: Some(now), asked_at: now },
             Err(error) => {
                 tracing::warn!(platform = platform.name, %error, "a platform's keys can't be read");
-                let before = known.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE));
+                let before = known.filter(|known| known.read_at.is_some_and(|at| at.elapsed() < STALE_LIFETIME));
                 let none = || KnownKeys { address, keys: Vec::new(), read_at: None, asked_at: now };
                 KnownKeys { asked_at: now, ..before.unwrap_or_else(none) }
             }
@@ -108,7 +108,7 @@ mod tests {
             {"kty": "RSA", "n": "AQ", "e": "AQAB"},
             {"kty": "EC", "kid": "curve", "crv": "P-256", "x": "AQ", "y": "AQ"},
             {"kty": "oct", "kid": "shared", "k": "AQ"}, 7]}"#;
-        let read = |set: &[u8]| serde_json::from_slice(set).map(usable);
+        let read = |set: &[u8]| serde_json::from_slice(set).map(usable_keys);
         let names: Vec<String> = read(set).expect("a set").into_iter().map(|key| key.kid).collect();
         assert_eq!(names, ["a", "plain"]);
         assert!(read(b"[]").is_err() && read(b"no").is_err());

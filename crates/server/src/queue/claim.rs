@@ -1,24 +1,25 @@
-//! Claiming.
+//! Claiming of jobs.
 use super::{Claim, Lane, Lease, QueuePolicy, millis};
 use crate::{
     db::{DbError, Transaction, read_row},
     secret, values,
 };
 
-/// The one who claims.
+/// The worker that claims a job.
 #[derive(Debug, Clone, Copy)]
 pub struct Claimant<'a> {
     /// The worker's name.
     pub worker: &'a str,
-    /// The token of its worker, if it has one.
+    /// The number of the worker's token, if it has one.
     pub token: Option<i64>,
 }
 
-/// Claims the job whose turn it is, if there is one. A job on which this worker failed last is left to others for a
-/// third of a lease: the fault may be the worker's. Two workers never get the same: the row is locked, and passed over
-/// by others, until the caller commits.
+/// Claims the next job, if there is one. A job on which this worker failed last is left to others for a third of a
+/// lease, because the worker may be at fault. Two workers never get the same job: the row is locked, and skipped by
+/// others, until the caller commits.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn claim(
     transaction: &mut Transaction,
@@ -43,10 +44,11 @@ pub async fn claim(
     Ok(Some(read_row!(row => Claim { submission, payload, failures, deaths; lease })))
 }
 
-/// Returns whether something in a lane may be due: a job whose turn has come, or a held one whose lease may be over.
-/// Costs a reader's transaction only.
+/// Returns whether a job in a lane may be due: a waiting one, or a held one whose lease may have expired. This needs
+/// only a read transaction.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn is_due(transaction: &mut Transaction, lane: Lane) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE lane = ? AND (

@@ -1,29 +1,29 @@
 //! Puts jobs into the queue, with their ranks.
 //!
-//! A job's **rank** is a time: the moment of its turn if all jobs waited in order. For the first waiting job of a
-//! student it is now; each further one comes [`Turn::Student`]'s spacing later, so that twenty uploads of one student
-//! do not delay another's first. Jobs of a regrade come later by a head start for uploads, and then one by one. Ranks
-//! do not change while time advances, so only a bounded number of others pass a waiting job. No ageing is needed, and
-//! the place of a job in the queue is a count.
+//! A job's **rank** is a time by which jobs are ordered. For the first waiting job of a student it is the present; each
+//! further one is later by [`Turn::Student`]'s spacing, so that twenty uploads of one student do not delay another's
+//! first. Jobs of a regrade come later by a head start for uploads, and then one by one. Ranks never change, so only a
+//! bounded number of other jobs can pass a waiting job. No aging is needed, and the position of a job in the queue is a
+//! count.
 use super::Lane;
 use crate::{
     db::{DbError, Transaction},
     values,
 };
 
-/// The owner of the turn that a job uses up.
+/// The owner of the turn that a job takes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turn {
-    /// A student's upload.
+    /// A student with an upload; the value is the account.
     Student(i64),
-    /// Part of a regrade.
+    /// A regrade.
     Campaign(i64),
-    /// Telling a platform, by the link, of an account's work.
+    /// A score of an account for a platform's link.
     Score(i64, i64),
 }
 
 impl Turn {
-    /// Returns the delay of a further job of the same owner, in milliseconds.
+    /// Returns the delay between consecutive jobs of one owner, in milliseconds.
     pub(crate) fn spacing_millis(self) -> i64 {
         match self {
             Self::Student(_) => 600_000,
@@ -32,7 +32,7 @@ impl Turn {
         }
     }
 
-    /// Returns the delay of its first job after an upload of the same moment, in milliseconds.
+    /// Returns the delay of the owner's first job after an upload of the same time, in milliseconds.
     fn delay_millis(self) -> i64 {
         match self {
             Self::Student(_) | Self::Score(..) => 0,
@@ -40,10 +40,9 @@ impl Turn {
         }
     }
 
-    /// Returns the rank of its next job.
+    /// Returns the rank of the owner's next job.
     pub(crate) async fn next(self, transaction: &mut Transaction) -> Result<i64, DbError> {
-        // Two uploads of one student at the same moment may get the same rank: then the number decides, which harms
-        // nobody.
+        // Two simultaneous uploads of one student may have the same rank; then the number decides.
         let statement = "SELECT max(rank) AS last, {now} AS now FROM job
             WHERE fair_key = ? AND state IN ('waiting', 'running')";
         let last = transaction.one(statement, values![self.key()]).await?;
@@ -60,18 +59,18 @@ impl Turn {
     }
 }
 
-/// A job to be put into the queue.
+/// A job for the queue.
 #[derive(Debug, Clone)]
 pub struct NewJob<'a> {
     /// The lane that does the work.
     pub lane: Lane,
-    /// The submission that it is about.
+    /// The submission of the job.
     pub submission: Option<i64>,
-    /// The regrade to which it belongs.
+    /// The regrade of the job.
     pub campaign: Option<i64>,
-    /// The owner of the turn that it uses up.
+    /// The owner of the turn that the job takes.
     pub turn: Turn,
-    /// The task.
+    /// The task, in the form for the worker.
     pub payload: &'a str,
 }
 
@@ -92,10 +91,10 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
     row.int("id")
 }
 
-/// Returns whether a job of this turn waits until the caller's transaction ends: a caller that changes its subject need
-/// not enqueue another one.
+/// Returns whether a job of this owner waits until the caller's transaction ends, so that no further one is needed.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn waits(transaction: &mut Transaction, turn: Turn) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE fair_key = ? AND state = 'waiting' LIMIT 1 {for update}";

@@ -1,5 +1,5 @@
-//! The messages of a lease's holder. Each is fenced: it counts only while the job runs under this very lease.
-use super::{A_DAY, Lease, QueuePolicy, millis};
+//! The messages of a lease's holder. Each counts only while the job runs under this lease.
+use super::{Lease, MAX_PLATFORM_WAIT, QueuePolicy, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
@@ -8,43 +8,44 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use utoipa::ToSchema;
 
-/// The result of a wish to finish.
+/// The result of reporting a job as finished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completion {
-    /// The job is done; the caller writes its result in the same transaction.
+    /// The job is finished; the caller writes its result in the same transaction.
     Done,
-    /// The job was done by this very lease before: the answer got lost, not the result.
+    /// The job was finished under the same lease before; the earlier answer was lost.
     Repeated,
-    /// The lease was lost: nothing may be written.
+    /// The lease was lost, so nothing may be written.
     Late,
 }
 
-/// The result of a failed try.
+/// The result of reporting a failed try.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Failure {
     /// The job waits again.
     Retried,
     /// The job has no tries left; the caller writes the failure in the same transaction.
     Buried,
-    /// The lease was lost before.
+    /// The lease was lost before the report.
     Late,
 }
 
 /// The progress of a grading, in scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Progress {
-    /// Scenes that have their verdict.
+    /// The number of scenes with a verdict.
     #[schema(maximum = 1_000_000)]
     pub done: u32,
-    /// All scenes of the grading.
+    /// The number of scenes in the grading.
     #[schema(maximum = 1_000_000)]
     pub all: u32,
 }
 
-/// Extends a lease from now on, up to a greatest age of the claim, and stores the holder's progress, if it reports one.
-/// Returns false if the lease was lost, and the work is useless.
+/// Extends a lease, up to a maximum age of the claim, and stores the holder's progress, if it reports one. Returns
+/// false if the lease was lost, so that the work is useless.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn renew(
     transaction: &mut Transaction,
@@ -61,9 +62,10 @@ pub async fn renew(
     Ok(transaction.execute(statement, values).await? > 0)
 }
 
-/// Returns the task of the holder of a lease; nothing when the lease was lost.
+/// Returns the task for the holder of a lease; `None` if the lease was lost.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Option<String>, DbError> {
     let statement = "SELECT payload FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
@@ -71,12 +73,13 @@ pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Opt
     row.map(|row| row.text("payload")).transpose()
 }
 
-/// Ends a job. A lease that ran out but was given to no other worker still counts: the work is done.
+/// Ends a job. An expired lease still counts if no other worker got the job, because the work is done.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Completion, DbError> {
-    // The key stays, so that the same answer sent twice is known again.
+    // The key stays, so that a repeated answer is recognized.
     let statement = "UPDATE job SET state = 'done', finished_at = {now}, lease_until = NULL
         WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
     let changed = transaction.execute(statement, values![lease.job, lease.attempt, &lease.key]).await?;
@@ -88,9 +91,10 @@ pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Co
     Ok(if same.is_some() { Completion::Repeated } else { Completion::Late })
 }
 
-/// Returns a job at no cost, because its worker must stop. Returns false if the lease was lost.
+/// Returns a job without counting a failure, because its worker must stop. Returns false if the lease was lost.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<bool, DbError> {
     let statement =
@@ -100,9 +104,10 @@ pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<boo
     Ok(changed > 0)
 }
 
-/// Reports that this try failed, and why. The next one comes no sooner than `least` from now.
+/// Records that a try failed, with the reason. The next one comes after `least` at the earliest.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn fail(
     transaction: &mut Transaction,
@@ -116,22 +121,22 @@ pub async fn fail(
     let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     let Some(row) = held else { return Ok(Failure::Late) };
     let failures = row.int("failures")? + 1;
-    let (deaths, wait) = (row.int("deaths")?, policy.wait(failures).max(least).min(A_DAY));
+    let (deaths, wait) = (row.int("deaths")?, policy.wait(failures).max(least).min(MAX_PLATFORM_WAIT));
     let loss = Loss { job: lease.job, failures, deaths, wait, fault };
     lose(transaction, loss, failures >= i64::from(policy.max_failures)).await
 }
 
-/// A failed try, with the counts of its job by now.
+/// A failed try, with the updated counts of its job.
 struct Loss<'a> {
     job: i64,
     failures: i64,
     deaths: i64,
-    /// Before the next try.
+    /// The wait before the next try.
     wait: Duration,
     fault: &'a str,
 }
 
-/// Returns the worker of a job died, or may have: the row, which this transaction has locked, has the counts.
+/// Records that the worker of a job died, or may have; `row`, which this transaction has locked, has the counts.
 pub(super) async fn die(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -143,7 +148,7 @@ pub(super) async fn die(
     lose(transaction, loss, deaths >= policy.max_deaths()).await
 }
 
-/// Buries a job that has had its last try, or has it wait again.
+/// Buries a job after its last try, or lets it wait again.
 async fn lose(transaction: &mut Transaction, loss: Loss<'_>, is_last: bool) -> Result<Failure, DbError> {
     let Loss { job, failures, deaths, wait, fault } = loss;
     if is_last {

@@ -2,11 +2,12 @@
 //! finished together with its result.
 //!
 //! A worker **claims** a job and holds it under a lease, which it **renews**; it **finishes** it, gives it back
-//! (**releases**) or reports that it **failed**. Every claim has a number of its own, the attempt, and a key that only
-//! the worker knows: every message of a worker is checked against them, so that a late worker changes nothing. A job
-//! that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**: staff
-//! must check it. A worker that died, or fell silent, is no failure of its job. Only a job whose workers died far more
-//! often than it may fail is buried, too. The rooms above decide what a job does, and what is written when it ends.
+//! (**releases**) or reports that it **failed**. Every claim has a number, the attempt, and a key that only the worker
+//! knows. Every message of a worker is checked against both, so that a worker without a valid lease changes nothing. A
+//! job that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**:
+//! staff must check it. The death or silence of a worker does not count as a failure of the job. Only a job whose
+//! workers died far more often than it may fail is buried, too. The modules that use the queue define the jobs and
+//! their results.
 
 mod claim;
 mod enqueue;
@@ -27,17 +28,17 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use utoipa::ToSchema;
 
-/// The kind of work that a job is.
+/// The kind of a job's work.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lane {
-    /// Workers grade.
+    /// Grading, by workers.
     Grading,
-    /// The service sends grades to a learning platform.
+    /// Sending grades to a learning platform, by the service.
     Passback,
 }
 
 impl Lane {
-    /// Returns the state's name in the table.
+    /// Returns the lane's name in the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Grading => "grading",
@@ -46,19 +47,19 @@ impl Lane {
     }
 }
 
-/// The longest wait that a platform may request.
-const A_DAY: Duration = Duration::from_secs(86_400);
+/// The maximum wait that a platform can request.
+const MAX_PLATFORM_WAIT: Duration = Duration::from_secs(86_400);
 
-/// The patience of the queue.
+/// The time limits and the numbers of tries in the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QueuePolicy {
     /// The time for which a worker may be silent.
     pub lease: Duration,
-    /// After this many failures a job is buried.
+    /// The number of failures after which a job is buried.
     pub max_failures: u32,
-    /// The wait after the first failure; each further one waits four times as long.
+    /// The wait after the first failure; each further one multiplies it by four.
     pub first_wait: Duration,
-    /// The longest wait between two tries.
+    /// The maximum wait between two tries.
     pub longest_wait: Duration,
 }
 
@@ -74,40 +75,40 @@ impl Default for QueuePolicy {
 }
 
 impl QueuePolicy {
-    /// Returns the time between two renewals of leases: two renewals may get lost.
+    /// Returns the time between two renewals of a lease; two renewals may get lost.
     pub fn renew_every(&self) -> Duration {
         self.lease / 4
     }
 
-    /// Returns the time between two searches for leases that ran out.
+    /// Returns the time between two searches for expired leases.
     pub fn tick_every(&self) -> Duration {
         self.lease / 8
     }
 
-    /// Returns the time without a search after which the database was away: then no worker could renew its lease,
-    /// either.
+    /// Returns the gap between two searches for expired leases after which the database counts as having been
+    /// unavailable; workers could not renew leases during it.
     fn outage(&self) -> Duration {
         self.lease / 2
     }
 
-    /// Returns the number of times that a worker may die with a job. It is far more than a job may fail, because a
-    /// crash loop of a server is seldom the job's fault.
+    /// Returns the maximum number of times that a job's worker may die. It is far more than a job may fail, because the
+    /// crash loop of a server is rarely the job's fault.
     fn max_deaths(&self) -> i64 {
         8 * i64::from(self.max_failures)
     }
 
-    /// Returns the wait of a job after its worker died: it is short, because workers seldom die of their jobs.
+    /// Returns the wait of a job after its worker died, which is short because a job is rarely the cause.
     fn wait_after_death(&self, deaths: i64) -> Duration {
         self.first_wait * u32::try_from(deaths).unwrap_or(0).clamp(1, 10)
     }
 
-    /// Returns the longest wait of a job after its `failures`th failure.
+    /// Returns the maximum wait of a job after `failures` failures.
     fn longest(&self, failures: i64) -> Duration {
         let steps = u32::try_from(failures.max(1) - 1).unwrap_or(u32::MAX).min(16);
         self.first_wait.saturating_mul(4_u32.saturating_pow(steps)).min(self.longest_wait)
     }
 
-    /// Returns the wait of this time: jobs that failed together do not return together.
+    /// Returns a random wait, so that jobs that failed together do not return together.
     fn wait(&self, failures: i64) -> Duration {
         let longest = self.longest(failures);
         longest - longest / 4 * secret::random_byte().into() / 255
@@ -117,13 +118,13 @@ impl QueuePolicy {
 /// The proof that a worker holds a job.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Lease {
-    /// The job.
+    /// The job's number.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     pub job: i64,
-    /// The number of the claim.
+    /// The number of the claim, from 1.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     pub attempt: i64,
-    /// Known to the claimant alone.
+    /// The secret that only the claimant knows.
     #[schema(max_length = 200)]
     pub key: String,
 }
@@ -131,19 +132,19 @@ pub struct Lease {
 /// A job that was claimed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
-    /// The lease to show from now on.
+    /// The lease for further messages.
     pub lease: Lease,
-    /// The submission that the job is about.
+    /// The submission of the job.
     pub submission: Option<i64>,
     /// The task, as it was enqueued.
     pub payload: String,
-    /// The number of its failures before.
+    /// The number of the job's earlier failures.
     pub failures: i64,
-    /// The number of times that its worker died before.
+    /// The number of times that the job's worker died earlier.
     pub deaths: i64,
 }
 
-/// Returns a time in milliseconds, as the database counts.
+/// Returns a duration in milliseconds, as the database stores it.
 pub(crate) fn millis(duration: Duration) -> i64 {
     i64::try_from(duration.as_millis()).unwrap_or(i64::MAX)
 }

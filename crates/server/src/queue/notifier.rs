@@ -1,5 +1,5 @@
-//! Notifies waiting tasks of this process to check immediately. It is only a convenience: a notification means that
-//! something may have changed, and a task that misses it, as in another process, checks a little later.
+//! Notifies waiting tasks of this process to check immediately. It only saves time: a notification means that something
+//! may have changed, and a task in another process checks a little later.
 use crate::db::{DbError, Transaction};
 use std::{sync::Arc, time::Duration};
 use tokio::sync::watch;
@@ -30,19 +30,19 @@ impl Notifier {
         self.changes.send_modify(|changes| *changes += 1);
     }
 
-    /// Returns a subscription to every change from now on.
+    /// Returns a subscription to all later changes.
     pub fn subscribe(&self) -> Subscription {
         Subscription(self.changes.subscribe())
     }
 }
 
 impl Subscription {
-    /// Waits for a change, or until `patience` is over, and returns whether there was one.
+    /// Waits for a change, at most for `patience`, and returns whether there was one.
     pub async fn wait(&mut self, patience: Duration) -> bool {
         match tokio::time::timeout(patience, self.0.changed()).await {
             Ok(Ok(())) => true,
             Err(_) => false,
-            // The notifier is gone, with all that could use it: wait all the same, so that no caller spins.
+            // The notifier is gone, with everything that could use it. Wait anyway, so that no caller spins.
             Ok(Err(_)) => {
                 tokio::time::sleep(patience).await;
                 false

@@ -1,4 +1,4 @@
-//! The place of a job in the queue, and its expected time.
+//! The position of a job in the queue, and its expected time.
 use super::{Lane, QueuePolicy, millis};
 use crate::{
     db::{DbError, Transaction},
@@ -7,9 +7,9 @@ use crate::{
 use std::time::Duration;
 
 /// The number of finished jobs from which the expected time is computed.
-const RECENT: i64 = 50;
+const RECENT_JOBS: i64 = 50;
 
-/// A waiting job's place in the queue.
+/// A waiting job's position in the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
     /// The number of jobs before this one.
@@ -19,9 +19,10 @@ pub struct Place {
     pub expected: Option<Duration>,
 }
 
-/// Returns a waiting job's place; nothing when it does not wait (any more).
+/// Returns a waiting job's position; `None` if it does not wait.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn place(
     transaction: &mut Transaction,
@@ -39,7 +40,7 @@ pub async fn place(
            SELECT finished_at - started_at AS took FROM job WHERE lane = ? AND state = 'done'
            ORDER BY finished_at DESC LIMIT ?
         ) AS recent";
-    let usual = transaction.one(statement, values![lane.name(), RECENT]).await?.maybe_int("took")?;
+    let usual = transaction.one(statement, values![lane.name(), RECENT_JOBS]).await?.maybe_int("took")?;
     let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots FROM worker
         WHERE seen_at > {now} - ? AND seen_at <= {now} + ?";
     let slots =

@@ -1,28 +1,29 @@
 //! Finds silent workers.
 //!
-//! Every live process ticks, and leases run out only while one does. After a gap the database itself was away, no
-//! worker could renew, and every lease begins anew. Therefore a restart of PostgreSQL costs no job a try.
+//! Every live process ticks, and leases expire only while one does. A gap between ticks means that the database was
+//! unavailable and no worker could renew, so all leases start again. Therefore a restart of PostgreSQL does not count
+//! as a failure of any job.
 use super::{Failure, QueuePolicy, hold::die, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
 };
 
-/// The reason why a job whose lease ran out failed.
-const SILENT: &str = "its worker went silent";
+/// The message about a job whose lease expired.
+const SILENT_WORKER: &str = "its worker went silent";
 
-/// The findings of a tick.
+/// The results of a tick.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Tick {
     /// The number of jobs that wait again.
     pub retried: usize,
-    /// Jobs that took their worker down too often; the caller writes the failure in the same transaction.
+    /// The jobs whose workers died too often; the caller writes the failures in the same transaction.
     pub buried: Vec<BuriedJob>,
-    /// Whether leases began anew because no process had ticked.
+    /// Whether leases started again because no process had ticked.
     pub outage: bool,
 }
 
-/// A job that took its worker down too often.
+/// A job whose workers died too often.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuriedJob {
     /// The job's number.
@@ -35,21 +36,22 @@ pub struct BuriedJob {
     pub fault: String,
 }
 
-/// Ends leases of silent workers, at most every [`QueuePolicy::tick_every`], by any caller.
+/// Ends leases of silent workers, at most once per [`QueuePolicy::tick_every`], for any caller.
 ///
 /// # Errors
+///
 /// An error of the database.
 pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result<Tick, DbError> {
     let pulse =
         transaction.row("SELECT beat_at, {now} AS now FROM pulse WHERE id = 1 {skip locked}", values![]).await?;
-    // Somebody else is at it.
+    // Another process is doing this.
     let Some(pulse) = pulse else { return Ok(Tick::default()) };
     let (beat, now) = (pulse.int("beat_at")?, pulse.int("now")?);
     if (0..millis(policy.tick_every())).contains(&(now - beat)) {
         return Ok(Tick::default());
     }
     transaction.execute("UPDATE pulse SET beat_at = {now} WHERE id = 1", values![]).await?;
-    // A clock that was set back, or far ahead, is an outage, too.
+    // A clock that was set back or far ahead counts as an outage, too.
     if now < beat || now - beat > millis(policy.outage()) {
         let statement = "WITH held AS (SELECT id FROM job WHERE state = 'running' ORDER BY id {for update})
             UPDATE job SET lease_until = {now} + ?, started_at = {now}
@@ -68,8 +70,8 @@ async fn give_up(transaction: &mut Transaction, policy: &QueuePolicy, lost: Vec<
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
-        match die(transaction, policy, &row, SILENT).await? {
-            Failure::Buried => tick.buried.push(BuriedJob { job, attempt, worker, fault: SILENT.to_owned() }),
+        match die(transaction, policy, &row, SILENT_WORKER).await? {
+            Failure::Buried => tick.buried.push(BuriedJob { job, attempt, worker, fault: SILENT_WORKER.to_owned() }),
             Failure::Retried | Failure::Late => tick.retried += 1,
         }
     }

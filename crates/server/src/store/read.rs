@@ -1,5 +1,5 @@
-//! Reading artifacts: in pieces, so that memory is the same for each, however large it is.
-use super::{ASIDE, Digest, KEPT, Store, StoreError};
+//! Reading of artifacts in pieces, so that memory is the same for artifacts of any size.
+use super::{Digest, KEPT_FOLDER, Store, StoreError, TRASH};
 use crate::secret::hex;
 use axum::body::Bytes;
 use futures_util::{StreamExt, TryStreamExt, stream::BoxStream};
@@ -17,16 +17,17 @@ pub struct OpenArtifact {
 }
 
 impl Store {
-    /// Opens an artifact. Its last piece comes only if all bytes are right: a reader that gets all bytes has the right
-    /// ones. A reader of the first piece knows that an artifact of one piece is undamaged.
+    /// Opens an artifact. Its last piece is returned only if all bytes are right, so a reader that gets all pieces has
+    /// the right bytes. An artifact of one piece is checked before its first piece.
     ///
     /// # Errors
-    /// When there is none, it is damaged, or the store fails.
+    ///
+    /// When there is no such artifact, it is damaged, or the store fails.
     pub async fn open(&self, digest: &Digest) -> Result<OpenArtifact, StoreError> {
-        let mut found = self.objects.get(&digest.key(KEPT)).await;
-        // A file that was put aside may be named since, and comes back.
+        let mut found = self.objects.get(&digest.key(KEPT_FOLDER)).await;
+        // The sweep may have moved the file to the trash before a row referred to it again; restore it.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
-            found = self.objects.get(&digest.key(ASIDE)).await;
+            found = self.objects.get(&digest.key(TRASH)).await;
         }
         let found = match found {
             Err(object_store::Error::NotFound { .. }) => return Err(StoreError::Missing(digest.clone())),
@@ -43,7 +44,9 @@ impl Store {
     /// Writes an artifact into a new file.
     ///
     /// # Errors
-    /// When there is none or it is damaged (no file is left then), the file can't be written, or the store fails.
+    ///
+    /// When there is no such artifact or it is damaged (no file is left then), the file can't be written, or the store
+    /// fails.
     pub async fn fetch(&self, digest: &Digest, file: &Path) -> Result<(), StoreError> {
         let mut output = tokio::fs::File::create_new(file).await?;
         let copying = async {
@@ -61,7 +64,7 @@ impl Store {
     }
 }
 
-/// Returns the pieces, of which the last one comes only if all together have this digest.
+/// Returns the pieces; the last one is returned only if all together have the digest.
 fn verify(
     pieces: BoxStream<'static, Result<Bytes, StoreError>>,
     digest: Digest,

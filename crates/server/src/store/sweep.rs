@@ -1,5 +1,5 @@
-//! Removes unnamed artifacts in batches, so that memory is the same for any number of artifacts.
-use super::{ASIDE, Digest, KEPT, Key, Store, StoreError, age};
+//! Removes unreferenced artifacts in batches, so that memory is the same for any number of artifacts.
+use super::{Digest, KEPT_FOLDER, Key, Store, StoreError, TRASH, age};
 use futures_util::{StreamExt, TryStreamExt};
 use object_store::ObjectStoreExt;
 use std::{
@@ -9,50 +9,51 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// The number of artifacts in one query.
-const BATCH: usize = 500;
+/// The number of artifacts per query.
+const BATCH_SIZE: usize = 500;
 
 impl Store {
-    /// Removes every unnamed artifact that is older than `least`, and returns their number. `named` finds the named
-    /// ones of some digests.
+    /// Removes every unreferenced artifact that is older than `least`, and returns their number. `named` finds the
+    /// referenced ones among given digests.
     ///
-    /// An artifact that is stored at this very moment is not lost: it is put aside first, where it can still be read,
-    /// and checked again immediately and in every later run. If it is named by then it comes back. It is removed only
-    /// after it was there unnamed for `least`. A server that was started on the wrong database by mistake has therefore
-    /// removed nothing if this is noticed within that time.
+    /// An artifact that is being stored at the same time is not lost. It is first moved to the trash, where it can
+    /// still be read, and is checked again immediately and in every later run. If it is referenced by then, it is
+    /// restored. It is removed only after it was in the trash for `least`. A server that was started with the wrong
+    /// database by mistake therefore removes nothing within that time.
     ///
     /// # Errors
-    /// When the store fails, or the named digests can't be found. Artifacts that were put aside are checked again the
+    ///
+    /// When the store fails, or the referenced digests can't be found. Artifacts in the trash are checked again the
     /// next time.
     pub async fn give_up<E: From<StoreError>, F: Future<Output = Result<HashSet<Digest>, E>>>(
         &self,
         least: Duration,
         mut named: impl FnMut(Vec<Digest>) -> F,
     ) -> Result<usize, E> {
-        let mut batches = self.list(KEPT).try_chunks(BATCH);
+        let mut batches = self.list(KEPT_FOLDER).try_chunks(BATCH_SIZE);
         while let Some(batch) = batches.next().await {
             let mut batch = batch.map_err(|error| error.1)?;
             batch.retain(|(_, age)| *age >= least);
             let digests: Vec<Digest> = batch.into_iter().map(|(digest, _)| digest).collect();
             let named = named(digests.clone()).await?;
             for digest in digests.iter().filter(|digest| !named.contains(digest)) {
-                self.rename(&digest.key(KEPT), &digest.key(ASIDE)).await?;
-                // In a bucket it is a copy, and new.
+                self.rename(&digest.key(KEPT_FOLDER), &digest.key(TRASH)).await?;
+                // In a bucket it is a new copy.
                 if let Some(folder) = &self.folder {
-                    renew(&folder.join(digest.key(ASIDE).as_ref()));
+                    renew(&folder.join(digest.key(TRASH).as_ref()));
                 }
             }
         }
         let mut given_up = 0;
-        let mut batches = self.list(ASIDE).try_chunks(BATCH);
+        let mut batches = self.list(TRASH).try_chunks(BATCH_SIZE);
         while let Some(batch) = batches.next().await {
             let batch = batch.map_err(|error| error.1)?;
             let named = named(batch.iter().map(|(digest, _)| digest.clone()).collect()).await?;
             for (digest, age) in batch {
                 if named.contains(&digest) {
-                    self.rename(&digest.key(ASIDE), &digest.key(KEPT)).await?;
+                    self.rename(&digest.key(TRASH), &digest.key(KEPT_FOLDER)).await?;
                 } else if age >= least {
-                    match self.objects.delete(&digest.key(ASIDE)).await {
+                    match self.objects.delete(&digest.key(TRASH)).await {
                         Ok(()) => given_up += 1,
                         Err(object_store::Error::NotFound { .. }) => {}
                         Err(error) => return Err(StoreError::from(error).into()),
@@ -67,12 +68,12 @@ impl Store {
         Ok(given_up)
     }
 
-    /// Returns every artifact, one after the other; an artifact that is put aside meanwhile may come twice.
+    /// Returns all artifacts; one that is moved to the trash during the listing may be returned twice.
     pub fn digests(&self) -> impl futures_util::Stream<Item = Result<Digest, StoreError>> + Unpin {
-        self.list(KEPT).chain(self.list(ASIDE)).map_ok(|(digest, _)| digest)
+        self.list(KEPT_FOLDER).chain(self.list(TRASH)).map_ok(|(digest, _)| digest)
     }
 
-    /// Moves an object, unless another server was faster.
+    /// Moves an object, unless another server has moved it.
     async fn rename(&self, from: &Key, to: &Key) -> Result<(), StoreError> {
         match self.objects.rename(from, to).await {
             Ok(()) | Err(object_store::Error::NotFound { .. }) => Ok(()),
@@ -85,7 +86,7 @@ impl Store {
         let listing = self.objects.list(Some(&Key::from(prefix))).map_err(StoreError::from);
         let found = listing.try_filter_map(async |meta| {
             let parts: Vec<String> = meta.location.parts().map(|part| part.as_ref().to_owned()).collect();
-            // Anything else there is none of ours.
+            // Skip every other file: this store did not write it.
             let [_, first, rest] = parts.as_slice() else { return Ok(None) };
             Ok(format!("{first}{rest}").parse().ok().map(|digest| (digest, age(&meta))))
         });
@@ -93,19 +94,19 @@ impl Store {
     }
 }
 
-/// Renews the age of a file; a file that can't be touched keeps its own.
+/// Sets the age of a file to zero; a file that can't be touched keeps its age.
 fn renew(file: &Path) {
     let touched = fs::File::options().write(true).open(file).and_then(|file| file.set_modified(SystemTime::now()));
     if let Err(error) = touched {
-        tracing::debug!(%error, "a file that was put aside keeps its age");
+        tracing::debug!(%error, "the age of a file in the trash could not be reset");
     }
 }
 
-/// Removes parts of artifacts that a server left behind when it was killed; how many there were. They are called
-/// `NAME#NUMBER` until they are whole, and listings leave them out.
+/// Removes incomplete artifacts that a killed server left, and returns their number. They are called `NAME#NUMBER`
+/// until they are complete, and listings leave them out.
 fn remove_parts(folder: &Path, least: Duration) -> usize {
     let below = |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten();
-    let folders = [KEPT, ASIDE].into_iter().flat_map(|kept| below(&folder.join(kept)).map(|entry| entry.path()));
+    let folders = [KEPT_FOLDER, TRASH].into_iter().flat_map(|kept| below(&folder.join(kept)).map(|entry| entry.path()));
     let mut removed = 0;
     for entry in folders.filter(|path| path.is_dir()).flat_map(|path| below(&path)) {
         let is_part = entry.file_name().to_str().is_some_and(|name| name.contains('#'));

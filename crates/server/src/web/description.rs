@@ -1,4 +1,5 @@
-//! The description of the API (OpenAPI 3.1): the handlers' descriptions, completed by what holds for all.
+//! The description of the API (OpenAPI 3.1): the descriptions of the handlers, completed by everything that they have
+//! in common.
 use super::who::cookie_name;
 use crate::{
     problem::Problem,
@@ -17,11 +18,11 @@ use utoipa::{
     },
 };
 
-/// The name of an upload's body.
-const FILE: &str = "application/octet-stream";
+/// The media type of an upload's body.
+const UPLOAD_TYPE: &str = "application/octet-stream";
 
 /// The largest number that JSON can hold in every language.
-const MOST: i64 = (1 << 53) - 1;
+const MAX_INTEGER: i64 = (1 << 53) - 1;
 
 #[derive(utoipa::OpenApi)]
 #[openapi(
@@ -34,25 +35,25 @@ const MOST: i64 = (1 << 53) - 1;
     servers((url = "/", description = "This server")),
     components(schemas(Problem, OutputFile, Slug, FileName, Digest)),
     tags(
-        (name = "accounts", description = "The signed-in person: account, tokens"),
+        (name = "accounts", description = "Account and tokens of the signed-in person"),
         (name = "courses", description = "Courses and their members"),
         (name = "assignments", description = "Assignments, and a class's results"),
         (name = "submissions", description = "Submissions and their grades"),
         (name = "regrades", description = "Grading all submissions again"),
         (name = "administration", description = "What administrators do"),
-        (name = "workers", description = "Requests of workers on other machines, with a worker's token"),
+        (name = "workers", description = "The API for workers on other machines, with a worker's token"),
         (name = "operations", description = "For monitors of the server; without a sign-in")
     )
 )]
 struct Base;
 
-/// Returns the answers that are given before any handler.
+/// Returns the answers that are given before any handler runs.
 pub(super) fn base() -> OpenApi {
     Base::openapi()
 }
 
-/// Completes the description by what holds for every operation: how one signs in, the form of a name in an address, and
-/// answers that their status explains.
+/// Adds to the description what applies to every operation: ways to sign in, the form of names in addresses, and common
+/// answers.
 pub(super) fn complete(api: &mut OpenApi) {
     let components = api.components.get_or_insert_default();
     for (name, scheme) in schemes() {
@@ -67,8 +68,8 @@ pub(super) fn complete(api: &mut OpenApi) {
     }
 }
 
-/// Opens types that are extended: a type that allows no other fields can't be part of a larger type with more; the
-/// larger type then has these fields as its own.
+/// Removes the ban of additional fields from types that are part of larger types; otherwise the larger type's own
+/// fields would be invalid.
 fn open_what_is_extended(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
     let closed: BTreeMap<String, Object> = schemas
         .iter()
@@ -111,7 +112,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
     [&mut item.get, &mut item.put, &mut item.post, &mut item.delete, &mut item.patch].into_iter().flatten()
 }
 
-/// Describes the parts of an address as parameters, and that every request may be rejected.
+/// Describes the parts of an address as parameters, and adds that every request may be rejected.
 fn name_parts(path: &str, operation: &mut Operation) {
     let names = path.split('{').skip(1).filter_map(|part| part.split('}').next());
     let parts = names.map(|name| {
@@ -128,7 +129,7 @@ fn name_parts(path: &str, operation: &mut Operation) {
 fn complete_operation(operation: &mut Operation) {
     let is_of = |tag: &str| operation.tags.iter().flatten().any(|of| of == tag);
     let required = |name: &str| SecurityRequirement::new(name, Vec::<String>::new());
-    // A handler that accepts less than these describes that itself.
+    // A handler that accepts fewer ways to sign in describes them itself.
     let security = match () {
         () if is_of("operations") => Vec::new(),
         () if is_of("workers") => vec![required("worker")],
@@ -143,30 +144,30 @@ fn complete_operation(operation: &mut Operation) {
     if let Some(RefOr::T(body)) = &mut operation.request_body {
         body.required = Some(Required::True);
         for (kind, content) in &mut body.content {
-            if let (RefOr::T(content), FILE) = (content, kind.as_str()) {
-                content.schema = Some(bytes());
+            if let (RefOr::T(content), UPLOAD_TYPE) = (content, kind.as_str()) {
+                content.schema = Some(bytes_schema());
             }
         }
     }
     let responses = &mut operation.responses.responses;
     let takes_file = operation.request_body.as_ref().is_some_and(|body| match body {
-        RefOr::T(body) => body.content.contains_key(FILE),
+        RefOr::T(body) => body.content.contains_key(UPLOAD_TYPE),
         RefOr::Ref(_) => false,
     });
     if let (true, Some(RefOr::T(mut refused))) = (takes_file, responses.get("default").cloned()) {
-        refused.description = "The file is not accepted here, and was not kept: what is wrong with it".to_owned();
+        refused.description = "The file is rejected and not stored; the body says why".to_owned();
         responses.entry("422".to_owned()).or_insert(RefOr::T(refused));
     }
     for (status, response) in responses {
         if let RefOr::T(response) = response
             && response.description.is_empty()
         {
-            response.description = answer(status);
+            response.description = describe_answer(status);
         }
     }
 }
 
-/// Completes the schema of a part of an address or a header, by its name.
+/// Completes the schema of a part of an address or a header, according to its name.
 fn complete_parameter(parameter: &mut Parameter) {
     let named = |name: &str| -> RefOr<Schema> { Ref::from_schema_name(name).into() };
     let text = |pattern: &str| -> RefOr<Schema> {
@@ -178,11 +179,11 @@ fn complete_parameter(parameter: &mut Parameter) {
         (ParameterIn::Path, "login") => (named("Slug"), "The account's login"),
         (ParameterIn::Path, "digest") => (named("Digest"), "The SHA-256 of the file's bytes"),
         (ParameterIn::Path, "name") => (named("Slug"), "What it is called"),
-        (ParameterIn::Path, "id") => (number(1), "The number"),
-        (ParameterIn::Query, "before") => (number(0), "Only entries before this one"),
+        (ParameterIn::Path, "id") => (number_schema(1), "The number"),
+        (ParameterIn::Query, "before") => (number_schema(0), "Only entries before this one"),
         (ParameterIn::Query, "format") => (text("^(csv|jsonl)$"), "`csv` or `jsonl`"),
-        (ParameterIn::Query, "form") => (text("^(program|sources|traces)$"), "What kind of thing it is"),
-        (ParameterIn::Header, "Idempotency-Key") => (text("^[!-~]{1,200}$"), "A name of the sender's own"),
+        (ParameterIn::Query, "form") => (text("^(program|sources|traces)$"), "The kind of the thing"),
+        (ParameterIn::Header, "Idempotency-Key") => (text("^[!-~]{1,200}$"), "A name that the sender chooses"),
         (ParameterIn::Header, "Fosssim-Lease") => {
             (text("^[0-9]{1,15}:[0-9]{1,15}:[0-9a-f]+$"), "The lease of the job, as JOB:ATTEMPT:KEY")
         }
@@ -192,23 +193,23 @@ fn complete_parameter(parameter: &mut Parameter) {
     parameter.description.get_or_insert(text.to_owned());
 }
 
-/// Returns a number that JSON can hold in every language.
-fn number(least: i64) -> RefOr<Schema> {
+/// Returns the schema of a number that JSON can hold in every language.
+fn number_schema(least: i64) -> RefOr<Schema> {
     let format = SchemaFormat::KnownFormat(KnownFormat::Int64);
     let number = ObjectBuilder::new().schema_type(Type::Integer).format(Some(format));
-    number.minimum(Some(least)).maximum(Some(MOST)).into()
+    number.minimum(Some(least)).maximum(Some(MAX_INTEGER)).into()
 }
 
-/// Returns the bytes of a file.
-fn bytes() -> RefOr<Schema> {
+/// Returns the schema of the bytes of a file.
+fn bytes_schema() -> RefOr<Schema> {
     let format = SchemaFormat::KnownFormat(KnownFormat::Binary);
     ObjectBuilder::new().schema_type(Type::String).format(Some(format)).min_length(Some(1)).into()
 }
 
-/// Returns the description of an answer without one.
-fn answer(status: &str) -> String {
+/// Returns the description of an answer that has none.
+fn describe_answer(status: &str) -> String {
     if status == "default" {
-        return "Rejected or failed: what is wrong, and what to do about it".to_owned();
+        return "The request was rejected or failed; the body has the reason and the remedy".to_owned();
     }
     let reason = status.parse().ok().and_then(|status| StatusCode::from_u16(status).ok()?.canonical_reason());
     match reason {

@@ -1,4 +1,4 @@
-//! Sending artifacts: in pieces as they are read, and not at all to who has them.
+//! Sends artifacts in pieces while they are read, or not at all if the client has them.
 use crate::{
     domain::{Member, Transfer},
     problem::Problem,
@@ -11,7 +11,7 @@ use axum::{
 };
 use futures_util::TryStreamExt;
 
-/// Answers with an artifact, unless the client knows it by its request's headers.
+/// Answers with an artifact, unless the request's headers say that the client has it.
 pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact) -> Result<Response, Problem> {
     let transfer = member.transfer()?;
     let tag = format!("\"{}\"", artifact.digest);
@@ -20,16 +20,16 @@ pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact
     let known = asked.get(header::IF_NONE_MATCH).and_then(|value| value.to_str().ok()).is_some_and(names_it);
     let mut response = match known {
         true => StatusCode::NOT_MODIFIED.into_response(),
-        false => whole(member.open(artifact).await?, Some(transfer)),
+        false => whole_answer(member.open(artifact).await?, Some(transfer)),
     };
     insert(&mut response, header::ETAG, &tag);
     Ok(response)
 }
 
-/// Returns all of an artifact.
-pub(super) fn whole(opened: OpenArtifact, transfer: Option<Transfer>) -> Response {
+/// Returns an answer with a whole artifact.
+pub(super) fn whole_answer(opened: OpenArtifact, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
-        // The answer breaks off, so that the client sees that bytes are missing.
+        // The answer is aborted, so that the client notices that bytes are missing.
         tracing::error!(%error, "an answer broke off");
         let _of_this_answer = &transfer;
     });

@@ -9,54 +9,54 @@ use axum::{
 };
 use std::time::Instant;
 
-/// The rights of pages: their own files only, in no frame.
-const POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
+/// The content policy of pages, which may use only this server's files, and not be in a frame.
+const PAGE_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
                       media-src blob:; connect-src 'self'; form-action 'self'; base-uri 'none'; \
                       frame-ancestors 'none'";
 
-/// Requests to which learning platforms send people come from other sites always: each is bound to this browser by a
-/// sign-in of its own.
-const FROM_PLATFORMS: [&str; 2] = ["/lti/login", "/lti/launch"];
+/// The addresses to which learning platforms send people, always from other sites; the sign-in's secret binds each
+/// request to the browser.
+const PLATFORM_ADDRESSES: [&str; 2] = ["/lti/login", "/lti/launch"];
 
-/// The page that connects an account with a provider: another site could have signed this browser in there before.
-const CONNECTS: &str = "/account/provider";
+/// The page that connects an account with a provider. Another site could have signed this browser in at the provider.
+const CONNECT_ADDRESS: &str = "/account/provider";
 
-/// Rejects what another site made a browser send. Another site can't send a token in a header, so that requests with a
-/// token pass. All others that change something must come from this site, by the browser's own word: `Sec-Fetch-Site`,
-/// or `Origin` from browsers without it.
-pub(super) async fn same_site(State(app): State<App>, request: Request, next: Next) -> Response {
-    if (is_harmless(request.method()) && request.uri().path() != CONNECTS)
-        || FROM_PLATFORMS.contains(&request.uri().path())
+/// Rejects requests that another site made a browser send. Another site can't send a token in a header, so requests
+/// with a token are accepted. All others that change something must come from this site, which the browser states in
+/// `Sec-Fetch-Site`, or in `Origin` if it is older.
+pub(super) async fn check_site(State(app): State<App>, request: Request, next: Next) -> Response {
+    if (is_harmless(request.method()) && request.uri().path() != CONNECT_ADDRESS)
+        || PLATFORM_ADDRESSES.contains(&request.uri().path())
         || who::secrets(request.headers(), app.is_secure()).bearer.is_some()
         || is_own(request.headers(), &app)
     {
         return next.run(request).await;
     }
-    // A program that forgot its token: the request is not signed in, whatever the site.
+    // A program without its token is not signed in, whatever the site.
     if request.uri().path().starts_with("/api/") && who::secrets(request.headers(), app.is_secure()).session.is_none() {
         return Problem::not_signed_in().into_response();
     }
     Problem::cross_site().into_response()
 }
 
-/// Sends a session's cookie again when it lasts longer from now on.
-pub(super) async fn renew(State(app): State<App>, mut request: Request, next: Next) -> Response {
+/// Sends a session's cookie again after the session was extended.
+pub(super) async fn renew_cookie(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let renewed = who::RenewedSession::default();
     request.extensions_mut().insert(renewed.clone());
     let mut response = next.run(request).await;
     if let Some(session) = renewed.session()
         && !response.headers().contains_key(header::SET_COOKIE)
-        && let Ok(cookie) = HeaderValue::from_str(&session_cookie(&app, session, SESSION))
+        && let Ok(cookie) = HeaderValue::from_str(&session_cookie(&app, session, SESSION_SECONDS))
     {
         response.headers_mut().append(header::SET_COOKIE, cookie);
     }
     response
 }
 
-/// The time that a session lasts, in seconds.
-pub(super) const SESSION: u32 = 1_209_600;
+/// The lifetime of a session, in seconds.
+pub(super) const SESSION_SECONDS: u32 = 1_209_600;
 
-/// Returns a session's cookie, for a time in seconds.
+/// Returns a session's cookie with a lifetime in seconds.
 pub(super) fn session_cookie(app: &App, session: &str, lasts: u32) -> String {
     let (name, secure) = (who::cookie_name(app.is_secure()), if app.is_secure() { "; Secure" } else { "" });
     format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age={lasts}{secure}")
@@ -76,14 +76,14 @@ fn is_own(headers: &HeaderMap, app: &App) -> bool {
         || text(header::HOST).is_some_and(|host| origin.split_once("://").is_some_and(|(_, place)| place == host))
 }
 
-/// Returns the headers of every answer.
-pub(super) async fn headers(State(app): State<App>, request: Request, next: Next) -> Response {
+/// Adds the headers of every answer.
+pub(super) async fn add_headers(State(app): State<App>, request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
     let mut set = |name: HeaderName, value: &'static str| {
         headers.entry(name).or_insert(HeaderValue::from_static(value));
     };
-    set(header::CONTENT_SECURITY_POLICY, POLICY);
+    set(header::CONTENT_SECURITY_POLICY, PAGE_POLICY);
     set(header::X_CONTENT_TYPE_OPTIONS, "nosniff");
     set(header::REFERRER_POLICY, "no-referrer");
     set(HeaderName::from_static("cross-origin-opener-policy"), "same-origin");
@@ -95,8 +95,8 @@ pub(super) async fn headers(State(app): State<App>, request: Request, next: Next
     response
 }
 
-/// Logs and counts a request by the route, never by the address: addresses may hold secrets.
-pub(super) async fn log(State(app): State<App>, mut request: Request, next: Next) -> Response {
+/// Logs and counts a request by its route, never by its address, which may contain secrets.
+pub(super) async fn log_request(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let start = Instant::now();
     request.extensions_mut().insert(ArrivalTime(start));
     let in_flight = app.instruments().begin();
@@ -106,7 +106,7 @@ pub(super) async fn log(State(app): State<App>, mut request: Request, next: Next
     drop(in_flight);
     let (status, took) = (response.status().as_u16(), start.elapsed());
     let known = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::DELETE, Method::OPTIONS, Method::PATCH];
-    // Anybody may make up methods, and each would be a series of its own.
+    // Clients can invent methods, and each would be a separate series.
     let counted = if known.contains(&method) { method.as_str() } else { "other" };
     app.instruments().count_answer(counted, &route, status, took);
     let took = took.as_millis();

@@ -1,4 +1,4 @@
-//! Reads requests, with answers that name what is wrong.
+//! Reads requests, with error answers that name the fault.
 use crate::{domain::App, problem::Problem};
 use axum::{
     extract::{FromRequest, FromRequestParts, MatchedPath, Path, Query, Request},
@@ -10,16 +10,16 @@ use serde_json::{Map, Value};
 use std::time::Instant;
 use utoipa::IntoParams;
 
-/// A body in JSON.
+/// A JSON body.
 pub(super) struct Body<T>(pub(super) T);
 
-/// A body of text.
+/// A text body.
 pub(super) struct PlainBody(pub(super) String);
 
-/// The fields of a form: a body, or the query of the address of a browser's GET request.
+/// The fields of a form, from the body or from the query of a GET request.
 pub(super) struct Fields<T>(pub(super) T);
 
-/// The names in an address; a part that it does not have is empty.
+/// The names in an address; a part that the route lacks is empty.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct AddressParts {
@@ -35,37 +35,37 @@ pub(super) struct AddressParts {
 /// The query of the address.
 pub(super) struct QueryInput<T>(pub(super) T);
 
-/// The end of a list, as a query gives it.
+/// The query's parameter for the end of a list.
 #[derive(Deserialize)]
 pub(super) struct ListEnd {
     before: Option<u64>,
 }
 
 impl ListEnd {
-    /// Returns the number before which it ends.
+    /// Returns the number before which the list ends.
     pub(super) fn number(&self) -> Option<i64> {
         self.before.map(|before| i64::try_from(before).unwrap_or(i64::MAX))
     }
 }
 
-/// The event that the sender of a change has seen, as a query.
+/// The query's parameter for the event that the sender of a change has seen.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct SeenEvent {
-    /// The last event of the audit log that the sender has seen: with it a change is rejected if there is a later one
-    /// of the same thing.
+    /// The last event of the audit log that the sender has seen. If it is given, a change is rejected if there is a
+    /// later one of the same thing.
     #[param(maximum = 9_007_199_254_740_991_i64)]
     seen: Option<u64>,
 }
 
 impl SeenEvent {
-    /// Returns the number of that event.
+    /// Returns the number of the event.
     pub(super) fn event(&self) -> Option<i64> {
         self.seen.map(|seen| i64::try_from(seen).unwrap_or(i64::MAX))
     }
 }
 
-/// The begin of a list, as a query gives it.
+/// The query's parameter for the start of a list.
 #[derive(Deserialize)]
 pub(super) struct ListStart {
     pub(super) after: Option<i64>,
@@ -80,18 +80,18 @@ fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
 #[derive(Clone, Copy)]
 pub(super) struct ArrivalTime(pub(super) Instant);
 
-/// A mark in a request whose sender is known: more of its body may be read then.
+/// A mark in a request whose sender is known, so that a larger body may be read.
 #[derive(Clone, Copy)]
 pub(super) struct SignedIn;
 
-/// Returns the bytes of a body: few, until its sender is known.
-async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
-    let most = if request.extensions().get::<SignedIn>().is_some() { super::BODY } else { super::BODY_OF_NOBODY };
+/// Returns the bytes of a body, which must be small until its sender is known.
+async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
+    let most = if request.extensions().get::<SignedIn>().is_some() { super::MAX_BODY } else { super::MAX_GUEST_BODY };
     let reading = async {
         let mut stream = request.into_body().into_data_stream();
         let mut bytes = Vec::new();
         while let Some(chunk) = stream.next().await {
-            bytes.extend_from_slice(&chunk.map_err(|_| Problem::invalid("the request broke off"))?);
+            bytes.extend_from_slice(&chunk.map_err(|_| Problem::invalid("the request was interrupted"))?);
             if bytes.len() > most {
                 return Err(Problem::too_long(most));
             }
@@ -101,9 +101,8 @@ async fn bytes(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
     tokio::time::timeout(app.patience, reading).await.map_err(|_| Problem::too_slow())?
 }
 
-/// Makes whole numbers that are written as `7.0`, as some languages do, numbers without a point: to JSON Schema, which
-/// describes the API, these are integers.
-fn mend(value: &mut Value) {
+/// Converts whole numbers such as `7.0`, as some languages write them, to integers, which they are for JSON Schema.
+fn fix_integers(value: &mut Value) {
     match value {
         Value::Number(number) => {
             let whole = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
@@ -113,22 +112,22 @@ fn mend(value: &mut Value) {
                 *value = Value::from(whole as i64);
             }
         }
-        Value::Array(values) => values.iter_mut().for_each(mend),
-        Value::Object(fields) => fields.values_mut().for_each(mend),
+        Value::Array(values) => values.iter_mut().for_each(fix_integers),
+        Value::Object(fields) => fields.values_mut().for_each(fix_integers),
         _ => {}
     }
 }
 
 fn with_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     let mut value = serde_json::from_slice(bytes).ok()?;
-    mend(&mut value);
+    fix_integers(&mut value);
     serde_json::from_value(value).ok()
 }
 
-/// Reads the fields of an object whose kinds are checked later.
+/// Reads the fields of an object whose types are checked later.
 pub(super) fn whole_numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
     let mut fields = Map::deserialize(deserializer)?;
-    fields.values_mut().for_each(mend);
+    fields.values_mut().for_each(fix_integers);
     Ok(fields)
 }
 
@@ -139,7 +138,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Body<T> {
         if !is_of_type(request.headers(), "application/json") {
             return Err(Problem::invalid("the body must be JSON: Content-Type: application/json"));
         }
-        let bytes = bytes(request, state).await?;
+        let bytes = read_body(request, state).await?;
         let read = serde_json::from_slice(&bytes);
         let read = read.or_else(|error| with_whole_numbers(&bytes).ok_or(error));
         read.map(Self).map_err(|error| Problem::invalid(error.to_string()))
@@ -153,7 +152,7 @@ impl FromRequest<App> for PlainBody {
         if !is_of_type(request.headers(), "text/csv") {
             return Err(Problem::invalid("the body must be CSV: Content-Type: text/csv"));
         }
-        let bytes = bytes(request, state).await?;
+        let bytes = read_body(request, state).await?;
         String::from_utf8(bytes).map(Self).map_err(|_| Problem::invalid("the table must be in UTF-8"))
     }
 }
@@ -169,7 +168,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
         if !is_of_type(request.headers(), "application/x-www-form-urlencoded") {
             return Err(Problem::invalid("the body must be a form"));
         }
-        let bytes = bytes(request, state).await?;
+        let bytes = read_body(request, state).await?;
         let request = Request::builder()
             .method("POST")
             .header(header::CONTENT_TYPE, "application/x-www-form-urlencoded")
@@ -185,7 +184,7 @@ impl<S: Send + Sync> FromRequestParts<S> for AddressParts {
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
         let found = Path::<Self>::from_request_parts(parts, state).await;
-        // A number that is none.
+        // The text is not a number.
         let route = parts.extensions.get::<MatchedPath>().map_or("", MatchedPath::as_str);
         let of_submission = ["/s/{id}", "/submissions/{id}"].iter().any(|part| route.contains(part));
         let what = if of_submission { "submission" } else { "page" };

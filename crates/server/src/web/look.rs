@@ -1,5 +1,5 @@
-//! Looking through what strangers send: a program by its first bytes, an archive in a process of its own, with limits
-//! of time and memory, in the sender's turn.
+//! Checks of untrusted uploads: a program by its first bytes, an archive in a separate process, with limits of time and
+//! memory, in the sender's turn.
 use super::upload::is_program;
 use crate::{
     domain::{Member, Settings},
@@ -14,12 +14,12 @@ use std::{
     time::Duration,
 };
 
-/// The limits for examining an archive: seconds on the clock and of the processor, and memory.
-const SECONDS: u64 = 30;
-const MEMORY: u64 = 1 << 30;
+/// The limit of wall time and processor time for checking an archive, in seconds.
+const MAX_SECONDS: u64 = 30;
+const MAX_MEMORY: u64 = 1 << 30;
 
-/// A program, in words.
-const PROGRAM: &str = "a program for Linux (ELF, or a script that begins with #!)";
+/// The description of a program, for messages.
+const PROGRAM_DESCRIPTION: &str = "a program for Linux (ELF, or a script that begins with #!)";
 
 /// Returns the form of a file, if the file is valid; a rejection names the forms that the assignment accepts.
 pub(super) async fn examine(
@@ -37,7 +37,7 @@ pub(super) async fn examine(
         (None | Some(Form::Program), true) => return Ok(Form::Program),
         (Some(Form::Program), false) => {
             let found = fosssim_intake::describe(&start);
-            return Err(Problem::unusable(format!("looked for {PROGRAM}, and found {found}")));
+            return Err(Problem::unusable(format!("expected {PROGRAM_DESCRIPTION}, but found {found}")));
         }
         _ => {}
     }
@@ -45,35 +45,35 @@ pub(super) async fn examine(
     let archives: Vec<&str> = archives.map(Form::name).collect();
     let archives =
         (!archives.is_empty()).then(|| format!("an archive of {} ({})", archives.join(" or "), fosssim_intake::KNOWN));
-    let program = settings.takes(Form::Program).then(|| PROGRAM.to_owned());
+    let program = settings.takes(Form::Program).then(|| PROGRAM_DESCRIPTION.to_owned());
     let wanted = program.into_iter().chain(archives).collect::<Vec<_>>().join(", or ");
     let mut words = vec!["--wanted", &wanted];
     words.extend(said.iter().flat_map(|form| ["--form", form]));
-    // Suites that come with the grader build nothing.
+    // The grader's suites build nothing.
     if settings.suite_archive.is_none() && settings.takes(Form::Sources) {
         words.extend(["--program", &settings.program]);
     }
-    let answer = in_turn(member, file, &words).await?;
+    let answer = check_in_turn(member, file, &words).await?;
     answer.map_err(Problem::unusable)?.ok_or_else(Problem::fault)
 }
 
-/// Unpacks an archive into a folder that is there and empty.
+/// Unpacks an archive into an empty folder.
 pub(super) async fn unpack(member: &Member, archive: &Path, folder: &Path) -> Result<(), Problem> {
     let folder = folder.to_str().ok_or_else(Problem::fault)?;
-    in_turn(member, archive, &["--into", folder]).await?.map(drop).map_err(Problem::no_suite)
+    check_in_turn(member, archive, &["--into", folder]).await?.map(drop).map_err(Problem::no_suite)
 }
 
-/// Examines a file by this program when it is the sender's turn. Rejected files count: an account that sends many
-/// waits.
-async fn in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<Result<Option<Form>, String>, Problem> {
+/// Checks a file with this program in the sender's turn. Rejected files count, so that an account that sends many has
+/// to wait.
+async fn check_in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<Result<Option<Form>, String>, Problem> {
     let _turn = member.archive_turn().await?;
-    // The same program, also where another has taken its place meanwhile.
+    // The same program, even if its file was replaced since.
     let mut command = Command::new("/proc/self/exe");
     command.arg("look-through").args(words).arg("--").arg(file);
     command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
-    worker::limit(&mut command, MEMORY, SECONDS);
+    worker::limit(&mut command, MAX_MEMORY, MAX_SECONDS);
     let looked = tokio::process::Command::from(command).kill_on_drop(true).output();
-    let answer = match tokio::time::timeout(Duration::from_secs(SECONDS), looked).await {
+    let answer = match tokio::time::timeout(Duration::from_secs(MAX_SECONDS), looked).await {
         Ok(output) => serde_json::from_slice(&output?.stdout).ok(),
         Err(_) => None,
     };

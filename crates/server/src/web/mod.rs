@@ -1,4 +1,4 @@
-//! HTTP: the API, the pages, and the rules for both.
+//! The HTTP server: the API, the pages, and the rules for both.
 
 pub mod api;
 mod description;
@@ -18,11 +18,12 @@ use axum::{Extension, Router, extract::DefaultBodyLimit, middleware};
 use axum_client_ip::ClientIpSource;
 use utoipa_axum::router::OpenApiRouter;
 
-/// The largest body of a request that is no upload.
-const BODY: usize = 1 << 20;
+/// The maximum size of a request's body that is not an upload, in bytes.
+const MAX_BODY: usize = 1 << 20;
 
-/// The limit before sign-in: a token, or a learning platform's message. Thousands may be sent at the same time.
-const BODY_OF_NOBODY: usize = 32 << 10;
+/// The maximum size of a body before sign-in, such as a token or a learning platform's message, in bytes. Thousands may
+/// be sent at the same time.
+const MAX_GUEST_BODY: usize = 32 << 10;
 
 fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {
     let (router, mut description) =
@@ -31,14 +32,14 @@ fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {
     (router, description)
 }
 
-/// Returns the description of the API, as it is served and committed.
+/// Returns the description of the API, in the form that is served and committed.
 pub fn openapi() -> String {
     let mut text = api_router().1.to_pretty_json().unwrap_or_default();
     text.push('\n');
     text
 }
 
-/// Returns everything that is served.
+/// Returns the router with all routes.
 pub fn router(app: App) -> Router {
     let (api, _) = api_router();
     let client_address = app.client_address.clone().unwrap_or(ClientIpSource::ConnectInfo);
@@ -46,15 +47,15 @@ pub fn router(app: App) -> Router {
     Router::new()
         .merge(api)
         .merge(pages)
-        .fallback(pages::missing)
+        .fallback(pages::no_page)
         .method_not_allowed_fallback(pages::wrong_method)
-        // Every reader of a body counts it: the limits differ.
+        // Every reader of a body enforces its own limit.
         .layer(DefaultBodyLimit::disable())
-        .layer(middleware::from_fn_with_state(app.clone(), guard::same_site))
+        .layer(middleware::from_fn_with_state(app.clone(), guard::check_site))
         .layer(middleware::from_fn(pages::show_others))
-        .layer(middleware::from_fn_with_state(app.clone(), guard::renew))
-        .layer(middleware::from_fn_with_state(app.clone(), guard::headers))
-        .layer(middleware::from_fn_with_state(app.clone(), guard::log))
+        .layer(middleware::from_fn_with_state(app.clone(), guard::renew_cookie))
+        .layer(middleware::from_fn_with_state(app.clone(), guard::add_headers))
+        .layer(middleware::from_fn_with_state(app.clone(), guard::log_request))
         .layer(Extension(client_address))
         .with_state(app)
 }

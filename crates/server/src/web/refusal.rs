@@ -1,4 +1,4 @@
-//! Rejections as answers.
+//! Rejections in the form of HTTP answers.
 use crate::problem::Problem;
 use axum::{
     http::{HeaderValue, StatusCode, header},
@@ -27,7 +27,7 @@ impl IntoResponse for Problem {
             }
             _ => {}
         }
-        // Pages show it in their own way.
+        // Pages show the rejection in their own form.
         response.extensions_mut().insert(self);
         response
     }

@@ -1,4 +1,4 @@
-//! Receiving files: as they come, into a file of the server's own, never whole in memory.
+//! Reception of files, which are written to a file of the server while they arrive, and are never completely in memory.
 use crate::{
     domain::{App, is_file_name},
     problem::Problem,
@@ -24,26 +24,27 @@ use std::{
 use tempfile::TempPath;
 use tokio::io::AsyncWriteExt;
 
-/// The longest time that an upload may take in addition to its fair time, in pauses of its body.
-const PAUSES: u32 = 20;
+/// The maximum additional time of an upload, for pauses of its body, in multiples of the patience.
+const MAX_PAUSES: u32 = 20;
 
-/// Returns the time in which an upload of this size must arrive to count as arrived at its beginning: half a minute,
-/// and a second for each 32 KiB. This prevents that an upload begins before the due date and is written later.
+/// Returns the time in which an upload of a size must arrive to count as arrived at its start: half a minute, and a
+/// second for each 32 KiB. Otherwise an upload could start before the due date and be written later.
 pub(super) fn fair_time(size: u64) -> Duration {
     Duration::from_secs(30 + size / (32 << 10))
 }
 
-/// The bytes of a form around its file: boundaries, names, short fields, and what is read of a connection at one time.
-const BESIDE: u64 = 1024 * 1024;
+/// The maximum number of bytes of a form around its file: boundaries, names, short fields, and the read buffer of a
+/// connection.
+const FORM_OVERHEAD: u64 = 1024 * 1024;
 
-/// Counts the bytes of a form that arrived and were not taken: they are in memory, and a form may have nothing else.
+/// Counts the bytes of a form that arrived and were not processed. They are in memory, so their number is limited.
 #[derive(Clone, Default)]
 struct UntakenBytes(Arc<AtomicU64>);
 
 impl UntakenBytes {
-    fn come(&self, bytes: usize) -> Result<(), &'static str> {
+    fn add(&self, bytes: usize) -> Result<(), &'static str> {
         let untaken = self.0.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
-        if untaken > BESIDE { Err("the form has too many fields besides its file") } else { Ok(()) }
+        if untaken > FORM_OVERHEAD { Err("the form has too many fields") } else { Ok(()) }
     }
 
     fn take(&self, bytes: usize) {
@@ -51,7 +52,7 @@ impl UntakenBytes {
     }
 }
 
-/// A file that arrived.
+/// A file that was received.
 pub(super) struct ReceivedFile {
     /// The place of the file until it is stored.
     pub(super) file: TempPath,
@@ -59,31 +60,31 @@ pub(super) struct ReceivedFile {
     pub(super) name: Option<String>,
     /// The upload's form (a program, sources, traces), if the request named it.
     pub(super) form: Option<String>,
-    /// The sender's name for this upload.
+    /// The sender's key for the upload.
     pub(super) key: Option<String>,
 }
 
-/// The folder for uploads, and their longest pause.
+/// The folder for uploads, and their maximum pause.
 struct Place<'a> {
     incoming: &'a Path,
     patience: Duration,
 }
 
-/// Receives the body of a request: the file itself, or a form with a field `file`.
+/// Receives the body of a request, which is the file itself, or a form with a field `file`.
 pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
     if let Err(problem) = app.ensure_room() {
-        return Err(refuse(app, request, most, problem).await);
+        return Err(reject(app, request, most, problem).await);
     }
     receive_at(&Place { incoming: &app.incoming, patience: app.patience }, request, most).await
 }
 
-/// Rejects an upload before anything of it is stored. Its body is read and dropped: many programs read the answer only
-/// when they have sent everything, and would find a broken connection instead.
-pub(super) async fn refuse(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
+/// Rejects an upload before anything is stored. The body is read and dropped, because many programs read the answer
+/// only after they have sent everything, and would otherwise see a broken connection.
+pub(super) async fn reject(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
     if request.headers().contains_key(header::EXPECT) {
         return problem;
     }
-    let until = tokio::time::Instant::now() + app.patience * PAUSES;
+    let until = tokio::time::Instant::now() + app.patience * MAX_PAUSES;
     let mut body = request.into_body().into_data_stream();
     let mut size = 0;
     while size <= most {
@@ -96,12 +97,12 @@ pub(super) async fn refuse(app: &App, request: Request, most: u64, problem: Prob
     problem
 }
 
-/// Receives a form with an upload that comes in pieces of this many bytes, into a folder that is empty again
-/// afterwards; the fuzzer of uploads, and tests, call it. Returns the size of the file, and the form's name, kind and
-/// key.
+/// Receives a form that arrives in pieces of `size` bytes, into a folder that is empty again afterwards; only the
+/// fuzzer of uploads and tests call it. Returns the size of the file, and the form's name, kind and key.
 ///
 /// # Errors
-/// The fault of the form.
+///
+/// The error in the form.
 pub async fn receive_form(
     incoming: &Path,
     body: &[u8],
@@ -131,13 +132,13 @@ pub(super) fn announced_size(request: &Request) -> Option<u64> {
 }
 
 async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
-    let deadline = Instant::now() + place.patience * PAUSES + fair_time(most);
+    let deadline = Instant::now() + place.patience * MAX_PAUSES + fair_time(most);
     if !is_form(&request) {
         if announced_size(&request).is_some_and(|announced| announced > most) {
             return Err(Problem::too_large(most));
         }
         let body: Body = request.into_body();
-        let file = to_file(place, body.into_data_stream(), most, deadline, None).await?;
+        let file = write_file(place, body.into_data_stream(), most, deadline, None).await?;
         return Ok(ReceivedFile { file, name: None, form: None, key: None });
     }
     let untaken = UntakenBytes::default();
@@ -145,7 +146,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
     let counting = untaken.clone();
     let counted = body.into_data_stream().map(move |chunk| {
         let chunk = chunk.map_err(|error| error.to_string())?;
-        counting.come(chunk.len()).map(|()| chunk).map_err(str::to_owned)
+        counting.add(chunk.len()).map(|()| chunk).map_err(str::to_owned)
     });
     let request = Request::from_parts(parts, Body::from_stream(counted));
     let mut multipart =
@@ -158,7 +159,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
         match field.name() {
             Some("file") if file.is_none() => {
                 name = field.file_name().map(str::to_owned);
-                file = Some(to_file(place, field, most, deadline, Some(&untaken)).await?);
+                file = Some(write_file(place, field, most, deadline, Some(&untaken)).await?);
             }
             Some("form") => form = Some(short_text(place, field).await?),
             Some("key") => key = Some(short_text(place, field).await?),
@@ -166,7 +167,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
         }
     }
     let file = file.ok_or_else(|| Problem::invalid("the form has no file"))?;
-    // A browser sends an empty field when no file was chosen.
+    // A browser sends an empty field if no file was chosen.
     if name.as_deref() == Some("") && std::fs::metadata(&file)?.len() == 0 {
         return Err(Problem::invalid("no file was chosen"));
     }
@@ -186,8 +187,8 @@ async fn short_text(place: &Place<'_>, mut field: axum::extract::multipart::Fiel
     }
 }
 
-/// Writes a stream into a file of the server's own.
-async fn to_file<E: Display>(
+/// Writes a stream into a new file of the server.
+async fn write_file<E: Display>(
     place: &Place<'_>,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
     most: u64,
@@ -207,7 +208,7 @@ async fn to_file<E: Display>(
             None => break,
             Some(Err(error)) => {
                 tracing::debug!(%error, "an upload broke off");
-                return Err(Problem::invalid("the upload broke off"));
+                return Err(Problem::invalid("the upload was interrupted"));
             }
             Some(Ok(chunk)) => {
                 if let Some(untaken) = untaken {
@@ -225,7 +226,7 @@ async fn to_file<E: Display>(
     Ok(path)
 }
 
-/// Returns a name that is safe in reports and messages: the browser's name, made harmless.
+/// Returns the browser's name of a file in a form that is safe in reports and messages.
 pub(super) fn plain_name(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let safe = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
@@ -239,18 +240,18 @@ pub(super) fn is_program(start: &[u8]) -> bool {
     FileKind::from_start(start) == FileKind::Program
 }
 
-/// Returns the form of an archive, if the archive is valid: sources must hold the `program`, unless the suite builds
-/// it. It runs in a process of its own (`web::look`).
+/// Returns the form of an archive, if the archive is valid: sources must contain the `program`, unless the suite builds
+/// it. It runs in a separate process (`web::look`).
 ///
 /// # Errors
-/// The reason why it is rejected.
+///
+/// The reason for the rejection.
 pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Option<&str>) -> Result<Form, String> {
     let said = said.and_then(Form::from_name);
     let opened = File::open(file).map_err(|error| error.to_string())?;
     match fosssim_intake::look_through(opened, ArchiveLimits::USUAL) {
         Ok(files) if files.is_empty() => {
-            Err("looked for files in the archive, and found none, or only those that a file manager adds by itself"
-                .to_owned())
+            Err("the archive contains no files, or only those that a file manager adds automatically".to_owned())
         }
         Ok(files) => {
             let are_traces = files.iter().all(|file| file.extension().is_some_and(|extension| extension == "bin"));
@@ -263,23 +264,23 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
                 (said, _) => check_program(&files, program).map(|()| said.unwrap_or(Form::Sources)),
             }
         }
-        Err(ArchiveError::Unknown(found)) if said.is_none() => Err(format!("looked for {wanted}, and found {found}")),
+        Err(ArchiveError::Unknown(found)) if said.is_none() => Err(format!("expected {wanted}, but found {found}")),
         Err(error) => Err(error.to_string()),
     }
 }
 
 /// Checks that an archive with these files holds the program.
 fn check_program(files: &[PathBuf], program: Option<&str>) -> Result<(), String> {
-    /// The greatest number of files that are named.
-    const NAMED: usize = 6;
+    /// The maximum number of files that a message names.
+    const MAX_NAMED: usize = 6;
     let Some(program) = program else { return Ok(()) };
     if files.contains(&fosssim_intake::top_folder(Path::new(""), files).join(program)) {
         return Ok(());
     }
-    let names = files.iter().take(NAMED).map(|file| file.to_string_lossy().escape_debug().to_string());
-    let more = (files.len() > NAMED).then(|| format!("{} more", files.len() - NAMED));
+    let names = files.iter().take(MAX_NAMED).map(|file| file.to_string_lossy().escape_debug().to_string());
+    let more = (files.len() > MAX_NAMED).then(|| format!("{} more", files.len() - MAX_NAMED));
     let found = names.chain(more).collect::<Vec<_>>().join(", ");
-    Err(format!("looked for the program {program} in the archive, because the suite builds nothing, and found {found}"))
+    Err(format!("expected the program {program} in the archive, because the suite builds nothing, but found {found}"))
 }
 
 #[cfg(test)]

@@ -16,28 +16,28 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-/// Holds a request's session that lasts longer from now on: the browser must keep its cookie as long.
+/// A request's session that was extended, so that the browser must extend its cookie.
 #[derive(Debug, Clone, Default)]
 pub(super) struct RenewedSession(Arc<OnceLock<String>>);
 
 impl RenewedSession {
-    /// Returns the cookie's content, if it must be sent again.
+    /// Returns the cookie's content, if the cookie must be sent again.
     pub(super) fn session(&self) -> Option<&str> {
         self.0.get().map(String::as_str)
     }
 }
 
-/// Returns the name of the session's cookie: over HTTPS one that no other host and no script can set or read.
+/// Returns the name of the session's cookie. Over HTTPS it is one that no other host and no script can set or read.
 pub(super) fn cookie_name(secure: bool) -> &'static str {
     if secure { "__Host-fosssim" } else { "fosssim" }
 }
 
-/// Returns the cookie of a browser while it comes from a learning platform.
+/// Returns the name of the cookie of a browser during a launch from a learning platform.
 pub(super) fn browser_cookie(secure: bool) -> &'static str {
     if secure { "__Host-fosssim-lti" } else { "fosssim-lti" }
 }
 
-/// Returns the cookie of a browser while it signs in at a provider.
+/// Returns the name of the cookie of a browser during a sign-in at a provider.
 pub(super) fn provider_cookie(secure: bool) -> &'static str {
     if secure { "__Host-fosssim-provider" } else { "fosssim-provider" }
 }
@@ -60,19 +60,19 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
 
 async fn read_secrets(parts: &mut Parts, app: &App) -> Secrets {
     let said = ClientIp::from_request_parts(parts, app).await.ok().map(|ClientIp(address)| address);
-    // A request that bypassed the proxy.
+    // The request bypassed the proxy.
     let peer = || parts.extensions.get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(peer)| peer.ip());
     let address = said.or_else(peer).map(|address| address.to_canonical());
     Secrets { address, ..secrets(&parts.headers, app.is_secure()) }
 }
 
-/// The course in an address, whatever else is in it.
+/// The course in an address; other parts are ignored.
 #[derive(Deserialize)]
 struct InCourse {
     course: String,
 }
 
-/// Roles, and the way in which each is recognized by the head of a request.
+/// Declares roles, and the extraction of each from the head of a request.
 macro_rules! roles {
     ($($role:ty: |$parts:ident, $app:ident| $tell:expr;)*) => {
         $(impl FromRequestParts<App> for $role {
@@ -94,7 +94,7 @@ roles! {
         if let (true, Some(secret), Some(renewed)) =
             (person.is_renewed(), secrets.session, parts.extensions.get::<RenewedSession>())
         {
-            // Another part of the same request may have noted it.
+            // Another part of the same request may have stored it already.
             drop(renewed.0.set(secret));
         }
         Ok(person)

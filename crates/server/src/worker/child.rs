@@ -1,5 +1,5 @@
-//! A child process that never outlives its owner: it leads a process group that is killed as a whole, and the kernel
-//! kills it when this process dies, however that happens. A [`guard`](super::guard) is between the two.
+//! A child process that never outlives its owner. It leads a process group that is killed as a whole, and the kernel
+//! kills it when this process dies for any reason. A [`guard`](super::guard) process is between the two.
 use super::guard;
 use std::{
     io,
@@ -12,21 +12,21 @@ use tokio::sync::watch;
 /// The way a child ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
-    /// By itself, with this exit code.
+    /// The process exited with this code.
     Code(i32),
-    /// By this signal.
+    /// This signal ended the process.
     Signal(i32),
 }
 
-/// A running child. Dropped, it is killed.
+/// A running child, which is killed when the value is dropped.
 #[derive(Debug)]
 pub(super) struct Child {
-    /// The group's number while it may be used: the leader is not reaped yet, so no other process can have it.
+    /// The group's number while it may be used: until the leader is reaped, no other process can have the number.
     group: Arc<Mutex<Option<libc::pid_t>>>,
     end: watch::Receiver<Option<End>>,
 }
 
-/// Binds a command to this much memory and this many seconds of a processor; it dies with its owner.
+/// Limits the memory and the processor time of a command, which dies with its owner.
 pub(crate) fn limit(command: &mut Command, memory: u64, seconds: u64) {
     // SAFETY: these calls may be made between fork and exec.
     unsafe {
@@ -53,7 +53,7 @@ impl Child {
         unsafe {
             command.pre_exec(move || {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The owner died before the line above.
+                // The owner died before the preceding call.
                 if libc::getppid().unsigned_abs() != parent {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
@@ -64,7 +64,7 @@ impl Child {
         let (end_sender, end) = watch::channel(None);
         let group = Arc::new(Mutex::new(None));
         let known = group.clone();
-        // The kernel counts the thread that forked as the parent: it waits for the child, and so outlives it.
+        // The kernel regards the thread that forked as the parent, so that thread waits for the child and outlives it.
         std::thread::Builder::new().name("grader".to_owned()).spawn(move || {
             let mut child = match command.spawn() {
                 Ok(child) => child,
@@ -76,7 +76,7 @@ impl Child {
             wait_without_reaping(number);
             let mut known = known.lock().unwrap_or_else(PoisonError::into_inner);
             *known = None;
-            // SAFETY: the leader is not reaped yet, so the group is still the same.
+            // SAFETY: the leader is not reaped yet, so the number still belongs to the group.
             unsafe { libc::kill(-number, libc::SIGKILL) };
             let end = match child.wait() {
                 Ok(status) => match (status.code(), status.signal()) {
@@ -101,7 +101,7 @@ impl Child {
         }
     }
 
-    /// Requests that it stops.
+    /// Requests that the child stops.
     pub(super) fn interrupt(&self) {
         self.signal(libc::SIGTERM, false);
     }
@@ -125,7 +125,7 @@ impl Drop for Child {
     }
 }
 
-/// Waits until a child has ended, and leaves its number taken. A stopped child is continued; otherwise the wait might
+/// Waits until a child has ended, without freeing its number. A stopped child is continued; otherwise the wait might
 /// never end.
 fn wait_without_reaping(number: libc::pid_t) {
     let wait = |options| {
@@ -139,7 +139,7 @@ fn wait_without_reaping(number: libc::pid_t) {
     loop {
         match wait(libc::WEXITED | libc::WSTOPPED | libc::WNOWAIT) {
             (0, libc::CLD_STOPPED) => {
-                // The end is noted; the next wait is for later ones.
+                // The end is recorded; the next wait is for later ones.
                 wait(libc::WSTOPPED | libc::WNOHANG);
                 // SAFETY: the child is not reaped.
                 unsafe { libc::kill(number, libc::SIGCONT) };

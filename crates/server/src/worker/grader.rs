@@ -1,4 +1,4 @@
-//! The grader. Today that is the program `fosssim-oracle` as a child ([`super::Program`]); a worker does not care.
+//! The interface to the grader, which is the program `fosssim-oracle` as a child process ([`super::Program`]).
 use crate::task::{Outcome, Task};
 use std::{
     future::Future,
@@ -7,7 +7,7 @@ use std::{
 use thiserror::Error;
 use tokio_util::sync::CancellationToken;
 
-/// The result of a grading, with its files still in the working folder.
+/// The result of a grading, whose files are still in the working folder.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct GradingOutput {
     /// The result, without files.
@@ -27,13 +27,14 @@ pub struct NewFile {
     pub path: PathBuf,
 }
 
-/// The file in its folder into which a grader may write its progress, as `3/85`: scenes with a verdict, all scenes.
-pub const PROGRESS: &str = "progress";
+/// The name of the file for a grader's progress, such as `3/85`: the number of scenes with a verdict, and of all
+/// scenes.
+pub const PROGRESS_FILE: &str = "progress";
 
-/// The reason why there is no verdict. Never the submission's fault.
+/// The reason why there is no verdict, which is never the submission's fault.
 #[derive(Debug, Error)]
 pub enum GraderFault {
-    /// The grading failed; another try may help.
+    /// The grading failed; a retry may succeed.
     #[error("{0}")]
     Failed(String),
     /// The grading was stopped on request.
@@ -41,16 +42,17 @@ pub enum GraderFault {
     Stopped,
 }
 
-/// The grader.
+/// A program that grades submissions.
 pub trait Grader: Clone + Send + Sync + 'static {
-    /// Proves that it can grade here and now, and may use the empty folder as it likes.
+    /// Checks that the grader can grade at present; it may use the empty folder freely.
     ///
     /// # Errors
-    /// The reason why it can't; shown to staff, never to students.
+    ///
+    /// The reason why it can't, for staff only.
     fn prove(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
 
-    /// Grades the submission at `submission`, by the suite whose archive is at `suite` if there is one, and may use
-    /// `folder` freely. When `stop` is canceled it ends soon, with all that it started.
+    /// Grades the submission at `submission`, with the suite's archive at `suite` if there is one; it may use `folder`
+    /// freely. After `stop` is canceled, it ends soon with everything that it started.
     fn grade(
         &self,
         task: &Task,

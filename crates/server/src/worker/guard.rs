@@ -1,24 +1,26 @@
-//! The process between a worker and its grader. It does nothing but wait, so that a grader which kills or
-//! stops its parent meets the guard, and not the worker with all its other jobs.
+//! The process between a worker and its grader. It only waits. A grader that kills or stops its parent therefore
+//! affects only the guard, and not the worker with all its other jobs.
 use std::{
     io,
     sync::atomic::{AtomicI32, Ordering},
 };
 
-/// The grader, for the guard's handler of signals.
-static GRADER: AtomicI32 = AtomicI32::new(0);
+/// The grader's process number, for the guard's signal handler.
+static GRADER_PID: AtomicI32 = AtomicI32::new(0);
 
-/// Forks. The child returns and becomes the grader; this process becomes its guard, and ends as it does.
+/// Forks. The child returns and becomes the grader; this process becomes its guard, and ends in the same way.
 ///
 /// # Safety
-/// Only between fork and exec of a child that leads a process group: nothing of the process is left but its memory.
+///
+/// Only between fork and exec of a child that leads a process group; of the process, only its memory is left.
 ///
 /// # Errors
-/// When there can't be another process.
+///
+/// When no other process can be created.
 pub(super) unsafe fn run_guard() -> io::Result<()> {
-    // SAFETY: these calls may be made between fork and exec, and take no memory of ours but the text.
+    // SAFETY: these calls may be made between fork and exec, and use no memory of this process except for the text.
     unsafe {
-        // When memory runs short the grader is killed first, and not the worker.
+        // If memory runs short, the find_grader is killed before the worker.
         let file = libc::open(c"/proc/self/oom_score_adj".as_ptr(), libc::O_WRONLY | libc::O_CLOEXEC);
         if file >= 0 {
             libc::write(file, c"800".as_ptr().cast(), 3);
@@ -33,11 +35,11 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
             -1 => Err(io::Error::last_os_error()),
             0 => {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The guard died before the line above.
+                // The guard died before the preceding call.
                 if libc::getppid() != guard {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
-                // Until the guard has closed its files, so that its end delays no other process.
+                // Wait until the guard has closed its files, so that its end delays no other process.
                 libc::close(ready[1]);
                 libc::read(ready[0], ready.as_mut_ptr().cast(), 1);
                 libc::close(ready[0]);
@@ -48,19 +50,19 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
     }
 }
 
-/// Passes the wish to stop on.
+/// Forwards the stop signal to the grader.
 extern "C" fn pass_on(signal: libc::c_int) {
-    // SAFETY: kill may be called in a handler; the grader is not reaped before the guard ends.
-    unsafe { libc::kill(GRADER.load(Ordering::Relaxed), signal) };
+    // SAFETY: kill may be called in a signal handler; the grader is not reaped before the guard ends.
+    unsafe { libc::kill(GRADER_PID.load(Ordering::Relaxed), signal) };
 }
 
-/// Waits for the grader, and ends as it did.
+/// Waits for the grader, and ends in the same way.
 unsafe fn watch(grader: libc::pid_t) -> ! {
-    GRADER.store(grader, Ordering::Relaxed);
+    GRADER_PID.store(grader, Ordering::Relaxed);
     // SAFETY: system calls on numbers, and structures that are zeroed first.
     unsafe {
-        // Handlers of the worker would write to files that are closed here. The sign that the grader has started is one
-        // of these files: the worker waits until no process holds it.
+        // The worker's signal handlers would write to files that are closed here. One of these files signals that the
+        // grader has started: the worker waits until no process holds it.
         for signal in [libc::SIGINT, libc::SIGHUP, libc::SIGQUIT, libc::SIGCHLD, libc::SIGUSR1, libc::SIGUSR2] {
             libc::signal(signal, libc::SIG_DFL);
         }

@@ -1,8 +1,8 @@
-//! Checks whether a worker can grade. A worker with a broken grader fails immediately and is free again immediately: it
-//! would take all jobs of the queue.
+//! Checks whether a worker can grade. A worker with a broken grader fails immediately and is free again immediately, so
+//! it would take all jobs of the queue.
 //!
-//! Therefore a worker proves itself before its first claim, and again after every fault. Until it can, it claims
-//! nothing, and its jobs move to another worker without the loss of a try.
+//! Therefore a worker runs a check before its first claim, and again after every fault. Until the check succeeds it
+//! claims nothing, and its jobs move to another worker without counting a failure.
 use super::Grader;
 use std::{
     path::{Path, PathBuf},
@@ -15,29 +15,29 @@ use std::{
 use tokio::sync::{Mutex, Notify};
 use tokio_util::sync::CancellationToken;
 
-/// The wait after a failed proof; it doubles up to the longest.
+/// The wait after a failed check; it doubles up to the maximum.
 const FIRST_WAIT: Duration = Duration::from_secs(1);
-const LONGEST_WAIT: Duration = Duration::from_secs(60);
+const MAX_WAIT: Duration = Duration::from_secs(60);
 
-/// The health of a worker. Cloning it is cheap, and all slots share it.
+/// The health of a worker. Clones are cheap, and all slots share it.
 #[derive(Debug, Clone)]
 pub(super) struct Health<G> {
     pub(super) grader: G,
-    /// The folder in which jobs and proofs get their folders.
+    /// The folder for the folders of jobs and checks.
     pub(super) folder: PathBuf,
     is_proven: Arc<AtomicBool>,
-    /// The lock of the slot that requests proofs until there is one; the others wait for it.
+    /// The lock of the slot that requests checks until one succeeds; the others wait for it.
     asking: Arc<Mutex<()>>,
-    /// Held while there is a proof.
+    /// The lock that is held during a check.
     proving: Arc<Mutex<()>>,
-    /// The reason why the last proof failed.
+    /// The reason why the last check failed.
     fault: Arc<std::sync::Mutex<Option<String>>>,
-    /// Rings when the worker begins or ceases to be able to grade.
+    /// The notification that the worker became able or unable to grade.
     change: Arc<Notify>,
 }
 
 impl<G: Grader> Health<G> {
-    /// Creates the health of a worker with this grader, which may make folders in this folder.
+    /// Creates the health of a worker with a grader, whose folders are created in `folder`.
     pub(super) fn new(grader: G, folder: PathBuf) -> Self {
         Self {
             grader,
@@ -50,28 +50,28 @@ impl<G: Grader> Health<G> {
         }
     }
 
-    /// Returns whether the worker may claim.
+    /// Returns whether the worker may claim jobs.
     pub(super) fn is_proven(&self) -> bool {
         self.is_proven.load(Ordering::Acquire)
     }
 
-    /// Returns why it may not grade, by its last proof.
+    /// Returns the reason why the last check failed.
     pub(super) fn fault(&self) -> Option<String> {
         self.fault.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
 
-    /// Waits until that has changed.
+    /// Waits until the result of the check changes.
     pub(super) async fn wait_for_change(&self) {
         self.change.notified().await;
     }
 
-    /// Waits until the worker can grade; false when it is to stop before.
+    /// Waits until the worker can grade; false if it must stop before.
     pub(super) async fn wait_until_able(&self, stop: &CancellationToken) -> bool {
         let mut wait = FIRST_WAIT;
         if self.is_proven() {
             return !stop.is_cancelled();
         }
-        // One slot requests proofs until it knows; the others wait.
+        // One slot requests checks; the others wait.
         let asking = tokio::select! {
             asking = self.asking.lock() => asking,
             () = stop.cancelled() => return false,
@@ -85,12 +85,12 @@ impl<G: Grader> Health<G> {
                 () = tokio::time::sleep(wait) => {}
                 () = stop.cancelled() => {}
             }
-            wait = (wait * 2).min(LONGEST_WAIT);
+            wait = (wait * 2).min(MAX_WAIT);
         }
         false
     }
 
-    /// Finds out after a fault whether the worker can still grade, so that the fault may be the job's.
+    /// Checks after a fault whether the worker can still grade; if so, the job may be at fault.
     pub(super) async fn survives(&self, stop: &CancellationToken) -> bool {
         self.is_proven.store(false, Ordering::Release);
         self.prove(stop).await
@@ -102,7 +102,7 @@ impl<G: Grader> Health<G> {
             return true;
         }
         let proof = match job_folder(&self.folder) {
-            Err(error) => Err(format!("no folder to work in: {error}")),
+            Err(error) => Err(format!("the working folder can't be created: {error}")),
             Ok(folder) => self.grader.prove(folder.path(), stop.child_token()).await,
         };
         if proof.is_err() && stop.is_cancelled() {
@@ -118,7 +118,7 @@ impl<G: Grader> Health<G> {
     }
 }
 
-/// Returns a new folder within a worker's, for a job or a proof.
+/// Creates a new folder in the worker's folder, for a job or a check.
 pub(super) fn job_folder(folder: &Path) -> std::io::Result<tempfile::TempDir> {
     std::fs::create_dir_all(folder)?;
     tempfile::Builder::new().prefix("job-").tempdir_in(folder)

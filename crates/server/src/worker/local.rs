@@ -1,5 +1,5 @@
-//! The source of workers that hold the database themselves: those within the server, and separate ones on request.
-use super::{GRACE, JobSource, SourceError};
+//! The source of jobs for workers with access to the database: those in the server, and separate ones on request.
+use super::{GRACE_PERIOD, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
     health, ledger,
@@ -12,25 +12,25 @@ use crate::{
 use std::{path::Path, time::Duration};
 use tokio::sync::Mutex;
 
-/// The time between two searches without a notification.
-const LOOK_EVERY: Duration = Duration::from_secs(1);
+/// The time between two searches for jobs without a notification.
+const SEARCH_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The time that a job may take besides its grading, at least.
-const LEAST_MARGIN: Duration = Duration::from_secs(60);
+/// The minimum time that a job may take in addition to its grading.
+const MIN_MARGIN: Duration = Duration::from_secs(60);
 
-/// The database and the store as a source.
+/// The database and the store, as a source of jobs.
 #[derive(Debug)]
 pub struct LocalSource {
     database: Database,
     store: Store,
     notifier: Notifier,
-    /// The notifications that this copy has received.
+    /// The notifications for this clone.
     subscription: Mutex<Subscription>,
     policy: QueuePolicy,
     worker: String,
     /// The worker's version.
     version: String,
-    /// The token of the worker, if it has one.
+    /// The number of the worker's token, if it has one.
     token: Option<i64>,
 }
 
@@ -58,7 +58,7 @@ impl From<StoreError> for SourceError {
 }
 
 impl LocalSource {
-    /// Creates a source for the worker of this name.
+    /// Creates a source for the worker with a name.
     pub fn new(database: Database, store: Store, notifier: Notifier, policy: QueuePolicy, worker: String) -> Self {
         let subscription = Mutex::new(notifier.subscribe());
         Self {
@@ -84,9 +84,9 @@ impl LocalSource {
     }
 }
 
-/// Returns the longest time of a job: that of its grading, and more for transfers, storage and waits.
-fn longest(task: &Task, policy: &QueuePolicy) -> Duration {
-    Duration::from_secs(task.seconds) + GRACE + LEAST_MARGIN.max(policy.lease * 10)
+/// Returns the maximum duration of a job: that of its grading, with additional time for transfers, storage and waits.
+fn max_duration(task: &Task, policy: &QueuePolicy) -> Duration {
+    Duration::from_secs(task.seconds) + GRACE_PERIOD + MIN_MARGIN.max(policy.lease * 10)
 }
 
 impl JobSource for LocalSource {
@@ -108,7 +108,7 @@ impl JobSource for LocalSource {
                     let renew_every = u64::try_from(renew_every.as_millis()).unwrap_or(u64::MAX);
                     return Ok(Some(ClaimedJob { lease: claim.lease, renew_every, task }));
                 }
-                // Written by another version of the program: not this worker's to do.
+                // Another version of the program wrote the task, so this worker cannot do it.
                 Err(error) => {
                     self.fail(&claim.lease, &format!("the task can't be read: {error}")).await?;
                 }
@@ -117,17 +117,17 @@ impl JobSource for LocalSource {
     }
 
     async fn wait(&self, patience: Duration) {
-        self.subscription.lock().await.wait(patience.min(LOOK_EVERY)).await;
+        self.subscription.lock().await.wait(patience.min(SEARCH_INTERVAL)).await;
     }
 
     async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {
-        // A step of the clock is noticed before it can end a lease.
+        // A jump of the clock is detected before it can end a lease.
         ledger::tick(&self.database, &self.policy).await?;
         let mut transaction = self.database.begin().await?;
         let task = queue::payload(&mut transaction, lease).await?.and_then(|text| serde_json::from_str(&text).ok());
         let held = match task {
             Some(task) => {
-                let most = longest(&task, &self.policy);
+                let most = max_duration(&task, &self.policy);
                 queue::renew(&mut transaction, &self.policy, lease, progress, most).await?
             }
             None => false,

@@ -1,5 +1,5 @@
-//! Workers: they fetch jobs from a [`JobSource`], let a [`Grader`] do them, and bring the results back. A worker knows
-//! neither courses nor students; what it holds is a lease.
+//! Workers fetch jobs from a [`JobSource`], pass them to a [`Grader`], and return the results. A worker has no data of
+//! courses and students, only leases.
 
 mod child;
 mod grader;
@@ -14,9 +14,9 @@ mod source;
 mod suite_check;
 
 pub(crate) use child::limit;
-pub use grader::{Grader, GraderFault, GradingOutput, NewFile, PROGRESS};
+pub use grader::{Grader, GraderFault, GradingOutput, NewFile, PROGRESS_FILE};
 pub use local::LocalSource;
-use program::GRACE;
+use program::GRACE_PERIOD;
 pub use program::{PUBLISHED_PAGE, Program, REPORTS, STAFF_PAGE};
 pub use remote::RemoteSource;
 pub use slots::work;

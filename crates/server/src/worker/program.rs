@@ -1,7 +1,7 @@
 //! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory there never
-//! takes the worker down, and whatever the child leaves behind dies with the job.
+//! stops the worker, and all leftovers of the child are removed with the job.
 use super::{
-    Grader, GraderFault, GradingOutput, NewFile, PROGRESS,
+    Grader, GraderFault, GradingOutput, NewFile, PROGRESS_FILE,
     child::{Child, End},
     reading,
 };
@@ -19,19 +19,19 @@ use std::{
 };
 use tokio_util::sync::CancellationToken;
 
-/// The longest time that the grader may take to write its reports after it was told to stop.
-pub(super) const GRACE: Duration = Duration::from_secs(20);
+/// The maximum time for the grader to write its reports after it was stopped.
+pub(super) const GRACE_PERIOD: Duration = Duration::from_secs(20);
 
-/// The length of the grader's messages that is kept for the administrator.
-const MESSAGE: usize = 2000;
+/// The maximum length of the grader's messages for the administrator.
+const MAX_MESSAGE_LENGTH: usize = 2000;
 
-/// The page that shows staff everything, whatever students may know.
+/// The name of the page for staff, which shows everything.
 pub const STAFF_PAGE: &str = "staff.html";
 
-/// The page that students see when hidden groups are published; only where there are any.
+/// The name of the page that students see after hidden groups are published; written only if there are any.
 pub const PUBLISHED_PAGE: &str = "published.html";
 
-/// The reports that a grading writes: format, file, media type. Two pages have no format of their own.
+/// The reports of a grading: format, file, media type. Two pages are written without a format.
 pub const REPORTS: [(&str, &str, &str); 5] = [
     ("json", "grade.json", "application/json"),
     ("text", "report.txt", "text/plain; charset=utf-8"),
@@ -40,7 +40,7 @@ pub const REPORTS: [(&str, &str, &str); 5] = [
     ("", PUBLISHED_PAGE, "text/html; charset=utf-8"),
 ];
 
-/// The program `fosssim-oracle`, or one that behaves like it.
+/// The program `fosssim-oracle`, or one with the same interface.
 #[derive(Debug, Clone)]
 pub struct Program {
     path: PathBuf,
@@ -48,12 +48,12 @@ pub struct Program {
 }
 
 impl Program {
-    /// Creates the grader at this path, with this many scenes of a job at one time.
+    /// Creates the grader from its path, with the number of scenes that run in parallel.
     pub fn new(path: PathBuf, threads: usize) -> Self {
         Self { path, threads }
     }
 
-    /// Returns the grader's SHA-256; nothing when it can't be read.
+    /// Returns the grader's SHA-256; empty if the file can't be read.
     async fn digest(&self) -> String {
         digest_of_file(&self.path).await.map_or_else(|_| String::new(), |grader| grader.digest.to_string())
     }
@@ -67,7 +67,7 @@ impl Program {
             Form::Traces => drop(command.arg("--traces")),
         }
         match &task.suite {
-            // The server could not ask the grader for its default, and lets it choose.
+            // The server could not read the grader's default, so the grader chooses.
             Suite::Named(name) if name.is_empty() => {}
             Suite::Named(name) => drop(command.arg("--suite").arg(name)),
             Suite::Archive(_) => drop(command.arg("--suite").arg(folder.join("suite/suite.toml"))),
@@ -78,33 +78,33 @@ impl Program {
         if let Some(hints) = &task.hints {
             command.arg("--hints").arg(hints);
         }
-        // All reports show as much as students may know. Hidden groups are in all but the page: staff reads them, and
-        // the server hides them from students.
+        // Reports show as much as students may see. Hidden groups are in all of them except the page: staff reads them,
+        // and the server hides them from students.
         command.args(["--for", "student"]);
         for (format, file, _) in REPORTS.into_iter().filter(|(format, _, _)| !format.is_empty()) {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }
         isolate(&mut command, folder);
-        // Another grader may not know these.
+        // Other graders may not have these options.
         command.env("FOSSSIM_PLATFORM_HIDES", "true");
-        command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS));
+        command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS_FILE));
         command.env("FOSSSIM_STAFF_PAGE", folder.join(STAFF_PAGE));
         command.env("FOSSSIM_PUBLISHED_PAGE", folder.join(PUBLISHED_PAGE));
         command
     }
 }
 
-/// The scene of a proof: a small one of the grader's own.
-const PROOF: &str = "ContinuousTimeTests/diagonal-bullets-both-ways";
+/// The scene for a check, a small one of the grader.
+const CHECK_SCENE: &str = "ContinuousTimeTests/diagonal-bullets-both-ways";
 
-/// The number of bytes that a folder must take for jobs to work in it.
-const ROOM: usize = 8 << 20;
+/// The number of bytes that must be writable in a folder for jobs.
+const REQUIRED_BYTES: usize = 8 << 20;
 
-/// The longest time that a step of a proof may take.
-const PROOF_TIME: Duration = Duration::from_secs(60);
+/// The maximum duration of a step of a check.
+const CHECK_TIMEOUT: Duration = Duration::from_secs(60);
 
 impl Program {
-    /// Runs the grader for a proof, and returns its exit code.
+    /// Runs the grader for a check, and returns its exit code.
     async fn step(&self, folder: &Path, arguments: &[&str], stop: &CancellationToken) -> Result<i32, String> {
         let messages = folder.join("messages.txt");
         let mut command = Command::new(&self.path);
@@ -115,12 +115,12 @@ impl Program {
         let end = tokio::select! {
             end = child.wait() => Some(end),
             () = stop.cancelled() => None,
-            () = tokio::time::sleep(PROOF_TIME) => None,
+            () = tokio::time::sleep(CHECK_TIMEOUT) => None,
         };
         let step = arguments[0];
         match end {
             Some(End::Code(code @ (0..=2))) => Ok(code),
-            Some(End::Code(code)) => Err(format!("`{step}` ended with exit code {code}: {}", last_words(&messages))),
+            Some(End::Code(code)) => Err(format!("`{step}` ended with exit code {code}: {}", last_output(&messages))),
             Some(End::Signal(signal)) => Err(format!("`{step}` was ended by signal {signal}")),
             None => {
                 child.kill();
@@ -130,7 +130,7 @@ impl Program {
         }
     }
 
-    /// Grades an example, and checks how that ends.
+    /// Grades an example, and checks the result.
     async fn try_example(
         &self,
         folder: &Path,
@@ -140,10 +140,10 @@ impl Program {
     ) -> Result<(), String> {
         let grade = folder.join("proof.json");
         let format = format!("json={}", grade.display());
-        let arguments = [&["grade"], submission, &["--scene", PROOF, "--format", &format]].concat();
+        let arguments = [&["grade"], submission, &["--scene", CHECK_SCENE, "--format", &format]].concat();
         let ended = self.step(folder, &arguments, stop).await?;
         if ended != code {
-            let said = last_words(&folder.join("messages.txt"));
+            let said = last_output(&folder.join("messages.txt"));
             return Err(format!("grading an example ended with exit code {ended}, not {code}: {said}"));
         }
         let graded = reading::read_grade(&grade)?;
@@ -154,7 +154,7 @@ impl Program {
     }
 }
 
-/// Runs a command in a folder, without the server's environment, which may hold secrets.
+/// Runs a command in a folder, without the server's environment variables, which may contain secrets.
 pub(super) fn isolate(command: &mut Command, folder: &Path) {
     command.env_clear().current_dir(folder);
     for name in ["PATH", "HOME", "LANG", "TMPDIR"] {
@@ -165,18 +165,18 @@ pub(super) fn isolate(command: &mut Command, folder: &Path) {
 }
 
 impl Grader for Program {
-    /// Proves that the grader works: there is room to work in; the reference's own trace of a scene is accepted; a
+    /// Checks that the grader works: there is space to work in, the reference's own trace of a scene is accepted, and a
     /// program that does nothing runs in the sandbox and is not accepted. A grader that records no traces, as in tests,
     /// is only started.
     async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
         let room = folder.join("room");
-        fs::write(&room, vec![1; ROOM]).map_err(|error| format!("no room to work in: {error}"))?;
+        fs::write(&room, vec![1; REQUIRED_BYTES]).map_err(|error| format!("there is no space to work in: {error}"))?;
         fs::remove_file(&room).map_err(|error| error.to_string())?;
-        let trace = folder.join("right").join(PROOF).with_extension("bin");
+        let trace = folder.join("right").join(CHECK_SCENE).with_extension("bin");
         let idle = folder.join("idle");
         let above = trace.parent().unwrap_or(folder);
         fs::create_dir_all(above).and_then(|()| fs::create_dir(&idle)).map_err(|error| error.to_string())?;
-        let recorded = ["simulate", &format!("asset:{PROOF}"), "--output", &trace.display().to_string()];
+        let recorded = ["simulate", &format!("asset:{CHECK_SCENE}"), "--output", &trace.display().to_string()];
         if self.step(folder, &recorded, &stop).await? != 0 {
             return Ok(());
         }
@@ -197,25 +197,25 @@ impl Grader for Program {
     ) -> Result<GradingOutput, GraderFault> {
         let program = match task.submission.form {
             Form::Program => {
-                place_program(submission, folder, &task.submission.name).map_err(cannot("place the program"))?
+                place_program(submission, folder, &task.submission.name).map_err(fault_about("place the program"))?
             }
             Form::Sources => unpack(submission, folder.join("submission")).await?.0,
-            // Their folder stays: it may be the group of all scenes.
+            // The top folder stays, because it may be the group of all scenes.
             Form::Traces => unpack(submission, folder.join("submission")).await?.1,
         };
         if let Some(suite) = suite {
             unpack(suite, folder.join("suite")).await?;
         }
-        // The digest is taken before the grader runs: another one may be installed meanwhile.
+        // The digest is computed before the grader runs, because another one may be installed during the run.
         let grader = self.digest().await;
         let messages = folder.join("messages.txt");
         let mut command = self.command(task, &program, folder);
-        command.stderr(fs::File::create(&messages).map_err(cannot("write the messages"))?);
-        let child = Child::start(command).map_err(cannot("start the grader"))?;
-        let (end, stopped) = end_of(&child, Duration::from_secs(task.seconds), &stop).await?;
-        let said = || last_words(&messages);
+        command.stderr(fs::File::create(&messages).map_err(fault_about("write the messages"))?);
+        let child = Child::start(command).map_err(fault_about("start the grader"))?;
+        let (end, stopped) = wait_for_end(&child, Duration::from_secs(task.seconds), &stop).await?;
+        let said = || last_output(&messages);
         match end {
-            // 0 accepted, 1 not accepted, 130 stopped with partial results.
+            // The exit codes mean: 0 accepted, 1 not accepted, 130 stopped with partial results.
             End::Code(0 | 1) => {}
             End::Code(130) if stopped => {}
             End::Code(code) => {
@@ -240,8 +240,8 @@ impl Grader for Program {
     }
 }
 
-/// Returns how a grader ended, and whether its time was over.
-async fn end_of(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
+/// Returns the end of a grader, and whether it exceeded the time limit.
+async fn wait_for_end(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
     let (mut left, mut is_late) = (most, false);
     loop {
         tokio::select! {
@@ -259,16 +259,16 @@ async fn end_of(child: &Child, most: Duration, stop: &CancellationToken) -> Resu
                 }
             },
         }
-        (left, is_late) = (GRACE, true);
+        (left, is_late) = (GRACE_PERIOD, true);
     }
 }
 
-fn cannot(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
+fn fault_about(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
     move |error| GraderFault::Failed(format!("cannot {what}: {error}"))
 }
 
-/// Unpacks an archive into a new folder, and returns that folder and the folder at its top. The archive was checked
-/// when it arrived.
+/// Unpacks an archive into a new folder, and returns that folder and the folder at the archive's top. The archive was
+/// checked at the upload.
 async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), GraderFault> {
     let archive = archive.to_owned();
     let unpacking = tokio::task::spawn_blocking(move || {
@@ -282,7 +282,7 @@ async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), G
     unpacked.map_err(|error| GraderFault::Failed(format!("cannot unpack an archive: {error}")))
 }
 
-/// Returns the submission under its own name, executable: reports and messages speak of it so.
+/// Links the submission under its own name, as an executable, so that reports and messages contain that name.
 fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<PathBuf> {
     if name.is_empty() || name.starts_with('.') || name.contains(['/', '\0']) {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "the submission's name must be a plain file name"));
@@ -296,9 +296,9 @@ fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<Pat
 }
 
 /// Returns the end of the grader's output, on one line.
-fn last_words(file: &Path) -> String {
+fn last_output(file: &Path) -> String {
     let bytes = fs::read(file).unwrap_or_default();
-    let from = bytes.len().saturating_sub(MESSAGE);
+    let from = bytes.len().saturating_sub(MAX_MESSAGE_LENGTH);
     let text = String::from_utf8_lossy(&bytes[from..]);
     let plain: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
     let words = plain.split_whitespace().collect::<Vec<_>>().join(" ");

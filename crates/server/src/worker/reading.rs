@@ -1,12 +1,12 @@
-//! The part of the grader's words about a submission that the service understands; people read the rest.
+//! The parts of a grader's result that the service reads; people read the rest.
 use crate::{grade_file::GradeFile, task::Outcome};
 use std::{fs, path::Path};
 
-/// The schemas of `grade.json` that are read here. While servers and workers are upgraded one after the other, a grader
-/// may be older; the parts that are read here are the same in both.
+/// The supported schemas of `grade.json`. During an upgrade, a grader may be older than the server; the parts that are
+/// read are the same in all of them.
 const SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 
-/// Reads a grade. Numbers keep their digits: the text that the grader wrote is what counts.
+/// Reads a grade. Numbers are kept as the text that the grader wrote.
 pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
     let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
     let damaged = |error: serde_json::Error| format!("grade.json can't be read: {error}");

@@ -1,4 +1,5 @@
-//! The source of workers on other machines: a server over HTTP. They hold a token, no password of a database.
+//! The source of jobs for workers on other machines: a server over HTTP. The workers have a token, but no access to the
+//! database.
 use super::{JobSource, SourceError};
 use crate::{
     queue::{Lease, Progress},
@@ -19,16 +20,16 @@ use std::{
 use ureq::{Agent, Body, RequestBuilder, http::Response};
 
 /// The time between two requests for a job.
-const ASK_EVERY: Duration = Duration::from_secs(1);
+const REQUEST_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The longest time that the server may take to answer, and to begin and go on with a file.
-const PATIENCE: Duration = Duration::from_secs(60);
-const WHOLE_FILE: Duration = Duration::from_secs(900);
+/// The maximum time to wait for the server's answer, and for each part of a file.
+const ANSWER_TIMEOUT: Duration = Duration::from_secs(60);
+const FILE_TIMEOUT: Duration = Duration::from_secs(900);
 
-/// The longest answer that is read.
-const ANSWER: u64 = 1 << 20;
+/// The maximum size of an answer, in bytes.
+const MAX_ANSWER_BYTES: u64 = 1 << 20;
 
-/// A server over HTTP as a source. Cloning it is cheap.
+/// A server over HTTP, as a source of jobs. Clones are cheap.
 #[derive(Clone)]
 pub struct RemoteSource(Arc<Parts>);
 
@@ -37,7 +38,7 @@ struct Parts {
     server: String,
     authorization: String,
     name: String,
-    /// The time between two renewals of a lease in milliseconds, as the server sets it.
+    /// The time between two reports that the worker is alive in milliseconds, as the server sets it.
     tick_every: AtomicU64,
 }
 
@@ -48,16 +49,16 @@ impl fmt::Debug for RemoteSource {
 }
 
 impl RemoteSource {
-    /// Creates a source at a server's address, for a worker of this name.
+    /// Creates a source from a server's address, for a worker with a name.
     pub fn new(server: &str, token: &str, name: &str) -> Self {
         let agent = Agent::config_builder()
-            // The status is checked here, with the server's words about it.
+            // The status is checked here, with the server's message about it.
             .http_status_as_error(false)
-            // The token is sent to this server only.
+            // The token is sent only to this server.
             .max_redirects(0)
-            .timeout_connect(Some(PATIENCE))
-            .timeout_recv_response(Some(PATIENCE))
-            .timeout_global(Some(WHOLE_FILE))
+            .timeout_connect(Some(ANSWER_TIMEOUT))
+            .timeout_recv_response(Some(ANSWER_TIMEOUT))
+            .timeout_global(Some(FILE_TIMEOUT))
             .user_agent(concat!("fosssim-server/", env!("CARGO_PKG_VERSION")))
             .build()
             .new_agent();
@@ -70,7 +71,7 @@ impl RemoteSource {
         }))
     }
 
-    /// Calls the server, away from the threads that must not wait.
+    /// Calls the server on a thread that may block.
     async fn call<T: Send + 'static>(
         &self,
         ask: impl FnOnce(&Parts) -> Result<T, SourceError> + Send + 'static,
@@ -89,12 +90,12 @@ impl RemoteSource {
     }
 }
 
-/// Returns a lease as a header shows it.
+/// Returns a lease in the form of the header.
 fn format_lease(lease: &Lease) -> String {
     format!("{}:{}:{}", lease.job, lease.attempt, lease.key)
 }
 
-fn no_answer(error: impl fmt::Display) -> SourceError {
+fn outage(error: impl fmt::Display) -> SourceError {
     SourceError::Away(format!("the server does not answer: {error}"))
 }
 
@@ -103,15 +104,15 @@ impl Parts {
         format!("{}/api/v1/worker/{path}", self.server)
     }
 
-    /// Sends JSON, and reads JSON.
+    /// Sends a JSON body, and parses the JSON answer.
     fn json<T: DeserializeOwned>(&self, path: &str, body: &impl Serialize) -> Result<T, SourceError> {
         let answer = self.post(path, body)?;
         let mut answer = check_status(answer)?;
-        let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(no_answer)?;
+        let text = answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(outage)?;
         serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
     }
 
-    /// Returns a request with the worker's identity and the job.
+    /// Returns a request with the worker's identity and the job's lease.
     fn sign<B>(&self, request: RequestBuilder<B>, lease: Option<&str>) -> RequestBuilder<B> {
         let request = request.header("Authorization", &self.authorization).header("Fosssim-Worker", &self.name);
         match lease {
@@ -123,20 +124,21 @@ impl Parts {
     fn post(&self, path: &str, body: &impl Serialize) -> Result<Response<Body>, SourceError> {
         let body = serde_json::to_vec(body).map_err(|error| SourceError::Refused(error.to_string()))?;
         let request = self.sign(self.agent.post(self.url(path)), None);
-        request.header("Content-Type", "application/json").send(&body).map_err(no_answer)
+        request.header("Content-Type", "application/json").send(&body).map_err(outage)
     }
 }
 
-/// Returns the meaning of a status: a server that does not answer for a moment, or one that rejects for good.
+/// Returns the answer, or the error for its status: a server that does not answer at present, or one that rejects
+/// permanently.
 fn check_status(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
     let status = answer.status();
     if status.is_success() {
         return Ok(answer);
     }
-    let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().unwrap_or_default();
+    let body = answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().unwrap_or_default();
     let problem: serde_json::Value = serde_json::from_slice(&body).unwrap_or_default();
     let text = format!("{status}: {}", problem["detail"].as_str().unwrap_or_default());
-    // Our own mistakes, and missing things, are permanent; a proxy's troubles pass.
+    // Errors of this program, and missing things, are permanent; errors of a proxy are temporary.
     match status.as_u16() {
         401 if problem["type"] == "urn:fosssim:unknown-secret" => Err(SourceError::Dismissed),
         400 | 403 | 404 | 409 | 413 | 422 => Err(SourceError::Refused(text)),
@@ -151,7 +153,7 @@ impl JobSource for RemoteSource {
             if answer.status() == 204 {
                 return Ok(None);
             }
-            let text = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(no_answer)?;
+            let text = answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(outage)?;
             serde_json::from_slice(&text)
                 .map(Some)
                 .map_err(|error| SourceError::Refused(format!("the job can't be read: {error}")))
@@ -160,7 +162,7 @@ impl JobSource for RemoteSource {
     }
 
     async fn wait(&self, patience: Duration) {
-        tokio::time::sleep(patience.min(ASK_EVERY)).await;
+        tokio::time::sleep(patience.min(REQUEST_INTERVAL)).await;
     }
 
     async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {
@@ -183,20 +185,20 @@ impl JobSource for RemoteSource {
         let (lease, wanted, place) = (format_lease(lease), digest.clone(), file.to_owned());
         self.call(move |parts| {
             let request = parts.agent.get(parts.url(&format!("files/{wanted}")));
-            let answer = parts.sign(request, Some(&lease)).call().map_err(no_answer)?;
+            let answer = parts.sign(request, Some(&lease)).call().map_err(outage)?;
             let mut answer = check_status(answer)?;
             let written = fs::File::create_new(&place).and_then(|mut output| {
                 let mut input = answer.body_mut().with_config().limit(u64::MAX).reader();
                 io::copy(&mut input, &mut output)
             });
             written.map(drop).map_err(|error| {
-                // Anybody who tries again wants to find nothing.
+                // A retry must find no file.
                 drop(fs::remove_file(&place));
-                no_answer(error)
+                outage(error)
             })
         })
         .await?;
-        let found = digest_of_file(file).await.map_err(no_answer)?;
+        let found = digest_of_file(file).await.map_err(outage)?;
         if found.digest != *digest {
             drop(fs::remove_file(file));
             return Err(SourceError::Away(format!("the server's bytes do not match {digest}")));
@@ -210,7 +212,7 @@ impl JobSource for RemoteSource {
         self.call(move |parts| {
             let input = fs::File::open(&place).map_err(|error| SourceError::Refused(error.to_string()))?;
             let request = parts.sign(parts.agent.put(parts.url(&format!("files/{digest}"))), Some(&lease));
-            let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(no_answer)?;
+            let answer = request.header("Content-Type", "application/octet-stream").send(input).map_err(outage)?;
             check_status(answer).map(drop)
         })
         .await?;

@@ -1,6 +1,6 @@
-//! A worker's slots: each does one job after another.
+//! The slots of a worker; each runs one job at a time.
 use super::{
-    Grader, GraderFault, JobSource, PROGRESS, SourceError,
+    Grader, GraderFault, JobSource, PROGRESS_FILE, SourceError,
     health::{Health, job_folder},
 };
 use crate::{
@@ -17,29 +17,30 @@ use std::{
 use tokio_util::sync::CancellationToken;
 
 /// The time that a slot waits for a job before it requests one again.
-const PATIENCE: Duration = Duration::from_secs(20);
+const JOB_WAIT: Duration = Duration::from_secs(20);
 
-/// The wait after the source did not answer; it doubles up to the longest.
+/// The wait after the source did not answer; it doubles up to the maximum.
 const FIRST_WAIT: Duration = Duration::from_millis(200);
-const LONGEST_WAIT: Duration = Duration::from_secs(5);
+const MAX_WAIT: Duration = Duration::from_secs(5);
 
-/// The number of tries to get the parts of a job while the source does not answer.
-const MOST_FETCHES: u32 = 5;
+/// The maximum number of tries to fetch the files of a job while the source does not answer.
+const MAX_FETCHES: u32 = 5;
 
 /// The time between two reports of a grading's progress.
-const TELL_EVERY: Duration = Duration::from_secs(1);
+const REPORT_INTERVAL: Duration = Duration::from_secs(1);
 
-/// No suite has more scenes.
-const MANY_SCENES: u32 = 1_000_000;
+/// A number of scenes that no suite exceeds.
+const MAX_SCENES: u32 = 1_000_000;
 
-/// The folder of a job in which its grader works.
-const WORK: &str = "work";
+/// The name of a job's folder for the grader.
+const WORK_FOLDER: &str = "work";
 
-/// Does jobs, one in each slot, until `stop` is canceled; then gives back what it holds, and ends. Jobs get folders in
-/// this one, which its owner empties, not the slots.
+/// Runs jobs, one in each slot, until `stop` is canceled; then returns unfinished jobs, and ends. The folders of jobs
+/// are created in `folder`, which its owner empties, not the slots.
 ///
 /// # Errors
-/// When the source does not know the worker any more: what it holds counts for nothing.
+///
+/// When the source no longer accepts the worker, so that its jobs are lost.
 pub async fn work<D: JobSource, G: Grader>(
     source: D,
     grader: G,
@@ -58,7 +59,7 @@ pub async fn work<D: JobSource, G: Grader>(
             match source.tick(slots, health.fault().as_deref()).await {
                 Ok(()) => {}
                 Err(SourceError::Dismissed) => return SourceError::Dismissed,
-                Err(error) => tracing::warn!(%error, "the worker can't say that it is alive"),
+                Err(error) => tracing::warn!(%error, "the worker's report that it is alive failed"),
             }
             tokio::select! {
                 () = tokio::time::sleep(source.tick_every()) => {}
@@ -79,13 +80,13 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
             Ok(None) => {
                 wait = FIRST_WAIT;
                 tokio::select! {
-                    () = source.wait(PATIENCE) => {}
+                    () = source.wait(JOB_WAIT) => {}
                     () = stop.cancelled() => {}
                 }
             }
             Ok(Some(job)) => {
                 wait = FIRST_WAIT;
-                // A panic is this job's, not the worker's.
+                // A panic affects only this job, not the worker.
                 let lease = job.lease.clone();
                 let done = tokio::spawn(run(source.clone(), health.clone(), job, stop.clone()));
                 if let Err(error) = done.await {
@@ -99,30 +100,30 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
                     () = tokio::time::sleep(wait) => {}
                     () = stop.cancelled() => {}
                 }
-                wait = (wait * 2).min(LONGEST_WAIT);
+                wait = (wait * 2).min(MAX_WAIT);
             }
         }
     }
 }
 
-/// The way in which a job ended, for the source.
+/// The end of a job, for the source.
 enum JobEnding {
     Finished(Box<Outcome>),
     Failed(String),
-    /// The worker is to stop.
+    /// The worker must stop.
     GivenBack,
-    /// The lease is lost: there is nothing to report.
+    /// The lease is lost, so there is nothing to report.
     Lost,
 }
 
 async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: ClaimedJob, stop: CancellationToken) {
     let lost = CancellationToken::new();
     let folder = job_folder(&health.folder);
-    let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK).join(PROGRESS));
+    let progress = folder.as_ref().ok().map(|folder| folder.path().join(WORK_FOLDER).join(PROGRESS_FILE));
     let every = Duration::from_millis(job.renew_every);
     let keeping = tokio::spawn(keep(source.clone(), job.lease.clone(), every, progress, lost.clone()));
     let ending = match folder {
-        Err(error) => JobEnding::Failed(format!("no folder for the job: {error}")),
+        Err(error) => JobEnding::Failed(format!("the job's folder can't be created: {error}")),
         Ok(folder) => {
             let halt = CancellationToken::new();
             let grading = async {
@@ -144,7 +145,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
                     // The grader ends its children before anything is reported or removed.
                     halt.cancel();
                     match grading.await {
-                        // It was done at that very moment.
+                        // The job finished at that very moment.
                         JobEnding::Finished(outcome) if !lost.is_cancelled() => JobEnding::Finished(outcome),
                         _ if lost.is_cancelled() => JobEnding::Lost,
                         _ => JobEnding::GivenBack,
@@ -153,7 +154,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
             }
         }
     };
-    // A failure of the grader may be the machine's fault; that costs the submission no try.
+    // A failure of the grader may be the machine's fault, which must not count as a failure of the job.
     let ending = match ending {
         JobEnding::Failed(fault) if !health.survives(&stop).await => {
             tracing::warn!(job = job.lease.job, fault, "the job goes to another worker");
@@ -165,12 +166,12 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
     keeping.abort();
 }
 
-/// Renews a lease until it is lost: as often as the source requests, and when the grading has advanced.
+/// Renews a lease until it is lost, at the interval that the source requests, and after progress of the grading.
 async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Option<PathBuf>, lost: CancellationToken) {
     let mut renewed = tokio::time::Instant::now();
     let mut told = None;
     loop {
-        tokio::time::sleep(every.min(TELL_EVERY)).await;
+        tokio::time::sleep(every.min(REPORT_INTERVAL)).await;
         let progress = file.as_deref().and_then(progress_in);
         if progress == told && renewed.elapsed() < every {
             continue;
@@ -183,19 +184,19 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opti
                 tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
                 return lost.cancel();
             }
-            // The work continues: the source decides at its end whether it counts.
+            // The work continues; at its end, the source decides whether it counts.
             Err(error) => tracing::warn!(job = lease.job, %error, "the lease can't be renewed"),
         }
     }
 }
 
-/// Returns the progress of the grading that writes this file: `3/85`.
+/// Returns the progress in a grader's file, such as `3/85`.
 fn progress_in(file: &Path) -> Option<Progress> {
     let mut text = String::new();
     File::open(file).ok()?.take(64).read_to_string(&mut text).ok()?;
     let (done, all) = text.trim().split_once('/')?;
     let progress = Progress { done: done.parse().ok()?, all: all.parse().ok()? };
-    (progress.done <= progress.all && progress.all <= MANY_SCENES).then_some(progress)
+    (progress.done <= progress.all && progress.all <= MAX_SCENES).then_some(progress)
 }
 
 impl From<SourceError> for GraderFault {
@@ -204,7 +205,7 @@ impl From<SourceError> for GraderFault {
     }
 }
 
-/// Fetches what the job needs, grades, and stores the result.
+/// Fetches the files of the job, grades, and stores the result.
 async fn attempt<D: JobSource, G: Grader>(
     source: &D,
     grader: &G,
@@ -214,43 +215,44 @@ async fn attempt<D: JobSource, G: Grader>(
 ) -> Result<Outcome, GraderFault> {
     let start = Instant::now();
     let submission = folder.join("submission");
-    patiently(|| source.fetch(&job.lease, &job.task.submission.artifact.digest, &submission)).await?;
+    retry(|| source.fetch(&job.lease, &job.task.submission.artifact.digest, &submission)).await?;
     let suite = match &job.task.suite {
         Suite::Named(_) => None,
         Suite::Archive(digest) => {
             let file = folder.join("suite");
-            patiently(|| source.fetch(&job.lease, digest, &file)).await?;
+            retry(|| source.fetch(&job.lease, digest, &file)).await?;
             Some(file)
         }
     };
-    let work = folder.join(WORK);
+    let work = folder.join(WORK_FOLDER);
     std::fs::create_dir(&work).map_err(|error| GraderFault::Failed(format!("cannot make a folder: {error}")))?;
     let graded = grader.grade(&job.task, &submission, suite.as_deref(), &work, halt).await?;
     let mut files = Vec::new();
     for file in &graded.files {
-        let artifact = patiently(|| source.store(&job.lease, &file.path)).await?;
+        let artifact = retry(|| source.store(&job.lease, &file.path)).await?;
         files.push(OutputFile { name: file.name.clone(), media_type: file.media_type.clone(), artifact });
     }
     let seconds = format!("{:.3}", start.elapsed().as_secs_f64());
     Ok(Outcome { seconds, files, ..graded.outcome })
 }
 
-/// Repeats a request to a source that does not answer: a short fault of the network costs no try.
-async fn patiently<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
+/// Repeats a request to a source that does not answer, so that a short failure of the network does not count as a
+/// failure of the job.
+async fn retry<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
     let mut wait = FIRST_WAIT;
-    for _ in 0..MOST_FETCHES {
+    for _ in 0..MAX_FETCHES {
         match ask().await {
             Err(SourceError::Away(error)) => tracing::warn!(error, "the source can't be reached"),
             answer => return answer,
         }
         tokio::time::sleep(wait).await;
-        wait = (wait * 2).min(LONGEST_WAIT);
+        wait = (wait * 2).min(MAX_WAIT);
     }
     ask().await
 }
 
-/// Reports the result to the source, with as many tries as it takes: a lost result would have to be made again. A
-/// worker that must stop tries a few times only; then the lease runs out.
+/// Reports the result to the source, with any number of tries, because a lost result would have to be computed again. A
+/// worker that must stop tries only a few times; then the lease expires.
 async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop: &CancellationToken) {
     let mut wait = FIRST_WAIT;
     let mut tries_after_stop = 3;
@@ -281,6 +283,6 @@ async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop
             }
         }
         tokio::time::sleep(wait).await;
-        wait = (wait * 2).min(LONGEST_WAIT);
+        wait = (wait * 2).min(MAX_WAIT);
     }
 }

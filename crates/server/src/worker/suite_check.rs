@@ -1,4 +1,4 @@
-//! Checks by the grader whether a suite can be used, before a submission is graded by it.
+//! The check whether a suite can be used, which the grader makes before a submission is graded by it.
 use super::{
     child::{Child, End, limit},
     program::isolate,
@@ -6,18 +6,19 @@ use super::{
 use crate::health::without_paths;
 use std::{fs, path::Path, process::Command, time::Duration};
 
-/// The longest time that the grader may take, in seconds on the clock and of the processor.
-const SECONDS: u64 = 60;
+/// The limit of wall time and processor time for the grader, in seconds.
+const MAX_SECONDS: u64 = 60;
 
-/// The memory that it may take for that.
-const MEMORY: u64 = 2 << 30;
+/// The limit of the grader's memory, in bytes.
+const MAX_MEMORY: u64 = 2 << 30;
 
-/// The length of its output that is shown.
-const MESSAGE: usize = 2000;
+/// The maximum length of the shown output.
+const MAX_MESSAGE_LENGTH: usize = 2000;
 
-/// Checks the suite in a folder by the grader. A grader that knows no `suite check` has no objections.
+/// Checks the suite in a folder with the grader. A grader without the command `suite check` has no objections.
 ///
 /// # Errors
+///
 /// The grader's objections, without the folders of this machine.
 pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     let messages = tempfile::NamedTempFile::new_in(folder).map_err(|error| error.to_string())?;
@@ -25,15 +26,15 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     command.args(["suite", "check", "suite.toml"]);
     isolate(&mut command, folder);
     command.stderr(messages.reopen().map_err(|error| error.to_string())?);
-    limit(&mut command, MEMORY, SECONDS);
+    limit(&mut command, MAX_MEMORY, MAX_SECONDS);
     let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;
-    let Ok(end) = tokio::time::timeout(Duration::from_secs(SECONDS), child.wait()).await else {
+    let Ok(end) = tokio::time::timeout(Duration::from_secs(MAX_SECONDS), child.wait()).await else {
         child.kill();
         child.wait().await;
-        return Err(format!("the grader did not finish checking it within {SECONDS} seconds"));
+        return Err(format!("the grader did not finish checking it within {MAX_SECONDS} seconds"));
     };
     let said = fs::read(messages.path()).unwrap_or_default();
-    let said = String::from_utf8_lossy(&said[..said.len().min(MESSAGE)]).into_owned();
+    let said = String::from_utf8_lossy(&said[..said.len().min(MAX_MESSAGE_LENGTH)]).into_owned();
     tracing::info!(?end, said, "the grader checked a suite");
     match (end, said.trim().strip_prefix("error:")) {
         (End::Code(0), _) => Ok(()),

@@ -39,7 +39,7 @@ async fn a_newer_database_is_left_alone(fresh: Fresh) {
     assert!(matches!(error, MigrateError::Newer { found } if found == newer), "{error}");
     assert!(error.to_string().contains("start the newer program"), "{error}");
     // A server that runs all the while stops writing as soon as it sees that.
-    assert!(fresh.database.is_well().await);
+    assert!(fresh.database.is_healthy().await);
     let refused = fresh.database.begin().await.expect_err("a newer database");
     assert!(refused.is_transient() && refused.to_string().contains("a newer program"), "{refused}");
     fresh.database.read().await.expect("it is read still");

@@ -47,7 +47,7 @@ async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     assert_eq!(found.submissions, 1, "what is being graded stays");
     // Reports that say the same of others lie in the store once, and stay.
     assert!(found.artifacts >= 2, "the upload and its grade: {found:?}");
-    assert_eq!(give_up(1).await, retention::GivenUp::default(), "once");
+    assert_eq!(give_up(1).await, retention::RemovalCounts::default(), "once");
     // The grade stands, with its history; the bytes are gone, and that is said.
     let path = |id: i64, rest: &str| format!("/api/v1/courses/physics/submissions/{id}{rest}");
     let submission = ada.get(&path(old, "")).expect(200).json();

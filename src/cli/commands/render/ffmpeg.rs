@@ -1,8 +1,8 @@
-//! MP4 by a program: pictures go to ffmpeg through a pipe.
+//! MP4 films by an external program: pictures are sent to ffmpeg through a pipe.
 //!
-//! Its output is our own temporary file, so nothing appears under the target's name before it is whole. A program that
-//! takes no picture for a minute is ended. No name of a user is among its arguments but that file's, which begins with
-//! `file:`.
+//! Its output is a temporary file, so that nothing has the target's name before it is complete. A program that reads
+//! nothing for a minute is ended. None of its arguments contains a user's file name except for that file's, which
+//! begins with `file:`.
 use crate::{
     cli::output::Output,
     render::{Size, film::Rate},
@@ -20,10 +20,10 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The program.
+/// The name of the program.
 const FFMPEG: &str = "ffmpeg";
 
-/// Encoders that can be put into an MP4, the best first, with the arguments that each takes.
+/// The encoders for MP4, the best first, each with its arguments.
 const ENCODERS: [(&str, &[&str]); 4] = [
     ("libx264", &["-preset", "medium", "-crf", "20"]),
     ("libopenh264", &["-b:v", "4M"]),
@@ -32,10 +32,10 @@ const ENCODERS: [(&str, &[&str]); 4] = [
 ];
 
 /// The time after which a program that reads nothing is ended.
-const PATIENCE: Duration = Duration::from_secs(60);
+const STUCK_TIME: Duration = Duration::from_secs(60);
 
-/// The number of bytes kept of its messages.
-const WORDS: usize = 4096;
+/// The maximum number of bytes that are kept of the program's messages.
+const MAX_MESSAGE_BYTES: usize = 4096;
 
 /// A film that is being encoded.
 pub(super) struct Ffmpeg {
@@ -43,11 +43,11 @@ pub(super) struct Ffmpeg {
     pipe: Option<ChildStdin>,
     words: Option<JoinHandle<String>>,
     watch: Arc<EncoderWatch>,
-    /// The temporary name, until it appears under its own.
+    /// The temporary output, until it gets its final name.
     output: Option<Output>,
 }
 
-/// The state of the thread that watches.
+/// The state of the watching thread.
 #[derive(Default)]
 struct EncoderWatch {
     pictures: AtomicU64,
@@ -56,9 +56,10 @@ struct EncoderWatch {
 }
 
 impl Ffmpeg {
-    /// Returns whether there is an ffmpeg that can make an MP4, and by which encoder.
+    /// Returns an encoder of ffmpeg for MP4.
     ///
     /// # Errors
+    ///
     /// When there is none, with advice.
     pub(super) fn find() -> Result<(&'static str, &'static [&'static str])> {
         let run = Command::new(FFMPEG)
@@ -70,7 +71,7 @@ impl Ffmpeg {
             Ok(run) => String::from_utf8_lossy(&run.stdout).into_owned(),
             Err(error) if error.kind() == io::ErrorKind::NotFound => bail!(
                 "an MP4 needs ffmpeg, which is not installed; install it (on Debian and Ubuntu: apt install ffmpeg), \
-                 or name the output .gif, which needs nothing"
+                 or choose an output .gif, which needs no other program"
             ),
             Err(error) => return Err(error).context("ffmpeg can't be started"),
         };
@@ -86,10 +87,11 @@ impl Ffmpeg {
     /// Starts the program.
     ///
     /// # Errors
-    /// When it can't be started, or the output is no file.
+    ///
+    /// When it can't be started, or the output is not a file.
     pub(super) fn start(size: Size, rate: Rate, output: Output) -> Result<Self> {
         let (encoder, options) = Self::find()?;
-        let Some(path) = output.temporary_path() else { bail!("an MP4 is written into a file; name one") };
+        let Some(path) = output.temporary_path() else { bail!("an MP4 needs an output file; name one") };
         let mut file = OsString::from("file:");
         file.push(&path);
         let size = size.to_string();
@@ -111,8 +113,8 @@ impl Ffmpeg {
         let words = errors.map(|mut errors| {
             thread::spawn(move || {
                 let mut words = Vec::new();
-                let _ = errors.by_ref().take(WORDS as u64).read_to_end(&mut words);
-                // The rest is taken so that the program does not wait for a reader.
+                let _ = errors.by_ref().take(MAX_MESSAGE_BYTES as u64).read_to_end(&mut words);
+                // The rest is read so that the program does not block.
                 let _ = io::copy(&mut errors, &mut io::sink());
                 String::from_utf8_lossy(&words).trim().to_owned()
             })
@@ -126,25 +128,27 @@ impl Ffmpeg {
     /// Writes a picture to the program.
     ///
     /// # Errors
+    ///
     /// When the program has ended.
     pub(super) fn write_picture(&mut self, rgba: &[u8]) -> Result<()> {
-        let pipe = self.pipe.as_mut().context("ffmpeg takes no pictures")?;
-        pipe.write_all(rgba).context("ffmpeg takes no more pictures")?;
+        let pipe = self.pipe.as_mut().context("ffmpeg accepts no pictures")?;
+        pipe.write_all(rgba).context("ffmpeg accepts no more pictures")?;
         self.watch.pictures.fetch_add(1, Ordering::Relaxed);
         Ok(())
     }
 
-    /// Waits for the film, which then appears under its name. `drawn` is the result of drawing.
+    /// Waits for the film, which then gets its final name. `drawn` is the result of drawing.
     ///
     /// # Errors
-    /// When drawing or the program failed, with the program's output; then nothing appears.
+    ///
+    /// When drawing or the program failed, with the program's output; then there is no film.
     pub(super) fn finish(mut self, drawn: Result<()>) -> Result<()> {
         drop(self.pipe.take());
         self.watch.pictures.fetch_add(1, Ordering::Relaxed);
         let status = loop {
-            // The lock is given back while it is waited, for the thread that watches.
+            // The lock is released during the wait, for the watching thread.
             let asked = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
-            match asked.context("ffmpeg can't be waited for")? {
+            match asked.context("cannot wait for ffmpeg")? {
                 Some(status) => break status,
                 None => thread::sleep(Duration::from_millis(10)),
             }
@@ -152,7 +156,7 @@ impl Ffmpeg {
         self.watch.over.store(true, Ordering::Relaxed);
         let words = self.words.take().and_then(|words| words.join().ok()).unwrap_or_default();
         if self.watch.given_up.load(Ordering::Relaxed) {
-            bail!("ffmpeg took no picture for {} seconds and was ended", PATIENCE.as_secs());
+            bail!("ffmpeg read no picture for {} seconds and was ended", STUCK_TIME.as_secs());
         }
         if !status.success() {
             bail!("ffmpeg failed ({status}): {words}");
@@ -173,7 +177,7 @@ impl Drop for Ffmpeg {
     }
 }
 
-/// Starts a thread that ends the program when it is stuck, and that ends with it.
+/// Starts a thread that ends the program when it is stuck. The thread ends with the program.
 fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
     let (child, watch) = (Arc::clone(child), Arc::clone(watch));
     thread::spawn(move || {
@@ -183,7 +187,7 @@ fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
             let pictures = watch.pictures.load(Ordering::Relaxed);
             if pictures != seen {
                 (seen, since) = (pictures, Instant::now());
-            } else if since.elapsed() > PATIENCE && !watch.over.load(Ordering::Relaxed) {
+            } else if since.elapsed() > STUCK_TIME && !watch.over.load(Ordering::Relaxed) {
                 watch.given_up.store(true, Ordering::Relaxed);
                 let _ = child.lock().unwrap_or_else(PoisonError::into_inner).kill();
                 return;

@@ -1,4 +1,4 @@
-//! `render`: a scene's motion as pictures, a GIF or a movie.
+//! The command `render`: a scene's motion as pictures, a GIF or a movie.
 mod ffmpeg;
 mod motion;
 
@@ -27,16 +27,16 @@ use std::{
     path::Path,
 };
 
-/// Films of more pictures than this are thinned out, unless `--every` is given: a minute at 25 per second.
+/// The number of pictures above which films skip steps, unless `--every` is given: a minute at 25 per second.
 const LONG_FILM: u32 = 1500;
 
-/// No more pictures than this are drawn at a time.
-const MOST_PICTURES: u32 = 100_000;
+/// The maximum number of pictures in one run.
+const MAX_PICTURES: u32 = 100_000;
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
-    let form = form(arguments)?;
+    let form = output_format(arguments)?;
     let scene = input::scene(&arguments.scene)?;
-    let picks = picks(arguments, form, &scene.scene)?;
+    let picks = picked_steps(arguments, form, &scene.scene)?;
     let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::MAX_RATE) };
     // An output that can't work is reported before the work is done.
     let target = RenderTarget::open(form, arguments)?;
@@ -73,9 +73,9 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     Ok(if stopped.is_empty() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Returns the form of the output, by `--format` or by its name. SVG and PNG are one picture with `--step`, else a
-/// folder with a picture per step.
-fn form(arguments: &RenderArguments) -> Result<RenderFormat> {
+/// Returns the format of the output, from `--format` or its name. SVG and PNG are one picture with `--step`, otherwise
+/// a folder with a picture per step.
+fn output_format(arguments: &RenderArguments) -> Result<RenderFormat> {
     let (output, is_single) = (&arguments.output, arguments.step.is_some());
     let by_name = |extension: &str| has_extension(output, extension);
     let format = match arguments.format {
@@ -110,8 +110,8 @@ const fn is_film(form: RenderFormat) -> bool {
     matches!(form, RenderFormat::Gif | RenderFormat::Mp4)
 }
 
-/// Returns which steps are drawn.
-fn picks(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<Picks> {
+/// Returns the steps that are drawn.
+fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<Picks> {
     let last = scene.steps();
     if let Some(step) = arguments.step {
         if step > last {
@@ -130,18 +130,18 @@ fn picks(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Resu
     let first = if is_film(form) { 0 } else { every };
     let picks = Picks { first, every, last };
     let pictures = picks.count();
-    if pictures > MOST_PICTURES {
-        let least = last.div_ceil(MOST_PICTURES - 1);
-        bail!("these would be {pictures} pictures; more than {MOST_PICTURES} are not drawn, add --every {least}");
+    if pictures > MAX_PICTURES {
+        let least = last.div_ceil(MAX_PICTURES - 1);
+        bail!("this would draw {pictures} pictures, more than the limit of {MAX_PICTURES}; add --every {least}");
     }
     if pictures == 0 {
         let steps = format_count(last.into(), "step");
-        bail!("no step is drawn: the scene has {steps}, and every {every}th is asked for");
+        bail!("no step is drawn: the scene has {steps}, and --every {every} is requested");
     }
     Ok(picks)
 }
 
-/// A motion, ready to be drawn.
+/// A motion that can be drawn.
 struct Reel {
     painter: Painter,
     main: Motion,
@@ -167,14 +167,14 @@ impl Reel {
         self.painter.size()
     }
 
-    /// Draws every picture; passes on its number (from 1), its step and its shapes.
+    /// Draws every picture; passes its number (from 1), its step and its shapes to `draw`.
     fn for_each(&mut self, mut draw: impl FnMut(u32, u32, &[Shape]) -> Result<()>) -> Result<()> {
         let (mut place, mut other) = (Vec::new(), Vec::new());
         let mut bar = console::Bar::new(self.main.pictures);
         for number in 1..=self.main.pictures {
             let step = self.picks.step(number);
             if !self.main.next(&mut place)? {
-                bail!("the stored motion of {} is shorter than it was", self.main.name);
+                bail!("the stored motion of {} changed while it was being read", self.main.name);
             }
             let overlaid = match &mut self.overlay {
                 Some(overlay) => overlay.next(&mut other)?,
@@ -200,7 +200,7 @@ impl Reel {
     }
 }
 
-/// The form and place of pictures.
+/// The format and the destination of pictures.
 enum RenderTarget {
     Folder(Folder),
     Stream(Output),
@@ -222,7 +222,7 @@ impl RenderTarget {
         })
     }
 
-    /// Draws everything, and describes the result in words.
+    /// Draws everything, and returns a description of the result.
     fn draw(self, form: RenderFormat, reel: &mut Reel, rate: Rate) -> Result<String> {
         let (pictures, size) = (reel.main.pictures, reel.size());
         let steps = match (reel.picks.step(1), reel.picks.step(pictures)) {
@@ -277,7 +277,7 @@ impl RenderTarget {
             }
             (Self::Stream(output), RenderFormat::Mp4) => {
                 let mut encoder = Ffmpeg::start(size, rate, output)?;
-                // The words of ffmpeg when it ends early explain more than that its pipe is closed.
+                // If ffmpeg ends early, its messages explain more than a closed pipe.
                 let drawn = reel.for_each_raster(|_, raster| encoder.write_picture(raster.rgba()));
                 encoder.finish(drawn)?;
                 Ok(film(0))
@@ -295,7 +295,7 @@ impl RenderTarget {
     }
 }
 
-/// Returns one picture as the bytes of its file.
+/// Returns one picture in its file format.
 fn picture(
     form: RenderFormat,
     raster: &mut Raster,
@@ -312,7 +312,7 @@ fn picture(
     Ok(bytes)
 }
 
-/// A writer that counts.
+/// A writer that counts bytes.
 struct CountedWriter<W> {
     out: W,
     bytes: u64,

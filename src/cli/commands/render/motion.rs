@@ -1,7 +1,7 @@
-//! The motion that is drawn: the places of all bodies after each requested step.
+//! The motion for drawing: the positions of all bodies after each requested step.
 //!
-//! A motion is read or simulated once, and kept as plain numbers in memory, or in a nameless temporary file when it is
-//! large; so the view can be fitted to all of it, and a trace may come from a pipe.
+//! A motion is read or simulated once, and kept as plain numbers in memory, or in an unnamed temporary file if it is
+//! large. The view can therefore include all of it, and a trace may come from a pipe.
 use crate::{
     cli::{console, input},
     render::Extent,
@@ -17,20 +17,20 @@ use std::{
 };
 use tempfile::SpooledTempFile;
 
-/// The greatest number of bytes of a motion that are kept in memory.
-const KEPT: usize = 32 << 20;
+/// The maximum number of bytes of a motion in memory.
+const MAX_MEMORY_BYTES: usize = 32 << 20;
 
-/// Which steps are drawn: `first`, `first + every` and so on up to `last`.
+/// The steps that are drawn: `first`, `first + every` and so on up to `last`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Picks {
     pub(super) first: u32,
-    /// At least 1.
+    /// The distance between drawn steps, at least 1.
     pub(super) every: u32,
     pub(super) last: u32,
 }
 
 impl Picks {
-    /// Returns the number of these steps.
+    /// Returns the number of drawn steps.
     pub(super) fn count(self) -> u32 {
         if self.first > self.last { 0 } else { (self.last - self.first) / self.every + 1 }
     }
@@ -45,15 +45,15 @@ impl Picks {
     }
 }
 
-/// Positions of all particles at the steps that are drawn.
+/// The positions of all particles at the drawn steps.
 pub(super) struct Motion {
-    /// The owner of the motion, for messages.
+    /// The name of the motion's scene or trace, for messages.
     pub(super) name: String,
-    /// The number of steps that it holds.
+    /// The number of stored steps.
     pub(super) pictures: u32,
-    /// The box around all of them.
+    /// The bounding box of all positions.
     pub(super) extent: Extent,
-    /// The reason why it ends before the scene does.
+    /// The reason why the motion ends before the scene does.
     pub(super) stopped: Option<String>,
     rows: BufReader<SpooledTempFile>,
     width: usize,
@@ -63,6 +63,7 @@ impl Motion {
     /// Replaces `row` by the next positions; false at the end.
     ///
     /// # Errors
+    ///
     /// When the temporary file can't be read.
     pub(super) fn next(&mut self, row: &mut Vec<f64>) -> Result<bool> {
         row.clear();
@@ -78,7 +79,7 @@ impl Motion {
     }
 }
 
-/// A motion that is being kept.
+/// A motion while it is being stored.
 struct FilmKeeper<'a> {
     scene: &'a Scene,
     picks: Picks,
@@ -89,7 +90,7 @@ struct FilmKeeper<'a> {
 
 impl<'a> FilmKeeper<'a> {
     fn new(scene: &'a Scene, picks: Picks) -> Self {
-        let file = BufWriter::new(tempfile::spooled_tempfile(KEPT));
+        let file = BufWriter::new(tempfile::spooled_tempfile(MAX_MEMORY_BYTES));
         Self { scene, picks, file, pictures: 0, extent: Extent::default() }
     }
 
@@ -116,7 +117,8 @@ impl<'a> FilmKeeper<'a> {
 /// Returns the reference's own motion.
 ///
 /// # Errors
-/// When it can't be kept.
+///
+/// When it can't be stored.
 pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
     let mut keeper = FilmKeeper::new(scene, picks);
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
@@ -135,10 +137,11 @@ pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
     keeper.finish("the reference's run".to_owned(), stopped)
 }
 
-/// Returns the motion that a trace holds.
+/// Returns the motion of a trace.
 ///
 /// # Errors
-/// When it can't be opened or kept, or the operating system fails while it is read. Damage ends the motion.
+///
+/// When the trace can't be opened or stored, or the operating system fails while it is read. Damage ends the motion.
 pub(super) fn read_motion(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion> {
     let mut trace = input::trace(name)?;
     let layout = Layout::for_scene(scene);

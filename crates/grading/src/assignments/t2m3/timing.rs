@@ -1,7 +1,8 @@
-//! The contest's timing scenes, of the size of the course's. They are made on demand: as files they would be megabytes.
+//! The contest's timing scenes, as large as the course's. They are generated on demand, because their files would have
+//! megabytes.
 use std::{fmt::Write, sync::OnceLock};
 
-/// A scene that is made.
+/// A generated scene.
 pub struct MadeScene {
     /// The scene's name, in the form of an embedded scene's.
     pub name: &'static str,
@@ -22,7 +23,7 @@ impl MadeScene {
     }
 }
 
-/// Whole numbers below 1000 that look random (a linear congruential generator).
+/// Pseudo-random whole numbers below 1000 (a linear congruential generator).
 struct DrawnNumbers(u32);
 
 impl DrawnNumbers {
@@ -32,8 +33,8 @@ impl DrawnNumbers {
     }
 }
 
-/// Returns a number of thousandths.
-fn thousandths(number: i32) -> String {
+/// Formats a number of thousandths as a decimal number.
+fn format_thousandths(number: i32) -> String {
     format!("{}{}.{:03}", if number < 0 { "-" } else { "" }, number.abs() / 1000, number.abs() % 1000)
 }
 
@@ -45,29 +46,29 @@ fn begin(description: &str, stiffness: u32) -> String {
     )
 }
 
-/// Adds a particle; places and velocities in thousandths.
-fn particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32, fixed: bool) {
-    let ([px, py], [vx, vy]) = (place.map(thousandths), velocity.map(thousandths));
-    let (radius, fixed) = (thousandths(radius), u8::from(fixed));
+/// Adds a particle, whose position and velocity are in thousandths.
+fn add_particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32, fixed: bool) {
+    let ([px, py], [vx, vy]) = (place.map(format_thousandths), velocity.map(format_thousandths));
+    let (radius, fixed) = (format_thousandths(radius), u8::from(fixed));
     let _ = writeln!(
         text,
         "<particle m=\"1\" px=\"{px}\" py=\"{py}\" vx=\"{vx}\" vy=\"{vy}\" fixed=\"{fixed}\" radius=\"{radius}\"/>"
     );
 }
 
-/// Returns 15,000 balls in a box of four edges, each near its neighbors; a few of them go fast.
+/// Returns a scene of 15,000 balls in a box of four edges. Each ball is near its neighbors, and a few are fast.
 fn box_of_balls() -> String {
     let mut text = begin("15,000 balls in a box of four edges. The time that it takes counts.", 100);
     let mut drawn = DrawnNumbers(1);
     for corner in [[-400, -400], [30_400, -400], [30_400, 20_400], [-400, 20_400]] {
-        particle(&mut text, corner, [0; 2], 400, true);
+        add_particle(&mut text, corner, [0; 2], 400, true);
     }
     for index in 0..15_000 {
         let (column, row) = (index % 150, index / 150);
         let place = [200 * column + 100 + drawn.next() / 20, 200 * row + 100 + drawn.next() / 20];
         let haste = if drawn.next() < 10 { 20 } else { 1 };
         let velocity = [haste * (drawn.next() - 500), haste * (drawn.next() - 500)];
-        particle(&mut text, place, velocity, 80 + drawn.next() / 50, false);
+        add_particle(&mut text, place, velocity, 80 + drawn.next() / 50, false);
     }
     for edge in 0..4 {
         let _ = writeln!(text, "<edge i=\"{edge}\" j=\"{}\" radius=\"0.4\"/>", (edge + 1) % 4);
@@ -75,7 +76,7 @@ fn box_of_balls() -> String {
     text + "</scene>\n"
 }
 
-/// Returns 120 ribbons of 40 particles on a half-plane, one above the other.
+/// Returns a scene of 120 ribbons of 40 particles on a half-plane, one above the other.
 fn pile_of_ribbons() -> String {
     let (ribbons, length) = (120, 40);
     let mut text = begin("120 ribbons fall onto each other and onto a half-plane. The time that it takes counts.", 200);
@@ -85,7 +86,7 @@ fn pile_of_ribbons() -> String {
         let left = 2 * drawn.next();
         for link in 0..length {
             let place = [left + 150 * link, 60 + 90 * ribbon + drawn.next() / 40];
-            particle(&mut text, place, [drawn.next() / 4, -drawn.next()], 40, false);
+            add_particle(&mut text, place, [drawn.next() / 4, -drawn.next()], 40, false);
             if link > 0 {
                 let second = ribbon * length + link;
                 let edge = ribbon * (length - 1) + link - 1;
@@ -110,6 +111,6 @@ mod tests {
             assert_eq!((scene.assignment(), scene.steps()), (Assignment::T2M3, 20));
             assert_eq!([scene.particles.len(), scene.edges.len()], [particles, edges]);
         }
-        assert_eq!([0, -5, 1203, -12_000].map(thousandths), ["0.000", "-0.005", "1.203", "-12.000"]);
+        assert_eq!([0, -5, 1203, -12_000].map(format_thousandths), ["0.000", "-0.005", "1.203", "-12.000"]);
     }
 }

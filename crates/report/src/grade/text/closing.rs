@@ -1,8 +1,9 @@
-//! The result of a submission's grading: short enough for a small terminal, and last, so that it stays in sight.
-use super::{Text, verdict_look};
+//! The result of a submission's grading. It is short enough for a small terminal and comes last, so that it stays
+//! visible.
+use super::{Text, verdict_style};
 use crate::foreign::{one_line, plain};
 use crate::{
-    grade::{by_cause, change_lines, format_points, likely_mistakes, points, speed_words, worth, wrong_scenes},
+    grade::{by_cause, change_lines, count_wrong, describe_speed, format_points, likely_mistakes, points, worth},
     number::format_count,
     style::Look,
     table::{Align, Cell, Table},
@@ -12,16 +13,16 @@ use fosssim_findings::{Grade, GroupGrade, Verdict};
 use std::fmt::Write;
 
 /// The number of groups that are listed where there are at least two more; those that are not accepted come first.
-const GROUPS: usize = 12;
+const MAX_GROUPS: usize = 12;
 
-/// Renders the closing lines below the verdict. With `alone` there is nothing else above them.
+/// Renders the closing lines below the verdict. With `alone`, no scenes are above them.
 pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let style = options.style;
     let mut text = String::new();
     if alone {
         text += &options.circumstances(grade);
     }
-    text += &groups(options, grade);
+    text += &render_groups(options, grade);
     for (number, (look, line)) in change_lines(grade).into_iter().enumerate() {
         if number == 0 {
             let _ = writeln!(text, "{}", style.paint(Look::Strong, "Since the earlier grading"));
@@ -32,9 +33,9 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let heading = style.paint(Look::Strong, "Where it fails");
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::describe_located(located)));
     }
-    // A fault of the submission itself explains everything.
+    // A fault of the whole submission explains everything.
     let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
-    let wrong = wrong_scenes(grade);
+    let wrong = count_wrong(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
         if number == 0 {
             let heading = if mistakes.len() == 1 { "Likely mistake" } else { "Likely mistakes" };
@@ -47,7 +48,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         if let Some(note) = grade.note(mistake) {
             let _ = writeln!(text, "    The course: {}", one_line(&note.to_string()));
         }
-        for form in words::explanation::forms(mistake) {
+        for form in words::explanation::exact_forms(mistake) {
             let _ = writeln!(text, "    {}", plain(&form));
         }
     }
@@ -56,7 +57,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     }
     let causes = by_cause(grade);
     if let Some(scene) = causes.iter().flatten().find(|scene| !scene.verdict.is_accepted()) {
-        let code = style.paint(verdict_look(scene.verdict), scene.verdict.code());
+        let code = style.paint(verdict_style(scene.verdict), scene.verdict.code());
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scene to look at first"));
         let _ = writeln!(text, "  {code} {}: {}", one_line(&scene.scene), one_line(&words::summary(scene)));
         for line in options.closer.map(|closer| closer(grade, scene)).unwrap_or_default() {
@@ -66,11 +67,11 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     text
 }
 
-/// Returns a row per group: points, and how many scenes are accepted.
-fn groups(options: &Text<'_>, grade: &Grade) -> String {
+/// Returns a row per group, with the points and the number of accepted scenes.
+fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left, Align::Left]);
     let mut listed: Vec<&GroupGrade> = grade.groups.iter().collect();
-    let shown = if listed.len() > GROUPS + 1 { GROUPS } else { listed.len() };
+    let shown = if listed.len() > MAX_GROUPS + 1 { MAX_GROUPS } else { listed.len() };
     if shown < listed.len() {
         listed.sort_by_key(|group| group.verdict.is_accepted());
     }
@@ -81,13 +82,13 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
         table.row([
             name.into(),
             score.into(),
-            Cell::with_look(verdict_look(group.verdict), group.verdict.code()),
-            share(group).into(),
+            Cell::with_look(verdict_style(group.verdict), group.verdict.code()),
+            describe_share(group).into(),
         ]);
     }
     let mut text = table.render(options.style);
     for (group, speed) in grade.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))) {
-        let _ = writeln!(text, "  {}: {}", one_line(&group.name), speed_words(speed));
+        let _ = writeln!(text, "  {}: {}", one_line(&group.name), describe_speed(speed));
     }
     if shown < listed.len() {
         let _ = writeln!(text, "  and {}", format_count((listed.len() - shown) as u64, "more group"));
@@ -95,8 +96,8 @@ fn groups(options: &Text<'_>, grade: &Grade) -> String {
     text
 }
 
-/// Returns `all 12 scenes`, `8 of 12 scenes, 2 not run`.
-fn share(group: &GroupGrade) -> String {
+/// Returns the accepted share of a group, such as `all 12 scenes` or `8 of 12 scenes, 2 not run`.
+fn describe_share(group: &GroupGrade) -> String {
     let all = group.scenes.len();
     let of = |verdict: Verdict| group.scenes.iter().filter(|scene| scene.verdict == verdict).count();
     let (accepted, not_run) = (of(Verdict::Accepted), of(Verdict::NotRun));

@@ -1,4 +1,4 @@
-//! Grades for people at a terminal: first what is wrong, and last, where a terminal shows it, the result.
+//! Grades for people at a terminal: first the faults, and last, where a terminal shows it, the result.
 
 mod closing;
 mod scenes;
@@ -13,36 +13,36 @@ use fosssim_findings::{Grade, SceneGrade, SubmissionFault, Verdict};
 use fosssim_judge::Rules;
 use std::fmt::Write;
 
-/// The greatest number of lines shown of a program's output.
-const SHOWN_LINES: usize = 10;
+/// The maximum number of lines of a program's output that are shown.
+const MAX_SHOWN_LINES: usize = 10;
 
-/// The detail of the output.
+/// The level of detail of the output.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum TextDetail {
-    /// A line per submission.
+    /// One line per submission.
     Line,
-    /// A table with a row for each of several submissions; for one submission its result.
+    /// A table with a row for each of several submissions; the result for a single submission.
     Table,
-    /// In addition every scene that is not accepted.
+    /// Also every scene that is not accepted.
     #[default]
     Wrong,
-    /// Every scene.
+    /// Also every accepted scene.
     All,
 }
 
-/// The lines of advice on a scene. Lines that begin with `$ ` are commands.
+/// A function that returns the lines of advice on a scene. Lines that begin with `$ ` are commands.
 pub type Advice<'a> = &'a dyn Fn(&Grade, &SceneGrade) -> Vec<String>;
 
 /// The options of the text.
 #[derive(Clone, Copy, Default)]
 pub struct Text<'a> {
-    /// The decoration.
+    /// The style of the text.
     pub style: Style,
-    /// The detail with which each submission is shown.
+    /// The level of detail for each submission.
     pub shown: TextDetail,
-    /// The room for tables, in columns; without it there is no limit.
+    /// The maximum width of tables, in columns; `None` for any width.
     pub width: Option<usize>,
-    /// The command that shows more of the first wrong scene.
+    /// The function that returns the command that shows more of the first wrong scene.
     pub closer: Option<Advice<'a>>,
 }
 
@@ -72,8 +72,8 @@ impl Text<'_> {
         text
     }
 
-    /// Writes one submission. Its verdict is above its scenes and, unless others follow, below them, where it stays in
-    /// sight.
+    /// Writes one submission. Its verdict is above its scenes and, unless other submissions follow, also below them,
+    /// where it stays visible.
     fn write_submission(&self, text: &mut String, grade: &Grade, is_one_of_several: bool) {
         let details = scenes::render(self, grade);
         if !details.is_empty() {
@@ -101,7 +101,7 @@ impl Text<'_> {
         format!("{}: {}, {reached}", self.style.paint(Look::Strong, &name), self.style.paint(look, verdict))
     }
 
-    /// Returns the fault of the submission itself; a reader who can type the command gets the option that helps.
+    /// Returns the fault of the whole submission, with the option that helps if the reader can type the command.
     fn unfit(&self, grade: &Grade) -> Option<String> {
         let option = match (grade.unfit(), self.closer) {
             (Some(SubmissionFault::Milestone(other)), Some(_)) => {
@@ -112,9 +112,9 @@ impl Text<'_> {
         words::describe_unfit(grade).map(|unfit| one_line(&unfit) + &option)
     }
 
-    /// Returns the suite, what weakened the sandbox, and a build that failed.
+    /// Returns the suite, the weaknesses of the sandbox, and a failed build.
     fn circumstances(&self, grade: &Grade) -> String {
-        let mut text = format!("suite {}{}\n", one_line(&grade.suite), rules(grade));
+        let mut text = format!("suite {}{}\n", one_line(&grade.suite), describe_rules(grade));
         for warning in &grade.warnings {
             let _ = writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), plain(warning));
         }
@@ -123,14 +123,14 @@ impl Text<'_> {
             let _ = writeln!(text, "{unfit}");
         }
         if let Some(build) = build {
-            let most = if self.shown < TextDetail::Wrong { SHOWN_LINES } else { usize::MAX };
-            let _ = writeln!(text, "\n{}\n{}", plain(&words::build(&build.end)), output(&build.output, most));
+            let most = if self.shown < TextDetail::Wrong { MAX_SHOWN_LINES } else { usize::MAX };
+            let _ = writeln!(text, "\n{}\n{}", plain(&words::build(&build.end)), quote_output(&build.output, most));
         }
         text
     }
 }
 
-/// Returns `, 15 of 20 extra points`; empty if the suite gives none.
+/// Returns the extra points, such as `, 15 of 20 extra points`; empty if the suite gives none.
 #[must_use]
 pub fn extra(grade: &Grade) -> String {
     grade.extra().map_or_else(String::new, |(reached, most)| {
@@ -138,8 +138,8 @@ pub fn extra(grade: &Grade) -> String {
     })
 }
 
-/// Returns the name of the book that counts, if a reader might think of the other; empty if both agree.
-fn rules(grade: &Grade) -> String {
+/// Returns the name of the rule book that counts, if a reader might expect the other; empty if both agree.
+fn describe_rules(grade: &Grade) -> String {
     match (grade.rules, grade.differing() as u64) {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
         (Rules::Fair | Rules::Both, 0) => String::new(),
@@ -153,7 +153,7 @@ fn rules(grade: &Grade) -> String {
 }
 
 /// Returns the style of a scene's verdict.
-const fn verdict_look(verdict: Verdict) -> Look {
+const fn verdict_style(verdict: Verdict) -> Look {
     match verdict {
         Verdict::Accepted => Look::Good,
         Verdict::NotRun => Look::Notice,
@@ -161,8 +161,8 @@ const fn verdict_look(verdict: Verdict) -> Look {
     }
 }
 
-/// Returns the lines of program output, marked so that they can't be taken for ours.
-fn output(output: &str, most: usize) -> String {
+/// Returns the lines of program output, marked so that they cannot be confused with the report's.
+fn quote_output(output: &str, most: usize) -> String {
     let output = clean_output(output);
     let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();
     if output.lines().count() > most {

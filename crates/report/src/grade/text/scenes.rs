@@ -1,10 +1,10 @@
-//! The scenes of a submission, group by group. Accepted scenes are counted. Scenes that fail for the same cause are
-//! described once.
-use super::{super::phrases::list_some, Text, TextDetail, output, verdict_look};
+//! The scenes of a submission, group by group. Accepted scenes are only counted, and scenes that fail for the same
+//! cause are described once.
+use super::{super::phrases::list_some, Text, TextDetail, quote_output, verdict_style};
 use crate::foreign::one_line;
 use crate::{
     explain,
-    grade::{AlikeScenes, by_cause, difference, format_points, points, text::SHOWN_LINES},
+    grade::{AlikeScenes, by_cause, describe_difference, format_points, points, text::MAX_SHOWN_LINES},
     number::format_count,
     style::Look,
     words,
@@ -15,14 +15,14 @@ use std::{collections::BTreeMap, fmt::Write};
 
 /// The greatest number of causes that are described with an example. The others have a sentence, unless every scene is
 /// shown.
-const DESCRIBED: usize = 3;
+const MAX_DESCRIBED: usize = 3;
 
 /// The greatest number of scenes named that end the same way.
-const NAMED: usize = 3;
+const MAX_NAMED: usize = 3;
 
 /// Renders the groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
-    // A fault of the submission itself is not repeated for each scene.
+    // A fault of the whole submission is not repeated for each scene.
     if options.shown < TextDetail::Wrong || grade.unfit().is_some() {
         return String::new();
     }
@@ -32,7 +32,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     let scenes = Scenes { options, width, by_cause: by_cause(grade) };
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
     let mut text: String = groups.map(|group| scenes.group(group)).collect();
-    if scenes.by_cause.len() > DESCRIBED && options.shown < TextDetail::All {
+    if scenes.by_cause.len() > MAX_DESCRIBED && options.shown < TextDetail::All {
         text += "\nExamples of all causes: -v\n";
     }
     text
@@ -40,7 +40,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
 
 struct Scenes<'a, 'b> {
     options: &'b Text<'b>,
-    /// Columns of the longest name.
+    /// The width of the longest name, in columns.
     width: usize,
     by_cause: Vec<AlikeScenes<'a>>,
 }
@@ -61,7 +61,7 @@ impl<'a> Scenes<'a, '_> {
             *folded.entry((scene.verdict, like)).or_default() += 1;
         }
         let row = |((verdict, like), count): ((Verdict, String), u64)| {
-            let code = style.paint(verdict_look(verdict), &format!("{:<3}", verdict.code()));
+            let code = style.paint(verdict_style(verdict), &format!("{:<3}", verdict.code()));
             format!("  {code} {}{like}\n", format_count(count, "scene"))
         };
         if folded.first_key_value().is_some_and(|((verdict, _), _)| verdict.is_accepted()) {
@@ -75,14 +75,14 @@ impl<'a> Scenes<'a, '_> {
         text
     }
 
-    /// Returns whether a scene is only counted: it is accepted, or another one with its cause is described.
+    /// Returns whether a scene is only counted, because it is accepted or another one with its cause is described.
     fn is_folded(&self, scene: &SceneGrade) -> bool {
         self.options.shown < TextDetail::All
             && (scene.verdict.is_accepted()
                 || self.alike_scenes(scene).first().is_some_and(|first| first.scene != scene.scene))
     }
 
-    /// Returns the scenes with the cause of this one.
+    /// Returns the scenes with the same cause.
     fn alike_scenes(&self, scene: &SceneGrade) -> &[&'a SceneGrade] {
         let is_in = |scenes: &&AlikeScenes<'_>| scenes.iter().any(|one| one.scene == scene.scene);
         self.by_cause.iter().find(is_in).map_or(&[][..], Vec::as_slice)
@@ -90,13 +90,13 @@ impl<'a> Scenes<'a, '_> {
 
     /// Returns whether a scene shows one of the causes that are described with an example.
     fn is_described(&self, scene: &SceneGrade) -> bool {
-        let mut causes = self.by_cause.iter().take(DESCRIBED);
+        let mut causes = self.by_cause.iter().take(MAX_DESCRIBED);
         self.options.shown == TextDetail::All || causes.any(|alike| alike[0].scene == scene.scene)
     }
 
     fn row(&self, scene: &SceneGrade) -> String {
         let (name, style) = (one_line(&scene.scene), self.options.style);
-        let code = style.paint(verdict_look(scene.verdict), &format!("{:<3}", scene.verdict.code()));
+        let code = style.paint(verdict_style(scene.verdict), &format!("{:<3}", scene.verdict.code()));
         let blanks = " ".repeat(self.width.saturating_sub(columns(&name)));
         format!("  {code} {name}{blanks}  {} of {}\n", format_points(scene.points), points(scene.max_points))
     }
@@ -106,7 +106,7 @@ impl<'a> Scenes<'a, '_> {
         if !scene.verdict.is_accepted() {
             lines.push(one_line(&words::summary(scene)));
         }
-        lines.extend(difference(scene));
+        lines.extend(describe_difference(scene));
         if self.is_described(scene) {
             let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
             let likely = explain::lines(&scene.settled, self.options.style);
@@ -119,12 +119,12 @@ impl<'a> Scenes<'a, '_> {
             && !alike.is_empty()
         {
             let names: Vec<&str> = alike.iter().map(|one| one.scene.as_str()).collect();
-            let (many, names) = (format_count(alike.len() as u64, "more scene"), list_some(&names, NAMED));
+            let (many, names) = (format_count(alike.len() as u64, "more scene"), list_some(&names, MAX_NAMED));
             lines.push(format!("the same in {many}: {names}"));
         }
         let mut text: String = lines.iter().map(|line| format!("      {line}\n")).collect();
         if scene.verdict >= Verdict::NoOutput && !scene.stderr.trim().is_empty() {
-            let _ = writeln!(text, "      its standard error:\n{}", output(&scene.stderr, SHOWN_LINES));
+            let _ = writeln!(text, "      its standard error:\n{}", quote_output(&scene.stderr, MAX_SHOWN_LINES));
         }
         text
     }

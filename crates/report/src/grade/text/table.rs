@@ -1,4 +1,4 @@
-//! A class at a glance: one row per submission.
+//! The table of a class, with one row per submission.
 use crate::foreign::one_line;
 use crate::{
     grade::format_points,
@@ -7,14 +7,14 @@ use crate::{
 };
 use fosssim_findings::{Grade, GroupGrade, changes::Changes};
 
-/// A column: its cells, the heading first, and their alignment.
+/// A column: its cells, beginning with the heading, and their alignment.
 struct TextColumn {
     cells: Vec<String>,
     right: bool,
 }
 
-/// Returns one row per submission: points, worst verdict, scenes per group, time. Columns that the width has no room
-/// for are left out: first the time, then the groups, in whose place all scenes are counted together.
+/// Returns one row per submission: points, worst verdict, scenes per group, time. Columns that do not fit the width are
+/// left out: first the time, then the groups, which are replaced by the number of accepted scenes.
 #[must_use]
 pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
@@ -33,11 +33,13 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let broke = since("broke", &|changes| format!("-{}", changes.broke.len()));
     let groups = grades.first().map_or(0, |grade| grade.groups.len());
     let names: Vec<&str> = grades.first().iter().flat_map(|grade| &grade.groups).map(|one| one.name.as_str()).collect();
-    let is_tests = names.iter().all(|name| name.len() > TESTS.len() && name.ends_with(TESTS));
+    let is_tests = names.iter().all(|name| name.len() > GROUP_SUFFIX.len() && name.ends_with(GROUP_SUFFIX));
     let groups: Vec<TextColumn> = (0..groups)
         .map(|number| {
-            let name = if is_tests { names[number].trim_end_matches(TESTS) } else { names[number] };
-            of(&shorten_name(&one_line(name)), false, &|grade| grade.groups.get(number).map_or_else(String::new, cell))
+            let name = if is_tests { names[number].trim_end_matches(GROUP_SUFFIX) } else { names[number] };
+            of(&shorten_name(&one_line(name)), false, &|grade| {
+                grade.groups.get(number).map_or_else(String::new, cell_of)
+            })
         })
         .collect();
     let scenes = of("scenes", true, &|grade| {
@@ -52,28 +54,28 @@ pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let whole: Vec<&TextColumn> = base().chain(&groups).chain([&seconds]).collect();
     let without_time: Vec<&TextColumn> = base().chain(&groups).collect();
     let short: Vec<&TextColumn> = base().chain([&scenes]).collect();
-    let fits = |columns: &[&TextColumn]| width.is_none_or(|width| total(columns) <= width);
+    let fits = |columns: &[&TextColumn]| width.is_none_or(|width| total_width(columns) <= width);
     let chosen = [whole, without_time].into_iter().find(|columns| fits(columns)).unwrap_or(short);
-    rows(&chosen, grades, style)
+    render_rows(&chosen, grades, style)
 }
 
-/// The end of the course's names of groups, which headings do without.
-const TESTS: &str = "Tests";
+/// The last word of the course's group names, which headings leave out.
+const GROUP_SUFFIX: &str = "Tests";
 
-/// The greatest width of a name, in columns; of a longer one its two ends are shown.
-const NAME: usize = 40;
+/// The maximum width of a name, in columns; the middle of a longer name is left out.
+const MAX_NAME_WIDTH: usize = 40;
 
-/// Returns a name that widens no table.
+/// Returns a name, shortened to the width of the table's column.
 #[must_use]
 pub fn shorten_name(name: &str) -> String {
-    const ENDS: usize = NAME / 2 - 2;
-    if columns(name) <= NAME {
+    const END_WIDTH: usize = MAX_NAME_WIDTH / 2 - 2;
+    if columns(name) <= MAX_NAME_WIDTH {
         return name.to_owned();
     }
     let letters: Vec<char> = name.chars().collect();
     // Wide letters take two columns.
     let taken = |letters: &mut dyn Iterator<Item = &char>| -> Vec<char> {
-        let mut room = ENDS;
+        let mut room = END_WIDTH;
         letters
             .take_while(|letter| {
                 let wide = columns(&letter.to_string());
@@ -89,25 +91,25 @@ pub fn shorten_name(name: &str) -> String {
     format!("{start}...{end}")
 }
 
-fn widest(column: &TextColumn) -> usize {
+fn column_width(column: &TextColumn) -> usize {
     column.cells.iter().map(|cell| columns(cell)).max().unwrap_or(0)
 }
 
-fn total(columns: &[&TextColumn]) -> usize {
-    columns.iter().map(|column| widest(column) + 2).sum::<usize>().saturating_sub(2)
+fn total_width(columns: &[&TextColumn]) -> usize {
+    columns.iter().map(|column| column_width(column) + 2).sum::<usize>().saturating_sub(2)
 }
 
-fn rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> String {
+fn render_rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> String {
     let mut text = String::new();
     for row in 0..=grades.len() {
         let mut line = String::new();
         for (number, column) in columns_of.iter().enumerate() {
             let cell = &column.cells[row];
-            let blanks = " ".repeat(widest(column) - columns(cell));
+            let blanks = " ".repeat(column_width(column) - columns(cell));
             let look = match row.checked_sub(1) {
                 None => Some(Look::Faint),
-                // The verdict.
-                Some(grade) if number == 2 => Some(super::verdict_look(grades[grade].verdict)),
+                // The column of the verdict.
+                Some(grade) if number == 2 => Some(super::verdict_style(grades[grade].verdict)),
                 Some(_) => None,
             };
             let cell = look.map_or_else(|| cell.clone(), |look| style.paint(look, cell));
@@ -119,8 +121,8 @@ fn rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> String {
     text
 }
 
-/// Returns `AC`, or the worst verdict and how many scenes are accepted.
-fn cell(group: &GroupGrade) -> String {
+/// Returns `AC`, or the worst verdict and the number of accepted scenes.
+fn cell_of(group: &GroupGrade) -> String {
     let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
     if accepted == group.scenes.len() {
         "AC".to_owned()
@@ -138,8 +140,8 @@ mod tests {
         assert_eq!(shorten_name("a short name"), "a short name");
         let long = format!("team-{}-17", "x".repeat(180));
         let shown = shorten_name(&long);
-        assert!(columns(&shown) <= NAME && shown.starts_with("team-x") && shown.ends_with("x-17"), "{shown}");
+        assert!(columns(&shown) <= MAX_NAME_WIDTH && shown.starts_with("team-x") && shown.ends_with("x-17"), "{shown}");
         let wide = shorten_name(&"界".repeat(90));
-        assert!(columns(&wide) <= NAME && wide.contains("..."), "{wide}");
+        assert!(columns(&wide) <= MAX_NAME_WIDTH && wide.contains("..."), "{wide}");
     }
 }

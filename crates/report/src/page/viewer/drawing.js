@@ -1,4 +1,4 @@
-// What the canvases show.
+// The drawing on the canvases.
 class Drawing extends Motion {
   look() {
     const { data } = this;
@@ -30,7 +30,7 @@ class Drawing extends Motion {
   }
   classWords(step = this.step) {
     return (
-      { r: "right", w: "wrong by itself", i: "right by itself, but it starts from where a wrong step has led" }[
+      { r: "right", w: "wrong by itself", i: "right by itself, but it starts from a wrong state" }[
         this.data.strip[step - 1]
       ] || (step === 0 ? "the start" : "not judged")
     );
@@ -47,15 +47,15 @@ class Drawing extends Motion {
       const size = Math.hypot(...d);
       if (Number.isFinite(size)) most = Math.max(most, size);
     }
-    // What rounding alone can make is no difference.
+    // Ignore differences that rounding alone can cause.
     const least = this.isExact() ? 0 : 2 * this.data.rounded.unit;
     return { list, most: most > least ? most : 0, base };
   }
-  // Letters can be read on a phone, too.
+  // The size of letters, which must be readable on a phone.
   letters() {
     return Math.round(14 * Math.max(1, Math.min(2.2, 960 / (this.canvas.clientWidth || 960))));
   }
-  // On top of each other, or what is expected beside what is there.
+  // Draws both motions on top of each other, or the expected one next to the actual one.
   draw(context = this.canvas.getContext("2d")) {
     const { width, height } = this.canvas;
     const panels = this.beside && this.baseline() ? ["expected", "yours"] : ["both"];
@@ -99,13 +99,13 @@ class Drawing extends Motion {
     context.font = `${this.letters()}px system-ui, sans-serif`;
     const at = `step ${this.step}${this.t < 1 ? `, t = ${this.t.toFixed(3)}` : ""}`;
     const words = panel === "both" ? at : `${panel === "yours" ? "yours" : expected ? "expected" : "reference"}, ${at}`;
-    // Lines of the scene end below the words.
+    // Lines of the scene end below the text.
     context.fillStyle = color("--card");
     context.fillRect(this.view[0], 0, 20 + 0.56 * this.letters() * words.length, 14 + this.letters());
     context.fillStyle = color("--ink");
     context.fillText(words, this.view[0] + 10, 6 + this.letters());
   }
-  // The motion at another step, small.
+  // Draws the motion at another step as a small preview.
   peek(step) {
     const { step: now, t, pass, mid } = this;
     const context = this.preview.querySelector("canvas").getContext("2d");
@@ -278,7 +278,7 @@ class Drawing extends Motion {
     draw(expected, color("--exp"), [2, 3], true);
     if (this.pass <= 0) draw(close.actual, color("--own"), [], false);
   }
-  // Where a particle touches at a time of the step: its center as detection sees it.
+  // The place of a particle's contact at a time within the step: its center as detection computes it.
   place(pair, time) {
     const { first } = parse(pair);
     const start = this.state("submission", this.step - 1);
@@ -309,11 +309,11 @@ class Drawing extends Motion {
       const x = (column * width) / columns;
       const w = Math.max(1, width / columns);
       context.fillStyle = color({ r: "--good", w: "--bad", i: "--warn", u: "--faint" }[worst]);
-      // Height tells them apart without color.
+      // The height distinguishes the steps without color.
       const tall = { r: 8, i: 14, w: 22, u: 3 }[worst];
       context.fillRect(x, height - 4 - tall, w > 3 ? w - 1 : w, tall);
     }
-    // The step that is shown has a frame and a tip above it.
+    // The current step has a frame, and a marker above it.
     const left = Math.max(0, this.step - 1) * wide,
       most = this.step > 0 ? Math.max(4, wide) : 2,
       middle = left + most / 2;

@@ -1,4 +1,4 @@
-// Elements of HTML, for reports and for the page that checks traces.
+// Creates HTML elements, for reports and for the page that checks traces.
 const el = (tag, attributes = {}, ...children) => {
   const node = document.createElement(tag);
   for (const [name, value] of Object.entries(attributes)) {

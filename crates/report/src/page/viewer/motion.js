@@ -1,11 +1,11 @@
-// Where everything is at which moment, and going from one to another.
+// The state of all objects at each moment, and the navigation between moments.
 class Motion {
-  // Index of a record among those that are kept: mid records come before the end of their step.
+  // Returns the index of a record among the stored ones: mid records come before the end of their step.
   record(step, mid = false) {
     const base = (step - this.data.first) * this.data.per;
     return mid ? base - 1 : base;
   }
-  // Positions and velocities of a track's record, or null.
+  // Returns the positions and velocities of a track's record, or null.
   state(track, step, mid = false) {
     const values = this.tracks[track];
     const size = 4 * this.data.n;
@@ -13,7 +13,7 @@ class Motion {
     if (!values || at < 0 || at + size > values.length) return null;
     return values.subarray(at, at + size);
   }
-  // Whether a record is exact to the last bit: all are, unless the motions are too large for the page.
+  // Returns whether a record is exact; all are, unless the motions are too large for the page.
   isExact(step = this.step, mid = this.mid) {
     const { rounded } = this.data;
     return !rounded || (rounded.exact.includes(this.record(step, mid)) && this.t >= 1);
@@ -21,7 +21,7 @@ class Motion {
   close(step = this.step) {
     return this.data.closeUps.find((one) => one.step === step) || null;
   }
-  // The submission's positions that are drawn: inside the step on a straight line.
+  // Returns the submission's positions at the current moment, with straight lines within a step.
   positions(track) {
     const end = this.state(track, this.step, this.mid);
     if (this.t >= 1 && this.pass < 0) return end;
@@ -33,21 +33,22 @@ class Motion {
     for (let i = 0; i < out.length; i++) out[i] = start[i] + this.t * (target[i] - start[i]);
     return out;
   }
-  // Where the step should have ended, from the submission's own state.
+  // Returns the state in which the step should have ended, computed from the submission's own state.
   expected() {
     const close = this.close();
     if (!close || (this.t < 1 && this.pass < 0)) return null;
     if (this.pass >= 0) return null;
     return this.mid ? close.mid : close.end || close.mid;
   }
-  // Whether the impulses of a hybrid step already lead elsewhere: its end then starts from there and may be right.
+  // Returns whether the impulses of a hybrid step already lead to a wrong state. The step's end starts from that state
+  // and may be right.
   midIsWrong() {
     const close = this.close(),
       own = this.state("submission", this.step, true);
     if (this.data.collision !== "hybrid" || !close || !close.mid || !own) return false;
     return close.mid.some((value, k) => !(Math.abs(value - own[k]) <= 1e-10));
   }
-  // What differences are measured against.
+  // Returns the state that differences are compared with.
   baseline() {
     const expected = this.show.expected && this.expected();
     return expected || (this.show.reference ? this.positions("reference") : null);
@@ -80,7 +81,7 @@ class Motion {
     let last = null;
     if (this.step >= this.data.last) this.go(this.data.first);
     const turn = (now) => {
-      // Whoever asks for little motion gets a step a second.
+      // With reduced motion, play one step per second.
       const rate = calm.matches ? 1 : this.speed * Math.max(4, Math.min(60, 1 / this.data.dt));
       const gone = last === null ? 0 : ((now - last) / 1000) * rate;
       if (last === null || gone >= 1) {
@@ -167,7 +168,7 @@ class Motion {
     this.pan = [0, 0];
     this.look();
   }
-  // Goes near to what differs, and to the chosen pair.
+  // Zooms in on the differences and the selected pair.
   approach() {
     this.zoom = 1;
     this.pan = [0, 0];

@@ -1,9 +1,10 @@
-// Words, packed numbers, drawings as SVG: what knows nothing of a case.
+// Texts, packed numbers and SVG drawings: the functions that are independent of a case.
 const SVG = "http://www.w3.org/2000/svg";
 const color = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 const finite = (...values) => values.every(Number.isFinite);
 const short = (value) => (value === null || Number.isNaN(value) ? "nan" : Number(value.toPrecision(6)).toString());
-// Two numbers in one notation, and no longer than it takes to see where they part: from there on the second is marked.
+// Formats two numbers in one notation, just long enough to show where they begin to differ; the second is marked from
+// there on.
 function beside(one, other) {
   const most = Math.max(Math.abs(one), Math.abs(other));
   if (!finite(one, other) || most === 0) return [short(one), short(other)];
@@ -37,8 +38,8 @@ async function unpack(id) {
   const stream = new Blob([packed]).stream().pipeThrough(new DecompressionStream("deflate-raw"));
   return new Response(stream).arrayBuffer();
 }
-// Rounded motions: first the records that are exact, then the differences of positions from record to record, in units, as
-// numbers of seven bits a byte. Velocities are not kept, and what is beyond all bounds is no number.
+// Unpacks rounded motions. First come the exact records, then the differences of positions from record to record, in
+// units, as numbers of seven bits per byte. Velocities are not stored, and values beyond the range are NaN.
 function unround(buffer, { unit, exact }, n) {
   const size = 4 * n,
     bytes = new Uint8Array(buffer);
@@ -70,7 +71,7 @@ function unround(buffer, { unit, exact }, n) {
   return out;
 }
 
-// "pp:0,1" to its objects.
+// Parses a pair such as "pp:0,1".
 const parse = (pair) => {
   const [kind, rest] = pair.split(":");
   const [first, second] = rest.split(",").map(Number);
@@ -82,7 +83,7 @@ const words = (pair) => {
   return `particle ${first} - ${PAIRS[kind]} ${second}`;
 };
 
-// Takes down as SVG what is drawn: as much of a canvas's context as the viewer uses. Arcs are whole circles.
+// Records a drawing as SVG. It implements the part of a canvas context that the viewer uses. Arcs are whole circles.
 class Sketch {
   constructor(width, height) {
     Object.assign(this, {
@@ -124,7 +125,7 @@ class Sketch {
   setLineDash(dash) {
     this.dash = dash;
   }
-  // Clips are nested groups.
+  // Clips become nested groups.
   save() {
     this.clips = (this.clips || 0) + 1;
   }
@@ -219,7 +220,7 @@ function arrow(context, from, to) {
     context.lineTo(to[0] - 9 * Math.cos(angle + turn), to[1] - 9 * Math.sin(angle + turn));
   context.fill();
 }
-// Andrew's monotone chain.
+// Returns the convex hull (Andrew's monotone chain).
 function hull(points) {
   const sorted = [...points].sort((a, b) => a[0] - b[0] || a[1] - b[1]);
   if (sorted.length < 3) return sorted;

@@ -1,11 +1,11 @@
-// The viewer of one case, made when its card is opened, and the page around it.
+// The viewer of one case, which is created when its card is opened, and the page around it.
 class Viewer extends Words {
   constructor(article, data, tracks) {
     super();
     Object.assign(this, { article, data, tracks });
     this.key = article.dataset.case;
     this.name = article.dataset.scene;
-    // The first wrong step, or the last one that was judged before the trace ends.
+    // Start at the first wrong step, or at the last judged one if the trace ends early.
     const wrong = data.strip.indexOf("w"),
       end = Math.max(0, data.strip.indexOf("u"));
     this.step = Math.max(data.first, Math.min(data.last, wrong >= 0 ? wrong + 1 : data.focus || end || data.first));
@@ -69,7 +69,7 @@ class Viewer extends Words {
       "aria-label": "Step",
       onchange: (event) => this.go(Number(event.target.value)),
     });
-    // Keys and screen readers move it; a pointer moves along the strip above it.
+    // Keys and screen readers use the slider; pointers use the strip above it.
     this.slider = el("input", {
       type: "range",
       min: data.first,
@@ -161,7 +161,7 @@ class Viewer extends Words {
       el("canvas", { width: 384, height: 216 }),
       el("div"),
     );
-    this.besideButton = button("Side by side", "What is expected beside what is there", () => this.besides(), "s");
+    this.besideButton = button("Side by side", "Expected and actual motion side by side", () => this.besides(), "s");
     this.keys = el(
       "details",
       { class: "table help" },
@@ -202,8 +202,8 @@ class Viewer extends Words {
       ? el(
           "p",
           { class: "hint" },
-          `This motion is too large to be here to the last bit: positions are rounded to ${short(rounded.unit)}, and velocities are left out. `,
-          kept.length ? `Exact are the records around these steps: ${kept.join(", ")}.` : "",
+          `This motion is too large for this page: positions are rounded to ${short(rounded.unit)}, and velocities are left out. `,
+          kept.length ? `The records around these steps are exact: ${kept.join(", ")}.` : "",
         )
       : "";
     this.root = el(
@@ -253,8 +253,8 @@ class Viewer extends Words {
             { class: "group" },
             button("PNG", "Save this picture", () => this.picture()),
             button("SVG", "Save this picture as a drawing", () => this.drawing()),
-            button("Clip", "Record a film of the steps", () => this.clip()),
-            // A page within a page has no address of its own.
+            button("Clip", "Record a video of the steps", () => this.clip()),
+            // A page within a frame has no address.
             location.protocol === "about:" ? "" : button("Link", "Copy a link to this moment", () => this.link()),
           ),
         ),
@@ -286,7 +286,7 @@ class Viewer extends Words {
       remark,
       this.keys,
     );
-    // Where there is room, sums stand beside the picture and bodies below it.
+    // On wide screens, sums are next to the picture and bodies are below it.
     this.article
       .querySelector(".side")
       .append(el("section", { class: "card step", "aria-label": "The step in numbers" }, this.facts));
@@ -351,9 +351,9 @@ class Viewer extends Words {
   }
   stripWords() {
     const [right, wrong, after] = ["r", "w", "i"].map((letter) => this.count(letter));
-    return `All steps: ${right} right, ${wrong} wrong by themselves, ${after} right but following from a wrong one, ${this.data.steps - right - wrong - after} not judged`;
+    return `All steps: ${right} right, ${wrong} wrong by themselves, ${after} right but starting from a wrong state, ${this.data.steps - right - wrong - after} not judged`;
   }
-  // The colors of the strip in words.
+  // The legend of the strip's colors.
   stripKey() {
     const names = [
       ["r", "right"],
@@ -383,7 +383,7 @@ class Viewer extends Words {
   }
   clip() {
     if (typeof MediaRecorder === "undefined" || !this.canvas.captureStream) {
-      this.say.textContent = "This browser can't record films.";
+      this.say.textContent = "This browser can't record videos.";
       return;
     }
     const recorder = new MediaRecorder(this.canvas.captureStream(30));
@@ -406,7 +406,7 @@ class Viewer extends Words {
     if (this.selected && this.selected.pair) hash.set("pair", this.selected.pair);
     history.replaceState(null, "", "#" + hash);
     copy(location.href, null);
-    this.say.textContent = "The address of this page leads to this moment now.";
+    this.say.textContent = "The address of this page now leads to this moment.";
   }
 }
 
@@ -431,7 +431,7 @@ async function make(article, key) {
   viewers.set(key, viewer);
   return viewer;
 }
-// The cursor of the plots over the steps: their horizontal axis is given with them.
+// The plots' cursor, which follows the current step; each plot has the data of its horizontal axis.
 document.addEventListener("moment", ({ detail: { key, step } }) => {
   for (const row of document.querySelectorAll(`[data-case="${key}"] [data-step]`))
     row.classList.toggle("now", Number(row.dataset.step) === step);
@@ -463,7 +463,7 @@ function unfold(article) {
   for (const folded of [card, article.closest("details.alike")]) if (folded) folded.open = true;
   return article.querySelector(".stage") ? open(article) : null;
 }
-// What findings and calls are about is shown at a click.
+// Shows the subject of a clicked finding or call.
 function show(article, row) {
   const act = async () => {
     const viewer = await unfold(article);
@@ -480,7 +480,7 @@ function show(article, row) {
   );
   (row.cells ? row.cells[row.cells.length - 1] : row.firstElementChild).append(" ", button);
 }
-// Goes where an address leads: to a card, or to a moment of a scene.
+// Follows an address to a card, or to a moment of a scene.
 async function visit(articles) {
   const wish = new URLSearchParams(location.hash.slice(1));
   const moment = articles.find((article) => article.dataset.scene === wish.get("scene"));
@@ -498,7 +498,7 @@ async function visit(articles) {
   }
   if (named) named.scrollIntoView();
 }
-// Many scenes are searched by their names, and by what is said of them.
+// Searches scenes by their names and their text.
 function search(articles) {
   const scenes = articles.filter((one) => one.querySelector("details.scene") && !one.id.startsWith("small-"));
   if (scenes.length < 8) return;

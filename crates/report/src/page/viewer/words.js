@@ -1,5 +1,5 @@
-// What is said: the moment in words, the pairs, the numbers, the table.
-// Motions that are this close differ by round-off.
+// The text of the viewer: the moment, the pairs, the numbers and the table. Motions that are closer than this differ
+// only by round-off.
 const CLOSE = 1e-9;
 class Words extends Drawing {
   tell() {
@@ -12,16 +12,16 @@ class Words extends Drawing {
     if (apart) {
       const what =
         this.show.expected && this.expected()
-          ? "from where it should be, given your own state before the step"
+          ? "from the right position, given your own state before the step"
           : "from the reference's run";
       const isWrong = this.classWords().startsWith("wrong");
       const none = this.isExact()
         ? !isWrong
-          ? "Every position is the same to the last bit as expected."
-          : "What differs is in the tables: its positions are still the expected ones, to the last bit."
+          ? "Every position matches the expected one bit for bit."
+          : "Only the tables differ: the positions match the expected ones bit for bit."
         : "No position differs by more than the rounding of this page.";
       const furthest = `furthest particle is ${short(apart.most)} ${what}.`;
-      const some = isWrong && apart.most < CLOSE ? `What differs is in the tables: the ${furthest}` : `The ${furthest}`;
+      const some = isWrong && apart.most < CLOSE ? `Only the tables differ: the ${furthest}` : `The ${furthest}`;
       parts.push(apart.most > 0 ? some : none);
     }
     if (data.whatIf && this.step >= data.first) {
@@ -30,10 +30,10 @@ class Words extends Drawing {
       if (own && what && this.isExact(this.step, false))
         parts.push(
           same(own, what)
-            ? "The reference with the named mistake is here to the last bit."
+            ? "The reference with the named mistake is in the same state, bit for bit."
             : own.every((value, k) => Math.abs(value - what[k]) < CLOSE)
-              ? "The reference with the named mistake is here, but for round-off."
-              : "The reference with the named mistake is elsewhere.",
+              ? "The reference with the named mistake is in the same state, up to round-off."
+              : "The reference with the named mistake is in another state.",
         );
     }
     this.say.textContent = parts.join(" ");
@@ -69,7 +69,7 @@ class Words extends Drawing {
     const before = sums(this.state("submission", this.step - 1)),
       after = sums(this.state("submission", this.step));
     const right = close && sums(close.end || close.mid);
-    // What rounding alone makes of a sum is no difference.
+    // Ignore differences of sums that rounding alone can cause.
     const near = (one, other) => Math.abs(one - other) <= 1e-9 * Math.max(1, Math.abs(one));
     const momentum = ([x, y, l]) => el("span", {}, x, el("br"), y, el("br"), l);
     const both = (right, own) => {
@@ -113,7 +113,8 @@ class Words extends Drawing {
       );
     }
   }
-  // Who is tested with whom, in the pass that is looked at or in the whole step: calls expected and made, contacts, what is wrong.
+  // Collects the tested pairs of the selected pass or of the whole step: expected and actual calls, contacts, and
+  // faults.
   asked() {
     const close = this.close();
     if (!close || !close.passes.length) return null;
@@ -130,11 +131,11 @@ class Words extends Drawing {
       for (const [pair] of pass.hits) of(pair).hit = true;
       for (const pair of pass.missing) of(pair).made -= 1;
       for (const pair of pass.repeated) of(pair).made += 1;
-      // Where the passes before lead elsewhere, other polynomials are right.
+      // If earlier passes are wrong, other polynomials are right.
       if (!this.data.follows || pass === close.passes[0])
         for (const pair of pass.differing) if (!of(pair).wrong.length) of(pair).wrong.push("its polynomials differ");
     }
-    // Whole passes that are too many ask every pair once more.
+    // Each surplus pass tests every pair once more.
     const each = close.polynomials[0] / close.expectedPasses;
     const more =
       this.pass < 0 && !passes.some((pass) => pass.repeated.length) && close.surplus > 0 && close.surplus % each === 0
@@ -146,7 +147,7 @@ class Words extends Drawing {
         one.wrong.unshift(one.made > 0 ? `tested ${times(one.made)}, expected ${times(expected)}` : "not tested");
       if (one.made > expected + more) one.wrong.unshift("tested too often");
     }
-    // Impulse lists of hybrid steps are empty.
+    // The impulse lists of hybrid steps are empty.
     if (this.data.collision !== "hybrid" && this.pass <= 0) {
       const [right, own] = [close.expected, close.actual].map((list) => new Map(list.map((one) => [one[0], one])));
       for (const [pair, contact] of right) {
@@ -156,7 +157,7 @@ class Words extends Drawing {
         )
           of(pair).wrong.push("its contact differs");
       }
-      for (const pair of own.keys()) if (!right.has(pair)) of(pair).wrong.push("its contact is one too many");
+      for (const pair of own.keys()) if (!right.has(pair)) of(pair).wrong.push("its contact is superfluous");
     }
     this.asking = {
       key: `${this.step} ${this.pass}`,
@@ -169,7 +170,7 @@ class Words extends Drawing {
     };
     return this.asking;
   }
-  // A wrong pair selects its bodies, and so does the first wrong state, as long as nobody has selected others.
+  // Selects the bodies of a wrong pair, or of the first wrong state, unless the reader has selected others.
   choose() {
     if (this.selected && !this.selected.auto) return;
     const asked = this.asked();
@@ -180,21 +181,21 @@ class Words extends Drawing {
   }
   tellMatrix() {
     const asked = this.asked();
-    // Whoever stands in the table stays there.
+    // Keep the focus in the table.
     if (asked && asked.key === this.matrixShown) return;
     this.matrixShown = asked ? asked.key : "";
     if (!asked) return this.matrix.replaceChildren();
     const { n, edges, planes } = this.data;
     const { expected, more, known, pairs } = asked;
     const close = this.close();
-    // What was not asked is told before what was answered wrongly.
+    // Report missing tests before wrong results.
     const wrong = [...pairs]
       .filter(([, one]) => one.wrong.length)
       .sort(([, a], [, b]) => (a.made !== expected ? 0 : 1) - (b.made !== expected ? 0 : 1));
     const head = el(
       "p",
       {},
-      `Who is tested with whom, ${asked.name}: ${asked.calls} pairs, each expected ${times(expected)}. `,
+      `Tested pairs, ${asked.name}: ${asked.calls} pairs, each expected ${times(expected)}. `,
       `In the whole step ${close.polynomials[0]} polynomials are expected, and you logged ${close.polynomials[1]}. `,
       more ? `You make ${more === 1 ? "a pass" : `${more} passes`} too many. ` : "",
       close.surplus && !more ? `${close.surplus} of yours belong to no expected call. ` : "",
@@ -222,7 +223,7 @@ class Words extends Drawing {
     const grid = el(
       "table",
       { class: "pairs" },
-      el("caption", {}, "Calls made of calls expected; * collides, ! something is wrong"),
+      el("caption", {}, "Actual calls / expected calls; * collides, ! has a fault"),
       el("thead", {}, el("tr", {}, el("td"), ...columns.map(([, , text]) => el("th", { scope: "col" }, text)))),
     );
     const body = el("tbody");
@@ -367,7 +368,7 @@ class Words extends Drawing {
     const compared = ([name, right, own, ref]) => {
       const [base, marked] =
         number(own) && number(right) ? beside(right, own) : number(own) && number(ref) ? beside(ref, own) : [];
-      // One row has one notation.
+      // Each row has one notation.
       const digits = typeof base === "string" ? base.replace(/^.*\.|e.*$/g, "").length : 0;
       const plain = (value) =>
         !number(value)
@@ -427,7 +428,7 @@ class Words extends Drawing {
         ? el(
             "p",
             { class: "hint" },
-            `${rest} ${other.length ? "more " : ""}numbers of it are the same to the last bit.`,
+            `${rest} ${other.length ? "more " : ""}numbers of it are the same bit for bit.`,
           )
         : "",
       bits,
@@ -443,8 +444,8 @@ class Words extends Drawing {
         "p",
         {},
         selected.pair
-          ? "The same bodies alone, moving as here: "
-          : "It and those that it meets in this step, moving as here: ",
+          ? "Only these bodies, moving as here: "
+          : "The selected body and the bodies that it meets in this step, moving as here: ",
         button("Copy as scene", () => this.asScene(company, false)),
         data.forces.length ? " or from the same state under the same forces: " : "",
         data.forces.length ? button("Copy with forces", () => this.asScene(company, true)) : "",
@@ -453,12 +454,12 @@ class Words extends Drawing {
       ),
     );
   }
-  // The particles of a pair.
+  // Returns the particles of a pair.
   members(pair) {
     const { kind, first, second } = parse(pair);
     return [first, ...(kind === "pp" ? [second] : kind === "pe" ? this.data.edges[second].slice(0, 2) : [])];
   }
-  // Particles with those that they meet in this step: alone they would only fly on.
+  // Returns particles together with those that they meet in the step; alone they would only fly on.
   company(list) {
     const close = this.close(),
       all = new Set(list);
@@ -471,21 +472,21 @@ class Words extends Drawing {
     for (const group of met) if (group.some((k) => all.has(k))) group.forEach((k) => all.add(k));
     return [...all];
   }
-  // Where hints hide what is right, there is only one column.
+  // Returns the columns; if hints hide the right values, there is only one.
   columns() {
     return this.data.full ? ["", "expected from your own state", "yours", "reference from the start"] : ["", "yours"];
   }
   cut(rows) {
     return this.data.full ? rows : rows.map(([name, , own]) => [name, own]);
   }
-  // The bodies at the start of the step as a scene of one step.
+  // Returns the bodies at the start of the step as a scene of one step.
   asScene(particles, withForces) {
     const { data } = this;
     const state = this.state("submission", Math.max(data.first, this.step - 1)).slice();
     const close = this.close(),
       pass = close && close.passes[0];
     if (!withForces && pass && pass.q.length === 2 * data.n) {
-      // Without forces velocities are such that the bodies move as the step's first detection saw them.
+      // Without forces, the velocities are set so that the bodies move as in the step's first detection.
       for (let k = 0; k < 2 * data.n; k++) state[2 * data.n + k] = (pass.q[k] - state[k]) / data.dt;
     }
     const chosen = [...new Set(particles)].sort((a, b) => a - b);
@@ -504,7 +505,7 @@ class Words extends Drawing {
     for (const [px, py, nx, ny] of data.planes)
       lines.push(`  <halfplane px="${px}" py="${py}" nx="${nx}" ny="${ny}"/>`);
     for (const force of withForces ? data.forces : []) {
-      // Forces between bodies that are not chosen stay behind.
+      // Forces between bodies that are not selected are left out.
       let whole = true;
       const line = force.replace(/ (edge|i|j)="(\d+)"/g, (_, name, old) => {
         const now = name === "edge" ? edges.indexOf(Number(old)) : index.has(Number(old)) ? index.get(Number(old)) : -1;

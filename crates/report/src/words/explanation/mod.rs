@@ -1,7 +1,7 @@
-//! Explanations, in sentences. Up to here they are values.
+//! Explanations as sentences.
 //!
-//! Sentences that belong to an assignment (what its known mistakes are, what its letters mean) are in its data, found
-//! by their keys; all others are made here.
+//! Sentences that depend on an assignment (its known mistakes, the meanings of its letters) are in its data, found by
+//! their keys; all others are in this module.
 mod letters;
 mod near;
 mod not_finite;
@@ -15,7 +15,7 @@ use fosssim_student::{Area, Mistake, Row, StepMistake, find};
 pub(crate) use letters::explain_letters;
 pub(crate) use places::place;
 
-/// Returns the mistake, in one sentence to the student that gives no formula away.
+/// Returns the mistake as a sentence for the student, which does not give a formula away.
 #[must_use]
 pub fn what(explanation: &Explanation) -> String {
     let sentence = match &explanation.about {
@@ -23,7 +23,7 @@ pub fn what(explanation: &Explanation) -> String {
         About::Unfinished => format!("Not written yet: {}.", describe_unfinished(&explanation.same_as)),
         About::Scene { has_length } => {
             let length = if *has_length { "" } else { ", and neither is its length" };
-            format!("Does this trace belong to this scene? Its first record is not the scene's{length}.")
+            format!("Does this trace belong to this scene? Its first record differs from the scene's start{length}.")
         }
         About::Polynomials { subjects, found } => polynomials::describe_fault_of(subjects, found),
         About::Stage(fault) => stages::what(fault),
@@ -34,7 +34,7 @@ pub fn what(explanation: &Explanation) -> String {
     sentence
 }
 
-/// Returns the sentence in a list of a program's mistakes, with other mistakes that its traces can't distinguish.
+/// Returns the sentence for a list of a program's mistakes, with other mistakes that its traces can't distinguish.
 #[must_use]
 pub fn what_or(explanation: &Explanation) -> String {
     let rivals = explanation.same_as.iter().filter(|_| explanation.about == About::Mistake);
@@ -50,8 +50,8 @@ pub fn what_or(explanation: &Explanation) -> String {
     }
 }
 
-/// Returns the exact form, a line each: which term of which coefficient has which weight. May give the right formula
-/// away. For a known mistake, which the reference has reproduced, other weights that fit are left out.
+/// Returns the exact form, one line each: which term of which coefficient has which weight. It may give the right
+/// formula away. A known mistake, which the reference has reproduced, has no lines about other weights that fit.
 #[must_use]
 pub fn details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
@@ -66,16 +66,16 @@ pub fn details(explanation: &Explanation) -> Vec<String> {
             Detail::Look(Area::Integrator) => Some(look_at_step(&explanation.key).to_owned()),
             Detail::Look(area) => Some(area.advice().to_owned()),
             Detail::Letters(kinds) => letters::explain_letters(&lines, kinds),
-            Detail::Polynomial(detail) => Some(polynomials::detail(detail)),
-            Detail::Stage(detail) => stages::detail(detail),
+            Detail::Polynomial(detail) => Some(polynomials::describe_detail(detail)),
+            Detail::Stage(detail) => stages::describe_detail(detail),
         };
         lines.extend(line);
     }
     lines
 }
 
-/// Returns the exact form alone of polynomials that no known mistake makes, a line for each term.
-pub(crate) fn forms(explanation: &Explanation) -> Vec<String> {
+/// Returns only the exact form of polynomials without a known mistake, with one line per term.
+pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
     let is_form = |detail: &&Detail| matches!(detail, Detail::Polynomial(_)) && !explanation.is_unexplained();
     let details = explanation.details.iter().filter(is_form).cloned().collect();
     match explanation.about {
@@ -84,7 +84,7 @@ pub(crate) fn forms(explanation: &Explanation) -> Vec<String> {
     }
 }
 
-/// Returns the place in the program at which a stage of a step may be wrong.
+/// Returns advice where in the program a wrong stage may be.
 pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.about {
         About::Stage(fault) => fault.areas().first().map(|area| area.advice()),
@@ -92,7 +92,7 @@ pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     }
 }
 
-/// Returns whether an explanation knows more than that something is wrong.
+/// Returns whether an explanation says more than that something is wrong.
 pub(crate) fn is_known(explanation: &Explanation) -> bool {
     !matches!(explanation.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
 }
@@ -102,7 +102,7 @@ pub(crate) fn known_sentence(key: &str) -> Option<String> {
     find(key).map(Row::sentence)
 }
 
-/// Returns the stages that are not written yet, in a few words each.
+/// Returns the unwritten stages, in a few words each.
 fn describe_unfinished(keys: &[String]) -> String {
     let mut stages: Vec<String> = Vec::new();
     let mut detections: [Vec<&str>; 2] = Default::default();
@@ -128,27 +128,27 @@ fn describe_unfinished(keys: &[String]) -> String {
     detections.chain(stages).collect::<Vec<_>>().join("; ")
 }
 
-/// Returns the sentence for a mistake in a step without collisions: the row's name is its subject.
+/// Returns the sentence about a mistake in a step without collisions; the subject comes from the row's name.
 fn look_at_step(key: &str) -> &'static str {
     let has = |words: &[&str]| words.iter().any(|word| key.contains(word));
     match () {
-        () if has(&["fixed"]) => "Look at what a step does with fixed particles.",
+        () if has(&["fixed"]) => "Look at how a step treats fixed particles.",
         () if has(&["-hx", "-hv", "matrix", "linear-mass", "implicit-mass"]) => {
             "Look at how the system matrix is built."
         }
         () if has(&["-right", "-momentum"]) => "Look at how the right-hand side of the system is built.",
         () if has(&["newton"]) || key.starts_with("implicit") => {
-            "Look at Newton's method: what each iteration computes from what, and when it ends."
+            "Look at Newton's method: the values that each iteration uses, and when it ends."
         }
         () if key.starts_with("linear") => {
-            "Look at where forces and matrix are computed, and at what the solution of the system changes."
+            "Look at where forces and matrix are computed, and at how the solution of the system is applied."
         }
         () if has(&["-velocity", "behind"]) => Area::Integrator.advice(),
         () => "Look at how forces change velocities, and velocities change positions.",
     }
 }
 
-/// Returns the first letter in upper case.
+/// Returns the text with its first letter in upper case.
 fn capitalize(text: &str) -> String {
     let mut letters = text.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();

@@ -4,7 +4,7 @@ use fosssim_findings::PairWords;
 use fosssim_mistakes::diagnose::{PairCounts, PairTrait, WrongPairs, pair_traits};
 use fosssim_model::sim::PairKind;
 
-/// A fault of a search, with pairs of some kinds.
+/// A fault of a search, with the kinds of pairs that it affects.
 struct PairFault<'a> {
     kinds: Vec<&'a PairCounts>,
     times: usize,
@@ -12,7 +12,7 @@ struct PairFault<'a> {
     traits: Vec<PairTrait>,
 }
 
-/// Kinds with the same fault and the same traits are reported together.
+/// Returns the faults. Kinds with the same fault and the same traits are reported together.
 fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     let mut all: Vec<PairFault<'_>> = Vec::new();
     for (times, pairs) in [0, 2].iter().flat_map(|&times| wrong.kinds.iter().map(move |pairs| (times, pairs))) {
@@ -21,7 +21,7 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
         }
         let traits = pair_traits(pairs, times);
         let words = |traits: &[PairTrait]| traits.iter().map(|one| one.what.clone()).collect::<Vec<_>>();
-        let share = share(pairs, times);
+        let share = describe_share(pairs, times);
         let is_same = |other: &&mut PairFault<'_>| {
             other.times == times && other.share == share && words(&other.traits) == words(&traits)
         };
@@ -33,7 +33,7 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     all
 }
 
-/// Returns the pairs, what happens to them, and their common traits.
+/// Returns the affected pairs, the fault, and their common traits.
 pub(super) fn what(wrong: &WrongPairs) -> String {
     let faults = faults(wrong);
     let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
@@ -42,7 +42,7 @@ pub(super) fn what(wrong: &WrongPairs) -> String {
         return "Not written yet: the search for near pairs. No pair is reported.".to_owned();
     }
     let of_fault = |fault: &PairFault<'_>| {
-        let names = fault.kinds.iter().map(|pairs| name(pairs.kind)).collect::<Vec<_>>().join(" and ");
+        let names = fault.kinds.iter().map(|pairs| kind_name(pairs.kind)).collect::<Vec<_>>().join(" and ");
         let common: Vec<&str> = fault.traits.iter().map(|one| one.what.as_str()).collect();
         let told = format!("{} {names} are {}", fault.share, happens(fault.times));
         if common.is_empty() {
@@ -76,8 +76,8 @@ const fn happens(times: usize) -> &'static str {
     if times == 0 { "missing" } else { "reported twice" }
 }
 
-/// Returns the number of pairs of a kind that are reported this number of times.
-const fn share(pairs: &PairCounts, times: usize) -> &'static str {
+/// Returns how many pairs of a kind are reported `times` times, as a word.
+const fn describe_share(pairs: &PairCounts, times: usize) -> &'static str {
     match pairs.times[1] {
         0 => "all",
         right if 20 * right <= pairs.times[times] => "nearly all",
@@ -85,7 +85,7 @@ const fn share(pairs: &PairCounts, times: usize) -> &'static str {
     }
 }
 
-const fn name(kind: PairKind) -> &'static str {
+const fn kind_name(kind: PairKind) -> &'static str {
     match kind {
         PairKind::ParticleParticle => "pairs of two particles",
         PairKind::ParticleEdge => "pairs of a particle and an edge",

@@ -1,7 +1,7 @@
-//! Sentences about traces that hold values which are no finite numbers.
+//! Sentences about traces with values that are not finite.
 use fosssim_mistakes::diagnose::{NanStage, NotFinite};
 
-/// Describes the step from which there is such a value, the stage that makes it, and the usual reason.
+/// Describes the first step with such a value, the stage that computes it, and the usual reason.
 pub(super) fn what(found: &NotFinite) -> String {
     let what = if found.is_nan { "NaN (not a number)" } else { "an infinite number" };
     let where_from = match (found.step, found.stage) {

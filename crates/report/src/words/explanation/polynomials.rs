@@ -3,7 +3,7 @@ use super::{capitalize, letters};
 use fosssim_mistakes::diagnose::{Guess, OfPolynomials, PolynomialDetail, Substitute, Weight};
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_edit, letter};
 
-/// Returns the fault of these polynomials.
+/// Returns the fault of wrong polynomials.
 pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
@@ -12,7 +12,7 @@ pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> 
         OfPolynomials::Guess(guess) => format!("{place}: {}.", describe_guess(guess)),
         OfPolynomials::Missing => format!("Polynomials are not handed over: {names}."),
         OfPolynomials::NearlyRight => {
-            format!("{place}: The formula is right, but for more round-off than the rules allow.")
+            format!("{place}: The formula is right, but has more round-off than the rules allow.")
         }
         OfPolynomials::Nothing => {
             let plural = if subjects.len() > 1 { "s" } else { "" };
@@ -33,7 +33,7 @@ fn describe_guess(guess: &Guess) -> String {
     }
 }
 
-/// Returns the coefficient of a power, in a word.
+/// Returns the name of the coefficient of a power.
 const fn power_name(power: usize) -> &'static str {
     match power {
         0 => "constant",
@@ -46,7 +46,7 @@ const fn power_name(power: usize) -> &'static str {
 }
 
 /// Returns a line of the exact form.
-pub(super) fn detail(detail: &PolynomialDetail) -> String {
+pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
     match detail {
         PolynomialDetail::Logged { logged, of } => format!("{logged} of {of} polynomials per detection"),
         PolynomialDetail::RightUpTo(error) => format!("right up to {error:.0e} of the size of its terms"),
@@ -54,7 +54,7 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
             let place = subject.map(|subject| format!("{}: ", subject.name())).unwrap_or_default();
             format!("{place}t^{power} differs in {count} of {of} samples")
         }
-        PolynomialDetail::Holds(value) => format!("the list holds {value} and nothing else, whatever moves"),
+        PolynomialDetail::Holds(value) => format!("the list always contains only {value}"),
         PolynomialDetail::Every(value) => format!("every coefficient is {value}"),
         PolynomialDetail::SinglePrecision => "every value is a float".to_owned(),
         PolynomialDetail::InPlaceOf { stands, belongs } => {
@@ -70,7 +70,7 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::Named { key, of_edges } => {
             letters::radii(find_edit(key).map_or(key.as_ref(), |edit| edit.detail), *of_edges)
         }
-        PolynomialDetail::StandsFor { reading, letter, stand } => stands_for(*reading, letter, stand),
+        PolynomialDetail::StandsFor { reading, letter, stand } => describe_substitute(*reading, letter, stand),
         PolynomialDetail::Factor { power, factor } if *factor == 0.0 => format!("t^{power}: the coefficient is 0"),
         PolynomialDetail::Factor { power, factor } => format!("t^{power}: multiplied by {factor}, expected 1"),
         PolynomialDetail::Unknown { power } => format!("t^{power}: no simple change explains it"),
@@ -82,24 +82,24 @@ pub(super) fn detail(detail: &PolynomialDetail) -> String {
     }
 }
 
-/// Returns the meaning of a letter; nothing if its name explains it.
-fn meaning(reading: Reading, name: &str) -> Option<&'static str> {
+/// Returns the meaning of a letter; `None` if its name explains it.
+fn letter_meaning(reading: Reading, name: &str) -> Option<&'static str> {
     letter(reading, name).map(|Letter { meaning, .. }| *meaning).filter(|meaning| !meaning.is_empty())
 }
 
 /// Returns a letter with its meaning.
 fn describe_letter(reading: Reading, name: &str) -> String {
-    meaning(reading, name).map_or_else(|| name.to_owned(), |meaning| format!("{name} = {meaning}"))
+    letter_meaning(reading, name).map_or_else(|| name.to_owned(), |meaning| format!("{name} = {meaning}"))
 }
 
-fn stands_for(reading: Reading, letter: &str, stand: &Substitute) -> String {
+fn describe_substitute(reading: Reading, letter: &str, stand: &Substitute) -> String {
     let stand = match stand {
         Substitute::Scaled(factor) => format!("{factor} {letter}"),
         Substitute::Letter(other) => describe_letter(reading, other),
         Substitute::Dot { vectors: [one, two], negated } => format!("{}{one}.{two}", if *negated { "-" } else { "" }),
         Substitute::One => "1".to_owned(),
     };
-    match meaning(reading, letter) {
+    match letter_meaning(reading, letter) {
         None => format!("{stand} is used instead of {letter}"),
         Some(meaning) => format!("{letter}: {stand} is used instead of {meaning}"),
     }
@@ -109,7 +109,7 @@ fn describe_weight(weight: &Weight) -> String {
     let Weight { reading, power, letters, expected, actual } = weight;
     let mut meanings: Vec<String> = letters
         .iter()
-        .filter(|name| meaning(*reading, name).is_some())
+        .filter(|name| letter_meaning(*reading, name).is_some())
         .map(|name| describe_letter(*reading, name))
         .collect();
     meanings.dedup();

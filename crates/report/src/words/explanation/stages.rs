@@ -7,12 +7,12 @@ use fosssim_mistakes::diagnose::{
 };
 use fosssim_model::sim::PairKind;
 
-/// Returns the fault of a stage, with its place in front.
+/// Returns the fault of a stage, beginning with its place.
 pub(super) fn what(fault: &StageFault) -> String {
     format!("{}: {}.", describe_place(fault), capitalize(&describe_fault(fault)))
 }
 
-/// Returns the parts of the assignment that may hold it, with the only kind of pair that it concerns, if there is one.
+/// Returns the parts of the assignment that may hold the fault, with the kind of pair if it concerns only one.
 fn describe_place(fault: &StageFault) -> String {
     let areas: Vec<String> = fault.areas().iter().map(|area| area.name().to_lowercase()).collect();
     let areas = match areas.split_last() {
@@ -35,9 +35,9 @@ fn describe_fault(fault: &StageFault) -> String {
         StageFault::ContactTimes => "the contacts are right, but not their times of impact",
         StageFault::ContactVectors { wrong, .. } => wrong.name(),
         StageFault::Responses { wrong, .. } => return describe_responses(wrong),
-        StageFault::ManyContacts => "the contacts are right, but not the state that they lead to",
-        StageFault::Unresolved { all: true } => "contacts that the first round's polynomials show change nothing",
-        StageFault::Unresolved { all: false } => "some contacts that the first round's polynomials show change nothing",
+        StageFault::ManyContacts => "the contacts are right, but not the state after them",
+        StageFault::Unresolved { all: true } => "contacts that the first round's polynomials show have no effect",
+        StageFault::Unresolved { all: false } => "some contacts that the first round's polynomials show have no effect",
         StageFault::Rounds(number) => number.name(),
         StageFault::HandedOver { quantity, when, .. } => {
             let what = quantity.map_or("positions and velocities", plural);
@@ -48,17 +48,16 @@ fn describe_fault(fault: &StageFault) -> String {
             };
             return format!("the polynomials of the rounds are right, but not the {what} that they hand over{when}");
         }
-        StageFault::FirstRound => "the polynomials of the first round are right, but not where it leads",
+        StageFault::FirstRound => "the polynomials of the first round are right, but not the state after it",
         StageFault::LaterRounds => {
-            "isolated contacts of the first round are resolved as they should be, but the round as a whole does not \
-             lead where it should"
+            "isolated contacts of the first round are resolved rightly, but the state after the whole round is wrong"
         }
         StageFault::RoundsOfPrediction => {
-            "rounds after the first one detect on the predicted positions again, not on those that the round before \
-            left"
+            "rounds after the first one detect on the predicted positions again, not on those after the preceding \
+            round"
         }
         StageFault::BehindFirstRound => {
-            "the first round is right, as the polynomials of the second one show, but not what follows"
+            "the first round is right, as the polynomials of the second one show, but later rounds are wrong"
         }
         StageFault::Geometric(WrongGeometric::Left { always: true }) => {
             "when the rounds run out, no geometric pass follows"
@@ -70,7 +69,7 @@ fn describe_fault(fault: &StageFault) -> String {
             "the geometric part runs although a round has found nothing"
         }
         StageFault::ZonePositions(positions) => positions.name(),
-        StageFault::AfterRounds => "the impulse rounds are right, but not what follows them",
+        StageFault::AfterRounds => "the impulse rounds are right, but the part after them is wrong",
         StageFault::ZoneRounds(rounds) => rounds.name(),
         StageFault::Zones(wrong) => wrong.name(),
         StageFault::Motion { wrong, .. } if wrong.is_empty() => "zones do not move as they should",
@@ -82,14 +81,14 @@ fn describe_fault(fault: &StageFault) -> String {
     fixed.to_owned()
 }
 
-/// Returns the features of wrong changes of states.
+/// Returns the properties of wrong changes of states.
 fn describe_change(wrong: &WrongChange) -> String {
     let (quantity, other) = match wrong.quantity {
         Quantity::Position => ("positions", "velocities are right, but "),
         Quantity::Velocity if wrong.cause == ChangeCause::Response => {
-            ("velocities", "collisions are found as they should be, but ")
+            ("velocities", "collisions are found rightly, but ")
         }
-        Quantity::Velocity => ("velocities", "positions follow from velocities as they should, but "),
+        Quantity::Velocity => ("velocities", "positions follow rightly from velocities, but "),
     };
     let axis = match wrong.axis {
         None => "",
@@ -115,7 +114,7 @@ fn describe_responses(wrong: &WrongResponses) -> String {
     }
 }
 
-/// Returns the subject that changes wrongly.
+/// Returns the objects that change wrongly.
 fn who_changes(all: &[ChangedQuantity]) -> String {
     let quantities = distinct(all.iter().map(|one| one.quantity));
     let bodies = distinct(all.iter().map(body));
@@ -151,8 +150,8 @@ const fn plural(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Returns a line of the exact form; nothing if a number would add nothing.
-pub(super) fn detail(detail: &StageDetail) -> Option<String> {
+/// Returns a line of the exact form; `None` if a number would add nothing.
+pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
         StageDetail::Factor(ratio) => format!("each change is {} what it should be", times(Ratios::All(*ratio))),
         StageDetail::Order => {
@@ -165,14 +164,14 @@ pub(super) fn detail(detail: &StageDetail) -> Option<String> {
             format!("of those that are right ({count}): {low:.4} to {high:.4}")
         }
         StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, 1.0) => return None,
-        StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, -1.0) => "it points the opposite way".to_owned(),
+        StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, -1.0) => "it points backwards".to_owned(),
         StageDetail::Vectors(Ratios::Between(..)) => "its length differs from contact to contact".to_owned(),
         StageDetail::Vectors(ratios) => format!("{} as long along the right one", times(*ratios)),
         StageDetail::VectorsOff(part) => format!("off by at most {part:.1e} of its length"),
         StageDetail::Times(ratios) => format!("{} what they should be", times(*ratios)),
         StageDetail::TimesOff(offset) => format!("off by {offset:.6}"),
         StageDetail::TimesUsed => {
-            "the time of impact goes into contact vector and response as the root finder returns it".to_owned()
+            "the time of impact from the root finder is used unchanged for contact vector and response".to_owned()
         }
         StageDetail::Passes { expected, actual, most } => {
             let passes = if *actual == 1 { "pass" } else { "passes" };
@@ -205,12 +204,12 @@ pub(super) fn detail(detail: &StageDetail) -> Option<String> {
     })
 }
 
-/// Returns whether a measured ratio equals this one.
+/// Returns whether a measured ratio equals `value`.
 fn is(ratio: f64, value: f64) -> bool {
     (ratio - value).abs() < 1e-9
 }
 
-/// Ratios in words: "1.5 times" where they agree, else their range.
+/// Returns ratios as text: "1.5 times" if they agree, otherwise their range.
 pub(super) fn times(ratios: Ratios) -> String {
     let short = |value: f64| {
         if value.abs() >= 1e6 {

@@ -280,6 +280,6 @@ fn advice_on_a_step_fits_its_mistake() {
 /// Newton's method that diverges multiplies by 2^100, which is no number to read in 31 digits.
 #[test]
 fn a_huge_ratio_has_six_digits() {
-    let detail = stages::detail(&StageDetail::Factor(1_267_650_600_228_229_401_496_703_205_376.0));
+    let detail = stages::describe_detail(&StageDetail::Factor(1_267_650_600_228_229_401_496_703_205_376.0));
     assert_eq!(detail.as_deref(), Some("each change is 1.26765e+30 times what it should be"));
 }

@@ -4,20 +4,20 @@ use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
 use std::{fs, path::Path};
 
-/// The form of backups.
+/// The version of the format of backups.
 pub(super) const SCHEMA: u32 = 1;
 
-/// The file's name; a folder without it is no backup.
-const FILE: &str = "backup.json";
+/// The name of the manifest's file, which every backup has.
+const MANIFEST_FILE: &str = "backup.json";
 
 /// The contents of a backup.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Manifest {
-    /// The form of the backup.
+    /// The version of the backup's format.
     pub(super) schema: u32,
-    /// The program's version.
+    /// The version of the program that made the backup.
     pub(super) version: String,
-    /// The version of the tables.
+    /// The version of the database's tables.
     pub(super) tables: i64,
     pub(super) database: Copy,
     pub(super) artifacts: Artifacts,
@@ -32,7 +32,7 @@ pub(super) struct Copy {
     pub(super) bytes: u64,
 }
 
-/// The files of the store; each is called by its digest.
+/// The store's files; the name of each is its digest.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Artifacts {
     pub(super) count: u64,
@@ -43,22 +43,23 @@ impl Manifest {
     /// Writes the manifest into a backup's folder.
     pub(super) fn write(&self, folder: &Path) -> Result<()> {
         let text = serde_json::to_string_pretty(self)? + "\n";
-        fs::write(folder.join(FILE), text).context("the backup's manifest can't be written")
+        fs::write(folder.join(MANIFEST_FILE), text).context("the backup's manifest can't be written")
     }
 
     /// Reads the manifest of a backup.
     ///
     /// # Errors
-    /// If the folder is no backup, or one of a newer program.
+    ///
+    /// If the folder is not a backup, or was made by a newer program.
     pub(super) fn read(folder: &Path) -> Result<Self> {
-        let file = folder.join(FILE);
+        let file = folder.join(MANIFEST_FILE);
         let text = fs::read_to_string(&file)
-            .with_context(|| format!("{} is not a complete backup: it has no {FILE}", folder.display()))?;
+            .with_context(|| format!("{} is not a complete backup: it has no {MANIFEST_FILE}", folder.display()))?;
         let form: serde_json::Value = serde_json::from_str(&text).with_context(|| file.display().to_string())?;
         let schema = form["schema"].as_u64().unwrap_or_default();
         if schema > u64::from(SCHEMA) {
             let by = form["version"].as_str().unwrap_or("unknown");
-            bail!("the backup has form {schema}, this program knows forms up to {SCHEMA}: restore it by version {by}");
+            bail!("the backup has format {schema}, this program reads up to {SCHEMA}: restore it with version {by}");
         }
         serde_json::from_value(form).with_context(|| format!("{} is not understood", file.display()))
     }

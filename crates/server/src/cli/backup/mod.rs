@@ -1,5 +1,5 @@
-//! `backup` and `restore`: everything that the server keeps, in a folder with a manifest. The database is copied first,
-//! because the store has an artifact before the database names it.
+//! The commands `backup` and `restore`: all data of the server in a folder with a manifest. The database is copied
+//! first, because an artifact is in the store before the database refers to it.
 mod manifest;
 mod postgres;
 mod restore;
@@ -20,19 +20,19 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The name of the database's copy, by engine.
-const SQLITE: &str = "fosssim.db";
-const POSTGRES: &str = "fosssim.dump";
+/// The name of a SQLite database's copy.
+const SQLITE_COPY: &str = "fosssim.db";
+const POSTGRES_COPY: &str = "fosssim.dump";
 
-/// Copies everything into a new folder, while the server runs.
+/// Copies all data into a new folder, while the server runs.
 pub(super) async fn backup(arguments: &BackupArguments) -> Result<()> {
     let (folders, output) = (ServiceFolders::find(&arguments.place)?, &arguments.output);
     if output.exists() {
-        bail!("{} exists already: name a new folder", output.display());
+        bail!("{} already exists; choose a new folder", output.display());
     }
     let (database, address) = folders.open_database(&arguments.place).await?;
     let store = folders.store(&arguments.place)?;
-    // It has its name when it is complete.
+    // The folder gets its name when it is complete.
     let partial = PathBuf::from(format!("{}.partial-{}", output.display(), std::process::id()));
     fs::DirBuilder::new().mode(0o700).create(&partial).with_context(|| format!("cannot make {}", partial.display()))?;
     let made = fill(&partial, &database, &store, &address).await;
@@ -51,8 +51,8 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
         bail!("the database {address} is empty");
     }
     let name = match address {
-        Address::Sqlite(_) => SQLITE,
-        Address::Postgres(_) => POSTGRES,
+        Address::Sqlite(_) => SQLITE_COPY,
+        Address::Postgres(_) => POSTGRES_COPY,
     };
     let file = folder.join(name);
     match address {
@@ -68,14 +68,14 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
         database: Copy { file: name.to_owned(), sha256: copy.digest, bytes: copy.size },
         artifacts,
     };
-    // Everything is on the disk before the manifest is written.
+    // All files are written to the disk before the manifest.
     rustix::fs::syncfs(fs::File::open(folder)?)?;
     manifest.write(folder)?;
     rustix::fs::syncfs(fs::File::open(folder)?)?;
     Ok(manifest)
 }
 
-/// Copies the store's artifacts into a folder that is a store of its own.
+/// Copies the store's artifacts into a folder that is also a store.
 async fn copy_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
     let mut copied = Artifacts::default();
     fs::create_dir_all(folder)?;
@@ -87,7 +87,8 @@ async fn copy_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
         let file = place.join(rest);
         match store.fetch(&digest, &file).await {
             Ok(()) => {}
-            // Removed meanwhile: nothing names it. Or it exists twice, as an artifact that is put aside may.
+            // The artifact was removed since, or exists twice because the sweep moved it to the trash; nothing refers
+            // to it.
             Err(crate::store::StoreError::Missing(_)) => continue,
             Err(_) if file.exists() => continue,
             Err(error) => return Err(error.into()),

@@ -1,5 +1,5 @@
-//! PostgreSQL's own tools, which copy a database consistently while others write. They get the password by a variable,
-//! so that no list of processes shows it.
+//! PostgreSQL's own tools, which copy a database consistently while others write. They receive the password in an
+//! environment variable, so that it is not in the list of processes.
 use anyhow::{Context, Result, bail};
 use std::{path::Path, process::Stdio};
 use tokio::process::Command;
@@ -7,7 +7,7 @@ use url::{Url, form_urlencoded};
 
 /// Returns an address without its password, and the password.
 fn without_password(address: &str) -> Result<(Url, String)> {
-    // The text may hold a password: it is not repeated.
+    // The text may hold a password, so the error does not repeat it.
     let mut url = Url::parse(address).ok().context("the database's address is invalid")?;
     let form = format!("password={}", url.password().unwrap_or_default().replace('+', "%2B"));
     let fields = form_urlencoded::parse(form.as_bytes()).into_owned().chain(url.query_pairs().into_owned());
@@ -40,7 +40,7 @@ pub(super) async fn dump(address: &str, file: &Path) -> Result<()> {
     run("pg_dump", address, &["--format=custom", "--no-owner", "--no-privileges", "--file"], file).await
 }
 
-/// Loads such a copy into an empty database, all of it or nothing.
+/// Restores a database copy into an empty database, in one transaction.
 pub(super) async fn load(address: &str, file: &Path) -> Result<()> {
     let words = ["--no-owner", "--no-privileges", "--single-transaction", "--exit-on-error"];
     run("pg_restore", address, &words, file).await

@@ -1,5 +1,5 @@
-//! `restore`: a backup becomes a data folder again. The database comes last: a server that is started too early finds
-//! no database instead of half of one.
+//! The command `restore`, which turns a backup into a data folder. The database comes last, so that a server that is
+//! started too early finds no database instead of an incomplete one.
 use super::{
     super::{arguments::RestoreArguments, folders::ServiceFolders},
     manifest::{Artifacts, Manifest},
@@ -16,13 +16,13 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// Restores a backup into an empty data folder and, if there is one, an empty database.
+/// Restores a backup into an empty data folder and, for PostgreSQL, an empty database.
 pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> {
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let manifest = Manifest::read(from)?;
     if manifest.tables > db::LATEST {
         bail!(
-            "the backup's tables have version {}, this program knows versions up to {}: restore it by version {}",
+            "the backup's tables have version {}, this program reads versions up to {}: restore it with version {}",
             manifest.tables,
             db::LATEST,
             manifest.version
@@ -31,14 +31,14 @@ pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> 
     let copy = from.join(&manifest.database.file);
     let found = digest_of_file(&copy).await.with_context(|| copy.display().to_string())?;
     if found.digest != manifest.database.sha256 {
-        bail!("{} is damaged: it is not the copy that was made", copy.display());
+        bail!("{} is damaged: it differs from the copy in the manifest", copy.display());
     }
     if place.data.exists() && fs::read_dir(&place.data)?.next().is_some() {
-        bail!("{} is not empty: a backup is restored into an empty data folder", place.data.display());
+        bail!("{} is not empty; a backup needs an empty data folder", place.data.display());
     }
     let restored = fill(arguments, &manifest, &copy).await;
     if restored.is_err() {
-        // Half a data folder is of no use, and was empty before.
+        // The incomplete data folder is useless, and was empty before.
         drop(fs::remove_dir_all(&place.data));
     }
     restored
@@ -49,20 +49,20 @@ async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) ->
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let folders = ServiceFolders::open(place)?;
     let address = folders.database(place);
-    let is_dump = manifest.database.file == super::POSTGRES;
+    let is_dump = manifest.database.file == super::POSTGRES_COPY;
     match (&address, is_dump) {
-        (Address::Sqlite(file), false) if file.exists() => bail!("the database {} is there already", file.display()),
+        (Address::Sqlite(file), false) if file.exists() => bail!("the database {} already exists", file.display()),
         (Address::Postgres(_), true) => {
             let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
             let version = db::version(&database).await?;
             database.close().await;
             if version > 0 {
-                bail!("the database {address} is not empty: restore into one that was just made");
+                bail!("the database {address} is not empty; restore into a new one");
             }
         }
         (Address::Sqlite(_), false) => {}
-        (_, true) => bail!("the backup is one of PostgreSQL: name an empty database by FOSSSIM_DATABASE"),
-        (_, false) => bail!("the backup is one of SQLite: leave out the database's address"),
+        (_, true) => bail!("the backup is from PostgreSQL; name an empty database in FOSSSIM_DATABASE"),
+        (_, false) => bail!("the backup is from SQLite; leave out the database's address"),
     }
     let store = folders.store(place)?;
     let restored = put_artifacts(&store, &from.join("store").join("sha256")).await?;
@@ -87,7 +87,7 @@ async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) ->
     Ok(())
 }
 
-/// Copies the database to `file`, mode 600, by rename.
+/// Copies the database to `file` with mode 600, by renaming a temporary file.
 fn copy_database(copy: &Path, file: &Path) -> Result<()> {
     let partial = PathBuf::from(format!("{}.partial", file.display()));
     fs::copy(copy, &partial).with_context(|| format!("cannot write {}", partial.display()))?;
@@ -96,7 +96,7 @@ fn copy_database(copy: &Path, file: &Path) -> Result<()> {
     Ok(fs::rename(&partial, file)?)
 }
 
-/// Stores every file of a folder of artifacts. Each file's bytes must match its name.
+/// Stores all files of a folder of artifacts. Each file's bytes must match its name.
 async fn put_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
     let mut put = Artifacts::default();
     if !folder.exists() {

@@ -1,4 +1,4 @@
-//! Tokens, sessions and links that sign in. Each is 256 random bits; the database has the digest only.
+//! Tokens, sessions and links that sign in. Each is 256 random bits; the database stores only the digest.
 use crate::domain::view::Account;
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
@@ -11,26 +11,26 @@ use sha2::{Digest as _, Sha256};
 use std::fmt;
 use utoipa::ToSchema;
 
-/// The time that a session lasts after it was last seen.
+/// The lifetime of a session after its last use, in milliseconds.
 const SESSION: i64 = 14 * 24 * 3600 * 1000;
 
-/// The most sessions of an account: the oldest ends when another one begins.
-const SESSIONS: i64 = 50;
+/// The maximum number of sessions of an account; a further one ends the oldest.
+const MAX_SESSIONS: i64 = 50;
 
-/// The time for which a sign-in link is valid.
-const LINK: i64 = 7 * 24 * 3600 * 1000;
+/// The lifetime of a sign-in link, in milliseconds.
+const LINK_LIFETIME: i64 = 7 * 24 * 3600 * 1000;
 
-/// The time after its beginning in which a session may create further ways to sign in: tokens, a provider.
-const RECENT: i64 = 12 * 3600 * 1000;
+/// The age up to which a session may create further ways to sign in, such as tokens, in milliseconds.
+const RECENT_AGE: i64 = 12 * 3600 * 1000;
 
-/// The time after which a session's last use is noted again.
-const SEEN_EVERY: i64 = 3600 * 1000;
+/// The time between two updates of a session's last use, in milliseconds.
+const SEEN_INTERVAL: i64 = 3600 * 1000;
 
-/// The first letters of tokens of people and of workers: they show finders and scanners the kind of token.
-pub(in crate::domain) const PERSON: &str = "fso_";
-pub(in crate::domain) const WORKER: &str = "fsw_";
+/// The prefix of people's tokens, which shows people and scanners the kind of token.
+pub(in crate::domain) const PERSON_PREFIX: &str = "fso_";
+pub(in crate::domain) const WORKER_PREFIX: &str = "fsw_";
 
-/// A secret that was just made: shown once.
+/// A new secret, which is shown once.
 #[derive(Clone, PartialEq, Eq)]
 pub struct NewSecret(String);
 
@@ -39,7 +39,7 @@ impl NewSecret {
         Self(format!("{prefix}{}{}", random_hex(), random_hex()))
     }
 
-    /// Returns the secret itself, for its owner.
+    /// Returns the secret, for its owner.
     pub fn reveal(&self) -> &str {
         &self.0
     }
@@ -60,15 +60,15 @@ impl fmt::Debug for NewSecret {
 pub struct TokenInfo {
     /// The token's number.
     pub id: i64,
-    /// The token's name.
+    /// The token's name, given by its owner.
     pub name: String,
-    /// The time when it was made, in milliseconds since 1970.
+    /// The time of creation, in milliseconds since 1970.
     pub created_at: i64,
 }
 
 from_row! { TokenInfo { id, name, created_at } }
 
-/// A token with its secret, which is shown this once.
+/// A new token with its secret, which is shown once.
 #[derive(Serialize, ToSchema)]
 pub struct NewToken {
     #[serde(flatten)]
@@ -77,7 +77,7 @@ pub struct NewToken {
     pub token: String,
 }
 
-/// A link that signs in once, good for a week.
+/// A link that signs in once, valid for a week.
 #[derive(Serialize, ToSchema)]
 pub struct Link {
     /// The link; `None` if the account existed.
@@ -87,33 +87,34 @@ pub struct Link {
 /// The way in which a person signed in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::domain) enum Way {
-    /// By a provider, a learning platform, or a link that the server or an administrator made.
+    /// By a provider, a learning platform, or a link from the server or an administrator.
     Own,
-    /// By a link that a course's staff made, who may have used it themselves.
+    /// By a link from a course's staff, who may have used it themselves.
     Vouched,
-    /// By this token: the session ends with it.
+    /// By a token, given by its number; the session ends with the token.
     Token(i64),
 }
 
-/// A session as a request shows it.
+/// The state of a session, for a request.
 #[derive(Debug, Clone)]
 pub(in crate::domain) struct SessionState {
-    /// Whether it was begun by a link that a course's staff made.
+    /// Whether the session came from a link of a course's staff.
     pub(in crate::domain) is_vouched: bool,
-    /// Whether it was begun by a token.
+    /// Whether the session came from a token.
     pub(in crate::domain) is_by_token: bool,
-    /// Whether it was begun lately.
+    /// Whether the session began recently.
     pub(in crate::domain) is_recent: bool,
-    /// Whether its last use must be noted.
+    /// Whether the session's last use must be updated.
     pub(in crate::domain) is_stale: bool,
 }
 
-/// Returns the digest of a secret, which the database keeps. The secret is random, so it can't be found by trying.
+/// Returns the digest of a secret, which the database stores. The secret is random, so it can't be guessed from the
+/// digest.
 pub(in crate::domain) fn digest(secret: &str) -> String {
     hex(&Sha256::digest(secret))
 }
 
-/// Returns the owner of the token, and its number.
+/// Returns the owner of a token, and the token's number.
 pub(in crate::domain) async fn account_of_token(
     transaction: &mut Transaction,
     token: &str,
@@ -124,11 +125,11 @@ pub(in crate::domain) async fn account_of_token(
     let row = transaction.row(statement, values![digest(token)]).await?;
     match row {
         Some(row) => Ok((Account::from_row(&row)?, row.int("token")?)),
-        None => Err(Problem::unknown_secret("token", "make a new one on the page Account")),
+        None => Err(Problem::unknown_secret("token", "create a new one on the page Account")),
     }
 }
 
-/// Returns the account of a session. One that a token began ends with the token.
+/// Returns the account of a session. A session from a token ends with the token.
 pub(in crate::domain) async fn account_of_session(
     transaction: &mut Transaction,
     session: &str,
@@ -145,13 +146,13 @@ pub(in crate::domain) async fn account_of_session(
     let seen = SessionState {
         is_vouched: row.flag("vouched")?,
         is_by_token: row.maybe_int("token")?.is_some(),
-        is_recent: now - row.int("created_at")? < RECENT,
-        is_stale: now - row.int("seen_at")? > SEEN_EVERY,
+        is_recent: now - row.int("created_at")? < RECENT_AGE,
+        is_stale: now - row.int("seen_at")? > SEEN_INTERVAL,
     };
     Ok(Some((Account::from_row(&row)?, seen)))
 }
 
-/// Extends a session from now on.
+/// Extends a session from the present time.
 pub(in crate::domain) async fn extend_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
     let statement = "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?";
     transaction.execute(statement, values![SESSION, digest(session)]).await.map(drop)
@@ -173,7 +174,7 @@ pub(in crate::domain) async fn begin_session(
     transaction.execute(statement, values![secret.digest(), account, SESSION, way == Way::Vouched, token]).await?;
     let statement = "DELETE FROM session WHERE account = ? AND digest NOT IN
         (SELECT digest FROM session WHERE account = ? ORDER BY created_at DESC, seen_at DESC LIMIT ?)";
-    transaction.execute(statement, values![account, account, SESSIONS]).await?;
+    transaction.execute(statement, values![account, account, MAX_SESSIONS]).await?;
     Ok(secret)
 }
 
@@ -182,8 +183,8 @@ pub(in crate::domain) async fn end_session(transaction: &mut Transaction, sessio
     transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await.map(drop)
 }
 
-/// Makes a link that signs in once; earlier ones of the account that were not used are void. `way` states whether only
-/// a course's staff vouches for it.
+/// Creates a link that signs in once, and invalidates the account's unused ones. `way` states whether only a course's
+/// staff vouches for it.
 pub(in crate::domain) async fn new_link(
     transaction: &mut Transaction,
     account: i64,
@@ -194,7 +195,7 @@ pub(in crate::domain) async fn new_link(
     further_link(transaction, account, by, way).await
 }
 
-/// Makes a further sign-in link next to earlier ones.
+/// Creates a further sign-in link, and keeps earlier ones valid.
 pub(in crate::domain) async fn further_link(
     transaction: &mut Transaction,
     account: i64,
@@ -204,7 +205,7 @@ pub(in crate::domain) async fn further_link(
     let secret = NewSecret::new("");
     let statement = "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
         VALUES (?, ?, ?, {now}, {now} + ?, ?)";
-    transaction.execute(statement, values![secret.digest(), account, by, LINK, way == Way::Vouched]).await?;
+    transaction.execute(statement, values![secret.digest(), account, by, LINK_LIFETIME, way == Way::Vouched]).await?;
     Ok(secret)
 }
 
@@ -225,7 +226,7 @@ pub(in crate::domain) async fn use_link(
     let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
     let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
-    // The person could not sign in at the provider: staff may have connected the account with somebody else.
+    // The person could not sign in at the provider, so staff may have connected the account with somebody else.
     if way == Way::Own {
         end_vouched_connections(transaction, account).await?;
     }
@@ -238,13 +239,13 @@ pub(in crate::domain) async fn end_sessions(transaction: &mut Transaction, accou
     transaction.execute("DELETE FROM session WHERE account = ?", values![account]).await.map(drop)
 }
 
-/// Ends connections with a provider that were made in sessions of links of a course's staff.
+/// Ends connections with a provider that were made in sessions from links of a course's staff.
 async fn end_vouched_connections(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     let statement = "DELETE FROM platform_account WHERE account = ? AND vouched = 1";
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
-/// Ends every way into an account: it may do more from now on, or nothing at all.
+/// Ends all sessions, links and tokens of an account, whose rights increase or end.
 pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     end_sessions(transaction, account).await?;
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
@@ -254,8 +255,8 @@ pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
-/// Makes the account its person's own. What was begun or made by links of a course's staff ends, who may have
-/// used these links themselves.
+/// Gives the account to its person alone. Sessions and tokens from links of a course's staff end, because staff may
+/// have used them.
 pub(in crate::domain) async fn end_vouched(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
     end_vouched_connections(transaction, account).await?;
@@ -266,7 +267,7 @@ pub(in crate::domain) async fn end_vouched(transaction: &mut Transaction, accoun
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
-/// Returns whether an account is more than a student anywhere: staff can't sign in as it, and could not before.
+/// Returns whether an account has more rights than a student anywhere. Staff can't sign in as such an account.
 pub(in crate::domain) async fn is_trusted(transaction: &mut Transaction, account: i64) -> Result<bool, DbError> {
     let statement = "SELECT is_admin, (SELECT count(*) FROM member
            WHERE member.account = account.id AND member.role = 'staff') AS staff
@@ -275,7 +276,7 @@ pub(in crate::domain) async fn is_trusted(transaction: &mut Transaction, account
     Ok(row.flag("is_admin")? || row.int("staff")? > 0)
 }
 
-/// Makes a token.
+/// Creates a token.
 pub(in crate::domain) async fn new_token(
     transaction: &mut Transaction,
     account: Option<i64>,
@@ -283,14 +284,14 @@ pub(in crate::domain) async fn new_token(
     by: i64,
     way: Way,
 ) -> Result<NewToken, DbError> {
-    let secret = NewSecret::new(if account.is_some() { PERSON } else { WORKER });
+    let secret = NewSecret::new(if account.is_some() { PERSON_PREFIX } else { WORKER_PREFIX });
     let statement = "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
         VALUES (?, ?, ?, ?, {now}, ?) RETURNING id, name, created_at";
     let row = transaction.one(statement, values![account, name, secret.digest(), by, way == Way::Vouched]).await?;
     Ok(NewToken { info: TokenInfo::from_row(&row)?, token: secret.reveal().to_owned() })
 }
 
-/// Returns whether a character is invisible, or turns the letters around it.
+/// Returns whether a character is invisible, or changes the direction of the text around it.
 pub(in crate::domain) fn is_control(c: char) -> bool {
     c.is_control()
         || matches!(c, '\u{ad}' | '\u{115f}' | '\u{1160}' | '\u{180e}' | '\u{200b}'..='\u{200f}'
@@ -298,7 +299,7 @@ pub(in crate::domain) fn is_control(c: char) -> bool {
             | '\u{e0000}'..='\u{e0fff}')
 }
 
-/// Checks a name that people gave to something: shown in pages, logs and tables.
+/// Checks a name that people chose; it is shown in pages, logs and tables.
 pub(in crate::domain) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
     let length = text.chars().count();
     if !(1..=200).contains(&length) || text.chars().any(is_control) || text.trim() != text {

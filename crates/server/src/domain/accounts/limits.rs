@@ -1,5 +1,4 @@
-//! The shares of one account, one course, and all together in the server: transfers at one time, and bytes that are
-//! kept.
+//! The limits of an account, a course, and the whole server: parallel transfers, and stored bytes.
 use crate::domain::{
     Member, Throttle,
     accounts::turns::{ArchiveTurn, Turns},
@@ -16,25 +15,25 @@ use std::{
 };
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit};
 
-/// Up- and downloads of all accounts at one time: each takes a connection, a file and some 100 KiB.
-static OF_ALL: Semaphore = Semaphore::const_new(3000);
+/// The parallel transfers of all accounts. Each takes a connection, a file and about 100 KiB.
+static ALL_TRANSFERS: Semaphore = Semaphore::const_new(3000);
 
 /// The time that an upload waits for others of the same account.
-const TURN: Duration = Duration::from_secs(30);
+const TURN_TIMEOUT: Duration = Duration::from_secs(30);
 
-/// The rejected archives that an account may send in a minute.
+/// The maximum number of rejected archives of an account per minute.
 const REFUSED: u32 = 30;
 
-/// The limits, and the transfers that are under way.
+/// The limits, and the active transfers.
 #[derive(Debug, Default)]
 pub struct TransferLimits {
-    /// Up- and downloads of one account at one time.
+    /// The maximum number of parallel transfers of one account.
     pub transfers: usize,
-    /// Bytes of uploads and their reports that are kept: of one person, of one course, of all. 0 for any number.
+    /// The maximum number of stored bytes of uploads and their reports of one person; 0 for any number.
     pub student: u64,
-    /// The limit of one course.
+    /// The maximum number of stored bytes of one course; 0 for any number.
     pub course: u64,
-    /// The limit of the server.
+    /// The maximum number of stored bytes of the server; 0 for any number.
     pub server: u64,
     by_account: Mutex<HashMap<i64, Arc<Semaphore>>>,
     turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
@@ -42,7 +41,7 @@ pub struct TransferLimits {
     refused: Throttle,
 }
 
-/// Leave to transfer something, until it is dropped.
+/// The permission for a transfer, until it is dropped.
 #[derive(Debug)]
 pub struct Transfer {
     _of_account: OwnedSemaphorePermit,
@@ -50,7 +49,7 @@ pub struct Transfer {
 }
 
 impl TransferLimits {
-    /// Creates limits of these sizes.
+    /// Creates the limits.
     pub fn new(transfers: usize, student: u64, course: u64, server: u64) -> Self {
         Self { transfers, student, course, server, ..Self::default() }
     }
@@ -58,22 +57,22 @@ impl TransferLimits {
     fn transfer(&self, account: i64) -> Result<Transfer, Problem> {
         let most = self.transfers;
         let of_account = find_shared(&self.by_account, account, || Semaphore::new(most)).try_acquire_owned();
-        let many = |_| Problem::too_many(format!("an account may have {most} uploads and downloads at one time"));
+        let many = |_| Problem::too_many(format!("an account may have {most} simultaneous transfers"));
         let of_account = of_account.map_err(many)?;
-        let of_all = OF_ALL.try_acquire();
+        let of_all = ALL_TRANSFERS.try_acquire();
         let of_all = of_all.map_err(|_| Problem::unavailable("too many uploads and downloads are running"))?;
         Ok(Transfer { _of_account: of_account, _of_all: of_all })
     }
 
-    /// Waits until no other upload for an account is handled by this server.
+    /// Waits until this server handles no other upload of the account.
     pub(in crate::domain) async fn turn(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
         let turn = find_shared(&self.turns, account, Default::default);
-        let turn = tokio::time::timeout(TURN, turn.lock_owned()).await;
+        let turn = tokio::time::timeout(TURN_TIMEOUT, turn.lock_owned()).await;
         turn.map_err(|_| Problem::unavailable("other uploads of yours are still being written"))
     }
 }
 
-/// Returns the value that the tasks of an account share, while one of them holds it.
+/// Returns the value that all tasks of an account share, as long as one of them holds it.
 fn find_shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
     all.retain(|_, one| Arc::strong_count(one) > 1);
@@ -81,17 +80,19 @@ fn find_shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnO
 }
 
 impl Member {
-    /// Permits sending or receiving a file.
+    /// Permits a transfer.
     ///
     /// # Errors
-    /// When the account, or all together, reach their limit of transfers.
+    ///
+    /// When the account or the server reaches its limit of transfers.
     pub fn transfer(&self) -> Result<Transfer, Problem> {
         self.app.limits.transfer(self.account.id)
     }
 
-    /// Waits until one of the account's archives may be checked. It counts as rejected until it is accepted.
+    /// Waits until an archive of the account may be checked. It counts as rejected until it is accepted.
     ///
     /// # Errors
+    ///
     /// When too many archives wait, or too many of the account's were rejected.
     pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
         let turn = self.app.limits.archives.wait(self.account.id).await?;
@@ -101,12 +102,12 @@ impl Member {
         Ok(turn)
     }
 
-    /// Notes that an archive was accepted.
+    /// Records that an archive was accepted.
     pub fn note_right_archive(&self) {
         self.app.limits.refused.put_back(self.account.id);
     }
 
-    /// Returns the bytes that are kept of this person, their course and the server, each with the most that may be.
+    /// Returns the stored bytes of the person, the course and the server, each with its limit.
     async fn shares(&self, transaction: &mut Transaction) -> Result<[RoomShare; 3], Problem> {
         let limits = &self.app.limits;
         let statement =
@@ -121,10 +122,11 @@ impl Member {
         Ok([kept("student", limits.student)?, kept("course", limits.course)?, kept("server", limits.server)?])
     }
 
-    /// Returns the sentences about the room for uploads: to staff about their course, and to everyone about a share
-    /// that is nearly full.
+    /// Returns sentences about the space for uploads: to staff about their course, and to everyone about a limit that
+    /// is nearly reached.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn describe_kept_bytes(&self) -> Result<Vec<String>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
@@ -134,16 +136,16 @@ impl Member {
         Ok(told.map(|(whose, kept, _)| kept.describe(whose)).collect())
     }
 
-    /// Checks that this many more bytes may be kept.
+    /// Checks that `size` further bytes may be stored.
     pub(in crate::domain) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
         let [student, course, server] = self.shares(transaction).await?;
-        exceeds("all that you handed in, with its reports,", student, size)?;
-        exceeds("all that was handed in in this course, with its reports,", course, size)?;
-        exceeds("all that was handed in here, with its reports,", server, size)
+        exceeds("your uploads and reports", student, size)?;
+        exceeds("the uploads and reports of this course", course, size)?;
+        exceeds("the uploads and reports on this server", server, size)
     }
 }
 
-/// Bytes that are kept, and the most that may be: 0 for any number.
+/// A number of stored bytes, and its limit, where 0 means any number.
 #[derive(Debug, Clone, Copy)]
 struct RoomShare {
     bytes: u64,
@@ -151,18 +153,18 @@ struct RoomShare {
 }
 
 impl RoomShare {
-    /// Returns whether four fifths of it are taken.
+    /// Returns whether four fifths of the limit are used.
     fn is_nearly_all(self) -> bool {
         self.most > 0 && self.bytes >= self.most / 5 * 4
     }
 
     fn describe(self, whose: &str) -> String {
-        let kept = format!("Uploads and reports kept of {whose}: {}", problem::size(self.bytes));
+        let kept = format!("Stored uploads and reports of {whose}: {}", problem::size(self.bytes));
         let most = problem::size(self.most);
         match self.most {
             0 => kept + ".",
             _ if self.is_nearly_all() => {
-                format!("{kept} of {most}. When all are taken nothing can be handed in: ask the administrator.")
+                format!("{kept} of {most}. When the space is used up, uploads are rejected. Ask the administrator.")
             }
             _ => format!("{kept} of {most}."),
         }
@@ -174,5 +176,5 @@ fn exceeds(what: &str, RoomShare { bytes: kept, most }: RoomShare, size: u64) ->
         return Ok(());
     }
     let [kept, most, size] = [kept, most, size].map(problem::size);
-    Err(Problem::quota(format!("{what} takes {kept} of {most}, and this upload has {size}")))
+    Err(Problem::quota(format!("{what} use {kept} of {most}, and this upload has {size}")))
 }

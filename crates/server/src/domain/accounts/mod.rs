@@ -1,4 +1,4 @@
-//! Accounts: how people sign in, and what shares of the server they have.
+//! Accounts: how people sign in, and their limits on the server.
 
 pub(super) mod identity;
 pub(super) mod limits;

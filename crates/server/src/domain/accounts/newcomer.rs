@@ -1,4 +1,4 @@
-//! People whom another service names: a learning platform, or a provider. An issuer and its subject are a person.
+//! People from another service: a learning platform, or a provider. An issuer and a subject identify a person.
 use crate::{
     db::{DbError, Transaction},
     domain::accounts::identity,
@@ -8,23 +8,24 @@ use crate::{
 
 /// A person as an issuer describes them.
 pub(in crate::domain) struct Newcomer<'a> {
-    /// A platform's issuer; a provider's begins with a word of its own, so that no platform can speak for it.
+    /// The platform's issuer. A provider's has a prefix, so that no platform can claim to be it.
     pub(in crate::domain) issuer: &'a str,
     pub(in crate::domain) subject: &'a str,
     pub(in crate::domain) name: Option<&'a str>,
-    /// Makes the login; of an address the part before the @.
+    /// The base of the login; the part before the @ of an address.
     pub(in crate::domain) nickname: Option<&'a str>,
 }
 
 impl Newcomer<'_> {
-    /// Returns the account that belongs to the person.
+    /// Returns the person's account, if there is one.
     pub(in crate::domain) async fn find(&self, transaction: &mut Transaction) -> Result<Option<i64>, DbError> {
         let statement = "SELECT account FROM platform_account WHERE issuer = ? AND subject = ?";
         let known = transaction.row(statement, values![self.issuer, self.subject]).await?;
         known.map(|row| row.int("account")).transpose()
     }
 
-    /// Makes an account the person's; one that was joined in a session that a link of staff began is vouched for.
+    /// Assigns an account to the person. If the session came from a link of staff, the assignment is marked as vouched
+    /// for.
     pub(in crate::domain) async fn join(
         &self,
         transaction: &mut Transaction,
@@ -36,10 +37,10 @@ impl Newcomer<'_> {
         transaction.execute(statement, values![self.issuer, self.subject, account, is_vouched]).await.map(drop)
     }
 
-    /// Finds the person's account, or makes it; its name is the issuer's. It never takes an existing account of the
-    /// same name or address: people choose these for themselves.
+    /// Finds the person's account, or creates it with the issuer's name. It never takes an existing account of the same
+    /// name or address, because people choose these themselves.
     pub(in crate::domain) async fn find_or_make(&self, transaction: &mut Transaction) -> Result<i64, DbError> {
-        let name = self.name.map(tidy).filter(|name| !name.is_empty());
+        let name = self.name.map(clean_name).filter(|name| !name.is_empty());
         if let Some(account) = self.find(transaction).await? {
             if let Some(name) = name {
                 let statement = "UPDATE account SET name = ? WHERE id = ? AND name <> ?";
@@ -67,13 +68,13 @@ impl Newcomer<'_> {
     }
 }
 
-/// Returns a name as this service shows names.
-fn tidy(name: &str) -> String {
+/// Returns a name in the form that this service shows.
+fn clean_name(name: &str) -> String {
     let plain: String = name.chars().map(|c| if identity::is_control(c) { ' ' } else { c }).collect();
     plain.trim().chars().take(200).collect::<String>().trim().to_owned()
 }
 
-/// Makes a login from a person's name, whatever it holds.
+/// Creates a valid login from any name.
 fn login_of(word: &str) -> String {
     let plain = |c: char| match c.to_ascii_lowercase() {
         c if c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.') => Some(c),
@@ -102,6 +103,6 @@ mod tests {
             assert_eq!(login_of(word), login, "{word}");
             assert!(identity::check_slug("a login", &login_of(word)).is_ok());
         }
-        assert_eq!(tidy(" A\nB\u{0} "), "A B");
+        assert_eq!(clean_name(" A\nB\u{0} "), "A B");
     }
 }

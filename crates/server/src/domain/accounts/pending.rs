@@ -1,5 +1,6 @@
 //! Sign-ins that another service must confirm: a learning platform, or a provider. The data for the answer are signed
-//! and not stored, so any number of sign-ins may begin. Each is answered once, in the same browser, and soon.
+//! and not stored, so any number of sign-ins may begin. Each can be answered once, in the same browser, within a time
+//! limit.
 use crate::{
     db::{DbError, Transaction},
     domain::{
@@ -14,32 +15,33 @@ use base64::{Engine, prelude::BASE64_URL_SAFE_NO_PAD as URL_SAFE_NO_PAD};
 use ring::hmac;
 use std::time::Instant;
 
-/// The longest time that a sign-in may take, in milliseconds.
-const LOGIN: i64 = 10 * 60 * 1000;
+/// The maximum duration of a sign-in, in milliseconds.
+const LOGIN_LIFETIME: i64 = 10 * 60 * 1000;
 
-/// Sign-ins at one service that an address may begin in a minute: a lecture hall may be one address.
-const LOGINS: u32 = 3000;
+/// The maximum number of sign-ins that an address may begin per minute at one service; a lecture hall may be one
+/// address.
+const MAX_LOGINS: u32 = 3000;
 
-/// The sign-in was not begun here, was answered before, or has taken too long.
-pub(in crate::domain) const UNKNOWN: &str = "this sign-in is unknown, used or too old";
+/// The message about a sign-in that did not begin here, was answered before, or took too long.
+pub(in crate::domain) const UNKNOWN_SIGN_IN: &str = "this sign-in is unknown, used or too old";
 
-/// A sign-in that was begun.
+/// A sign-in that has begun.
 pub(in crate::domain) struct BegunSignIn {
-    /// The signed words, which come back.
+    /// The signed state, which the service returns.
     pub(in crate::domain) state: String,
-    /// The word that the browser keeps, and shows when it comes back.
+    /// The secret that the browser keeps, and shows when it returns.
     pub(in crate::domain) browser: String,
 }
 
-/// A sign-in that came back.
+/// A sign-in whose browser returned.
 pub(in crate::domain) struct PendingSignIn {
     state: String,
     expires_at: i64,
-    /// The service that must confirm it: a platform's number, or a provider.
+    /// The service that confirms the sign-in: a platform's number, or a provider.
     pub(in crate::domain) at: String,
-    /// The account that is to be connected; 0 for none.
+    /// The account to connect; 0 for none.
     pub(in crate::domain) account: i64,
-    /// The page to go on to.
+    /// The path of the next page.
     pub(in crate::domain) to: String,
 }
 
@@ -51,29 +53,30 @@ impl App {
         (secrets, known): (&Secrets, Option<&String>),
         (account, to): (i64, &str),
     ) -> Result<BegunSignIn, Problem> {
-        if !self.0.throttle.pass(throttle::bucket(secrets.address, at), LOGINS, Instant::now()) {
-            return Err(Problem::too_many("too many people sign in from your address at this moment"));
+        if !self.0.throttle.pass(throttle::bucket_id(secrets.address, at), MAX_LOGINS, Instant::now()) {
+            return Err(Problem::too_many("too many people are signing in from your address"));
         }
-        // One word for several windows of a browser.
+        // Windows of a browser share one secret.
         let is_word = |word: &&String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
         let browser = known.filter(is_word).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
         let key = self.signing_key().await?;
         let now = self.0.database.read().await?.one("SELECT {now} AS now", values![]).await?.int("now")?;
-        let (expires_at, shown, to) = (now + LOGIN, identity::digest(&browser), URL_SAFE_NO_PAD.encode(to));
+        let (expires_at, shown, to) = (now + LOGIN_LIFETIME, identity::digest(&browser), URL_SAFE_NO_PAD.encode(to));
         let words = format!("{at}.{expires_at}.{shown}.{account}.{to}.{}", random_hex());
         let state = format!("{words}.{}", URL_SAFE_NO_PAD.encode(hmac::sign(&key, words.as_bytes())));
         Ok(BegunSignIn { state, browser })
     }
 
-    /// Returns a secret word of a sign-in, which only this service can compute from the state.
+    /// Returns a secret of a sign-in, which only this service can compute from the state.
     pub(in crate::domain) async fn word_of(&self, kind: &str, state: &str) -> Result<String, Problem> {
         let key = self.signing_key().await?;
         Ok(hex(hmac::sign(&key, format!("{kind} {state}").as_bytes()).as_ref()))
     }
 
-    /// Returns the sign-in with this state, which this browser began.
+    /// Returns the sign-in with a state, which the browser must have begun.
     ///
     /// # Errors
+    ///
     /// When the state is unknown, used or too old, or comes from another browser.
     pub(in crate::domain) async fn pending_sign_in(
         &self,
@@ -82,19 +85,19 @@ impl App {
         refused: fn(&'static str) -> Problem,
     ) -> Result<PendingSignIn, Problem> {
         let key = self.signing_key().await?;
-        let (pending, shown) = read(&key, state).ok_or_else(|| refused(UNKNOWN))?;
+        let (pending, shown) = parse_state(&key, state).ok_or_else(|| refused(UNKNOWN_SIGN_IN))?;
         let statement = "SELECT 1 AS n WHERE CAST(? AS {int}) > {now}
             AND NOT EXISTS (SELECT 1 FROM platform_login WHERE state = ?)";
         let values = values![pending.expires_at, identity::digest(state)];
         let fresh = self.0.database.read().await?.row(statement, values).await?;
-        ensure(fresh.is_some(), refused(UNKNOWN))?;
+        ensure(fresh.is_some(), refused(UNKNOWN_SIGN_IN))?;
         let browser = browser.ok_or_else(|| refused("your browser did not send the cookie of this sign-in"))?;
-        // The sign-in began in another browser: its owner wants to sign this browser in as somebody else.
-        ensure(shown == identity::digest(browser), refused("this sign-in was begun in another browser"))?;
+        // The sign-in began in another browser, whose owner may try to sign this browser in as somebody else.
+        ensure(shown == identity::digest(browser), refused("this sign-in began in another browser"))?;
         Ok(pending)
     }
 
-    /// Returns the key by which the service recognizes what it signed: the same for all servers of a database.
+    /// Returns the key for the service's signatures, which all servers of a database share.
     async fn signing_key(&self) -> Result<hmac::Key, Problem> {
         let found = self.0.signing_key.get_or_try_init(async || {
             let mut transaction = self.0.database.begin().await?;
@@ -121,8 +124,8 @@ impl PendingSignIn {
     }
 }
 
-/// Reads signed words, with the digest of the browser's word among them.
-fn read(key: &hmac::Key, state: &str) -> Option<(PendingSignIn, String)> {
+/// Reads a signed state, and the digest of the browser's secret in it.
+fn parse_state(key: &hmac::Key, state: &str) -> Option<(PendingSignIn, String)> {
     let (words, tag) = state.rsplit_once('.')?;
     hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;
     let mut words = words.split('.');

@@ -1,5 +1,5 @@
-//! Signing in at an OpenID Connect provider. The account of each subject of the provider is kept. A mail address leads
-//! to an account only once: to one that a course's staff made, and that is nobody's own yet.
+//! Sign-in at an OpenID Connect provider. The account of each subject of the provider is stored. A mail address leads
+//! to an account only once: to one that a course's staff made and that nobody has used.
 use crate::{
     db::Transaction,
     domain::{
@@ -7,7 +7,7 @@ use crate::{
         accounts::{
             identity::{self, Way},
             newcomer::Newcomer,
-            pending::UNKNOWN,
+            pending::UNKNOWN_SIGN_IN,
         },
         view::{self, Entry},
     },
@@ -16,8 +16,8 @@ use crate::{
     values,
 };
 
-/// The name of the provider among the services that confirm sign-ins.
-const AT: &str = "provider";
+/// The provider's name among the services that confirm sign-ins.
+const PROVIDER_SERVICE: &str = "provider";
 
 impl From<ProviderFault> for Problem {
     fn from(fault: ProviderFault) -> Self {
@@ -33,29 +33,30 @@ impl App {
         self.provider.as_ref().ok_or_else(|| Problem::not_found("provider"))
     }
 
-    /// Returns the address to which the provider sends people back.
+    /// Returns the address to which the provider redirects people back.
     fn answer_address(&self) -> String {
         format!("{}/sign-in/provider/answer", self.public)
     }
 
-    /// Computes the words of a sign-in with this state.
+    /// Computes the secrets of a sign-in with a state.
     async fn compute_words(&self, state: &str) -> Result<SignInWords, Problem> {
         let (nonce, verifier) = (self.word_of("nonce", state).await?, self.word_of("verifier", state).await?);
         Ok(SignInWords { state: state.to_owned(), nonce, verifier })
     }
 }
 
-/// Returns the provider's issuer, as it is kept.
+/// Returns the provider's issuer in its stored form.
 fn issuer(provider: &Provider) -> String {
-    format!("{AT} {}", provider.issuer())
+    format!("{PROVIDER_SERVICE} {}", provider.issuer())
 }
 
 impl Visitor {
-    /// Begins a sign-in at the provider, which leads to a page afterwards. For a signed-in person it connects their
-    /// account.
+    /// Begins a sign-in at the provider, which leads to the page `to` afterwards. For a signed-in person it connects
+    /// their account.
     ///
     /// # Errors
-    /// When there is no provider, or it does not answer, or the person may not.
+    ///
+    /// When there is no provider, or it does not answer, or the person may not do so.
     pub async fn begin_at_provider(&self, to: &str, connects: Option<&Person>) -> Result<LoginAnswer, Problem> {
         let provider = self.app.known_provider()?;
         let account = match connects {
@@ -63,7 +64,7 @@ impl Visitor {
             None => 0,
         };
         let browser = (&self.secrets, self.secrets.provider.as_ref());
-        let begun = self.app.begin_sign_in(AT, browser, (account, to)).await?;
+        let begun = self.app.begin_sign_in(PROVIDER_SERVICE, browser, (account, to)).await?;
         let address = provider.address(&self.app.answer_address(), self.app.compute_words(&begun.state).await?).await?;
         Ok(LoginAnswer { address: address.into(), browser: begun.browser })
     }
@@ -76,7 +77,7 @@ impl Visitor {
         let (app, browser) = (&self.app, self.secrets.provider.as_ref());
         let provider = app.known_provider()?;
         let pending = app.pending_sign_in(state, browser, Problem::refused_sign_in).await?;
-        ensure(pending.at == AT, Problem::refused_sign_in(UNKNOWN))?;
+        ensure(pending.at == PROVIDER_SERVICE, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
         let person = provider.person(&app.answer_address(), code.to_owned(), app.compute_words(state).await?).await?;
         let connects = match pending.account {
             0 => None,
@@ -87,7 +88,7 @@ impl Visitor {
             }
         };
         let mut transaction = app.0.database.begin().await?;
-        ensure(pending.use_up(&mut transaction).await?, Problem::refused_sign_in(UNKNOWN))?;
+        ensure(pending.use_up(&mut transaction).await?, Problem::refused_sign_in(UNKNOWN_SIGN_IN))?;
         let account = match connects {
             Some(connects) => connect(&mut transaction, provider, &person, &connects).await?,
             None => account(&mut transaction, provider, &person).await?,
@@ -103,7 +104,7 @@ fn newcomer<'a>(issuer: &'a str, person: &'a ProviderPerson) -> Newcomer<'a> {
     Newcomer { issuer, subject: &person.subject, name, nickname }
 }
 
-/// Connects an account with the provider: it is the person's own from then on, and its earlier sessions end.
+/// Connects an account with the provider. The account becomes the person's own, and its earlier sessions end.
 async fn connect(
     transaction: &mut Transaction,
     provider: &Provider,
@@ -118,7 +119,7 @@ async fn connect(
     }
     identity::end_sessions(transaction, account).await?;
     identity::end_vouched(transaction, account).await?;
-    // They may have signed in there before, and got an account of their own.
+    // The person may have signed in there before, and have another account.
     let newcomer = newcomer(&issuer, person);
     let statement = "DELETE FROM platform_account WHERE issuer = ? AND subject = ?";
     transaction.execute(statement, values![&issuer, &person.subject]).await?;
@@ -132,14 +133,14 @@ async fn note(transaction: &mut Transaction, provider: &Provider, account: i64, 
     Ok(view::note(transaction, &Entry::new("account", account, &text)).await?)
 }
 
-/// Finds or makes the account of a person who signs in.
+/// Finds or creates the account of a person who signs in.
 async fn account(transaction: &mut Transaction, provider: &Provider, person: &ProviderPerson) -> Result<i64, Problem> {
     let issuer = issuer(provider);
     let newcomer = newcomer(&issuer, person);
     if newcomer.find(transaction).await?.is_none()
         && let Some(mailbox) = &person.mailbox
     {
-        // Staff made it for the owner of this address, and it is nobody's own yet.
+        // Staff made the account for the owner of this address, and nobody has used it yet.
         let statement = "SELECT id FROM account
             WHERE login = ? AND managed_by IS NOT NULL AND disabled_at IS NULL {for update}";
         if let Some(row) = transaction.row(statement, values![mailbox]).await? {
@@ -161,9 +162,10 @@ async fn account(transaction: &mut Transaction, provider: &Provider, person: &Pr
 }
 
 impl Person {
-    /// Returns whether they sign in at the provider.
+    /// Returns whether the account is connected to the provider.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn is_connected(&self) -> Result<bool, Problem> {
         let Some(provider) = &self.app.provider else { return Ok(false) };
@@ -172,10 +174,11 @@ impl Person {
         Ok(transaction.row(statement, values![self.account.id, issuer(provider)]).await?.is_some())
     }
 
-    /// Disconnects their account from the provider.
+    /// Disconnects the person's account from the provider.
     ///
     /// # Errors
-    /// When there is no provider, or they did not sign in lately.
+    ///
+    /// When there is no provider, or the person did not sign in recently.
     pub async fn disconnect(&self) -> Result<(), Problem> {
         let issuer = issuer(self.app.known_provider()?);
         self.lately_at_browser()?;

@@ -1,6 +1,6 @@
-//! Limits the requests of an account: each has a bucket of tokens that refills by itself. Requests count by account and
-//! not by address, because a whole lecture hall may share an address. Sign-ins count by address, because one address
-//! has many accounts.
+//! Limits the requests of an account by a bucket of tokens that refills over time. Requests count by account and not by
+//! address, because a whole lecture hall may share an address. Sign-ins count by address, because one address has many
+//! accounts.
 use std::{
     collections::HashMap,
     hash::{DefaultHasher, Hash, Hasher},
@@ -9,23 +9,23 @@ use std::{
     time::Instant,
 };
 
-/// With more buckets than this those that are full are thrown away.
-const MANY: usize = 10_000;
+/// The number of buckets above which full ones are dropped.
+const MAX_BUCKETS: usize = 10_000;
 
-/// The buckets.
+/// The token buckets of all accounts.
 #[derive(Debug, Default)]
 pub struct Throttle(Mutex<HashMap<i64, (f64, Instant)>>);
 
 impl Throttle {
-    /// Takes a token from an account's bucket, which holds at most one minute's tokens, and returns whether there was
-    /// one.
+    /// Takes a token from an account's bucket, which holds at most the tokens of one minute, and returns whether there
+    /// was one.
     pub(in crate::domain) fn pass(&self, account: i64, per_minute: u32, now: Instant) -> bool {
         let most = f64::from(per_minute);
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let level = |(level, at): (f64, Instant)| {
             (level + now.saturating_duration_since(at).as_secs_f64() * most / 60.0).min(most)
         };
-        if buckets.len() > MANY {
+        if buckets.len() > MAX_BUCKETS {
             buckets.retain(|_, bucket| level(*bucket) < most);
         }
         let bucket = buckets.entry(account).or_insert((most, now));
@@ -35,7 +35,7 @@ impl Throttle {
         passes
     }
 
-    /// Puts a token back, so that its use does not count.
+    /// Returns a token to the bucket, so that its use does not count.
     pub(in crate::domain) fn put_back(&self, account: i64) {
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((level, _)) = buckets.get_mut(&account) {
@@ -44,15 +44,16 @@ impl Throttle {
     }
 }
 
-/// Returns the bucket of an address for a purpose. A user of IPv6 has 2^64 addresses, so there the network counts.
-pub(in crate::domain) fn bucket(address: Option<IpAddr>, what: &str) -> i64 {
+/// Returns the bucket's number for an address and a purpose. A user of IPv6 has 2^64 addresses, so the network counts
+/// there.
+pub(in crate::domain) fn bucket_id(address: Option<IpAddr>, what: &str) -> i64 {
     let network = address.map(|address| match address.to_canonical() {
         IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),
         address @ IpAddr::V4(_) => address,
     });
     let mut hasher = DefaultHasher::new();
     (network, what).hash(&mut hasher);
-    // Accounts have numbers above zero.
+    // Accounts have positive numbers.
     -hasher.finish().cast_signed().saturating_abs()
 }
 

@@ -1,5 +1,5 @@
-//! Turns to have an archive examined, which may use a processor for seconds. An account has one turn at a time, and the
-//! account that used least lately goes first: no account waits for another's bad uploads.
+//! Turns for checking archives, which may occupy a processor for seconds. An account has one turn at a time, and the
+//! account with the least recent use goes first, so that no account waits for another's bad uploads.
 use crate::problem::Problem;
 use std::{
     collections::{BTreeMap, HashMap},
@@ -8,19 +8,19 @@ use std::{
 };
 use tokio::sync::Notify;
 
-/// The number of archives that are examined at one time: each may need some 100 MiB, and all of a processor.
-const AT_ONE_TIME: usize = 2;
+/// The number of archives that are checked in parallel; each may need about 100 MiB, and a whole processor.
+const MAX_RUNNING: usize = 2;
 
-/// The longest wait for a turn.
-const PATIENCE: Duration = Duration::from_secs(60);
+/// The maximum wait for a turn.
+const WAIT_LIMIT: Duration = Duration::from_secs(60);
 
-/// The time that an account took counts half after this many seconds.
+/// The number of seconds after which used time counts half.
 const HALF_LIFE: f64 = 60.0;
 
-/// With more accounts than this those that took nothing lately are forgotten.
-const MANY: usize = 10_000;
+/// The number of accounts above which those without recent use are dropped.
+const MAX_ACCOUNTS: usize = 10_000;
 
-/// All turns.
+/// The turns of all accounts.
 #[derive(Debug, Default, Clone)]
 pub(in crate::domain) struct Turns(Arc<TurnParts>);
 
@@ -32,16 +32,16 @@ struct TurnParts {
 
 #[derive(Debug, Default)]
 struct TurnState {
-    /// Accounts that have their turn.
+    /// The accounts that have a turn.
     running: Vec<i64>,
     /// Waiting accounts, by the number of their ticket.
     waiting: BTreeMap<u64, i64>,
     next: u64,
-    /// The seconds that accounts took, and when that was counted.
+    /// The seconds that each account used, with the time of the last update.
     taken: HashMap<i64, (f64, Instant)>,
 }
 
-/// A turn, or a place in the queue, until it is dropped.
+/// A turn, or a position in the queue, until it is dropped.
 #[derive(Debug)]
 pub struct ArchiveTurn {
     turns: Turns,
@@ -56,12 +56,12 @@ impl TurnState {
         seconds * 0.5_f64.powf(now.saturating_duration_since(*at).as_secs_f64() / HALF_LIFE)
     }
 
-    /// Returns the ticket that is next, if a turn is free.
+    /// Returns the next ticket, if a turn is free.
     fn first(&self, now: Instant) -> Option<u64> {
         let able = self.waiting.iter().filter(|(_, account)| !self.running.contains(account));
         let rank = |(ticket, account): &(&u64, &i64)| (self.used_seconds(**account, now), **ticket);
         let first = able.min_by(|one, other| rank(one).partial_cmp(&rank(other)).unwrap_or(std::cmp::Ordering::Equal));
-        first.map(|(ticket, _)| *ticket).filter(|_| self.running.len() < AT_ONE_TIME)
+        first.map(|(ticket, _)| *ticket).filter(|_| self.running.len() < MAX_RUNNING)
     }
 }
 
@@ -80,11 +80,11 @@ impl Turns {
             ticket
         };
         let mut turn = ArchiveTurn { turns: self.clone(), account, ticket, began: None };
-        let until = tokio::time::Instant::now() + PATIENCE;
+        let until = tokio::time::Instant::now() + WAIT_LIMIT;
         loop {
             let changed = self.0.changed.notified();
             tokio::pin!(changed);
-            // From here on nothing is missed.
+            // No notification is missed after this.
             changed.as_mut().enable();
             {
                 let mut state = self.state();
@@ -93,7 +93,7 @@ impl Turns {
                     state.running.push(account);
                     turn.began = Some(Instant::now());
                     drop(state);
-                    // Another one may have a place, too.
+                    // Another account may now be next.
                     self.0.changed.notify_waiters();
                     return Ok(turn);
                 }
@@ -113,7 +113,7 @@ impl Drop for ArchiveTurn {
         if let Some(began) = self.began {
             let place = state.running.iter().position(|account| *account == self.account);
             place.map(|place| state.running.swap_remove(place));
-            if state.taken.len() > MANY {
+            if state.taken.len() > MAX_ACCOUNTS {
                 state.taken.retain(|_, (_, at)| now.saturating_duration_since(*at).as_secs_f64() < 10.0 * HALF_LIFE);
             }
             let seconds = state.used_seconds(self.account, now) + now.saturating_duration_since(began).as_secs_f64();

@@ -17,66 +17,65 @@ use utoipa::{
     openapi::{KnownFormat, ObjectBuilder, OneOfBuilder, Schema, SchemaFormat, Type},
 };
 
-/// The rules by which an assignment is graded, and what may be handed in.
+/// The rules for grading an assignment, and for uploads to it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// A suite that comes with the grader, such as `t2m2`; its default, if none is named. An uploaded suite has
-    /// precedence.
+    /// A suite of the grader, such as `t2m2`; the grader's default if none is named. An uploaded suite has precedence.
     #[schema(pattern = "^([A-Za-z0-9_][A-Za-z0-9._-]*(@[A-Za-z0-9_][A-Za-z0-9._-]*)?)?$", max_length = 100)]
     pub suite: String,
-    /// The digest of an archive with a `suite.toml`; uploaded by its own request.
+    /// The digest of an archive with a `suite.toml`, which is uploaded by a separate request.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<crate::schema::Digest>)]
     pub suite_archive: Option<String>,
-    /// The rule books: `parity`, `fair` or `both`; without it the suite decides.
+    /// The rule books: `parity`, `fair` or `both`; null for the suite's choice.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(pattern = "^(parity|fair|both)$")]
     pub rules: Option<String>,
-    /// The detail that reports show: `none`, `where`, `what` or `full`; without it the suite decides.
+    /// The level of detail in reports: `none`, `where`, `what` or `full`; null for the suite's choice.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(pattern = "^(none|where|what|full)$")]
     pub hints: Option<String>,
-    /// The forms of submissions that are taken: `program`, `sources`, `traces`.
+    /// The accepted forms of submissions: `program`, `sources`, `traces`.
     #[schema(value_type = Vec<Form>, min_items = 1)]
     pub forms: Vec<String>,
-    /// The program's name in a folder of sources.
+    /// The name of the program in a folder of sources.
     #[schema(value_type = crate::schema::FileName)]
     pub program: String,
-    /// The seconds after which a grading is stopped; its results so far count. At most an hour.
+    /// The number of seconds after which a grading is stopped; its results so far count. At most an hour.
     #[schema(minimum = 1, maximum = 3600)]
     pub seconds: u64,
-    /// The largest upload, in bytes. At most a gigabyte.
+    /// The maximum size of an upload, in bytes. At most a gigabyte.
     #[schema(minimum = 1, maximum = 1_073_741_824)]
     pub max_bytes: u64,
-    /// Submissions per student in all; 0 for as many as they like.
+    /// The maximum number of submissions per student; 0 for any number.
     #[schema(maximum = 4_294_967_295_i64)]
     pub attempts: u32,
-    /// Submissions per student within an hour; 0 for as many as they like.
+    /// The maximum number of submissions per student within an hour; 0 for any number.
     #[schema(maximum = 4_294_967_295_i64)]
     pub per_hour: u32,
-    /// No uploads of students after this moment, or `late_days` later: milliseconds since 1970, or a date with its time
-    /// zone (ISO 8601).
+    /// The due date, in milliseconds since 1970, or as a date with its time zone (ISO 8601). Students cannot submit
+    /// later than `late_days` after it.
     #[serde(skip_serializing_if = "Option::is_none", deserialize_with = "moment")]
     #[schema(schema_with = moment_schema)]
     pub due_at: Option<i64>,
-    /// The days after the due date in which uploads are still accepted, with a deduction.
+    /// The number of days after the due date in which uploads are still accepted, with a deduction.
     #[schema(maximum = 365)]
     pub late_days: u32,
-    /// The percentage of the grader's points that a submission loses for each day begun after it was due.
+    /// The percentage of the grader's points that a submission loses for each started day after the due date.
     #[schema(maximum = 100)]
     pub late_percent: u32,
-    /// The time zone by whose calendar late days end, such as `Europe/Berlin`; without it each has 24 hours.
+    /// The time zone whose calendar ends late days, such as `Europe/Berlin`; null for days of 24 hours.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(schema_with = zone_schema)]
     pub time_zone: Option<Tz>,
 }
 
-/// Settings that always have a value.
-const ALWAYS: [&str; 9] =
+/// The settings that always have a value.
+const REQUIRED_SETTINGS: [&str; 9] =
     ["suite", "forms", "program", "seconds", "max_bytes", "attempts", "per_hour", "late_days", "late_percent"];
 
-/// Reads a moment: a number, or a date.
+/// Reads a time, as a number or a date.
 pub(crate) fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged, expecting = "milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00")]
@@ -100,8 +99,8 @@ pub(crate) fn moment_schema() -> Schema {
     let date = SchemaFormat::KnownFormat(KnownFormat::DateTime);
     let date =
         ObjectBuilder::new().schema_type(Type::String).format(Some(date)).pattern(Some("^(199|2[0-9]{2})[0-9]-"));
-    let words = "No uploads of students after this moment: milliseconds since 1970, or a date with its time zone.";
-    let [early, late] = calendar::PLAUSIBLE;
+    let words = "The due date of students, in milliseconds since 1970, or as a date with its time zone.";
+    let [early, late] = calendar::MILLISECOND_RANGES;
     let null = ObjectBuilder::new().schema_type(Type::Null);
     OneOfBuilder::new().item(number(early)).item(number(late)).item(date).item(null).description(Some(words)).into()
 }
@@ -135,16 +134,17 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Reads settings as the database has them.
+    /// Reads settings in the database's form.
     ///
     /// # Errors
+    ///
     /// When another version of the program wrote them.
     pub(in crate::domain) fn read(text: &str) -> Result<Self, DbError> {
         let wrong = |error| DbError::Other(format!("the settings of an assignment can't be read: {error}"));
         serde_json::from_str(text).map_err(wrong)
     }
 
-    /// Returns the settings that are others than before, in words.
+    /// Returns the settings that differ from earlier ones, as text.
     pub(in crate::domain) fn changes(&self, before: &Self) -> String {
         let fields = |settings: &Self| match serde_json::to_value(settings) {
             Ok(Value::Object(fields)) => fields,
@@ -163,19 +163,20 @@ impl Settings {
         names.into_iter().filter(|name| new.get(*name) != old.get(*name)).map(words).collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns the settings with other fields; fields that are null are removed.
+    /// Returns the settings with changed fields; fields that are null are removed.
     ///
     /// # Errors
-    /// When a field is unknown, or of another kind.
+    ///
+    /// When a field is unknown, or has the wrong type.
     pub fn with(&self, changes: &Map<String, Value>) -> Result<Self, Problem> {
         let Ok(Value::Object(mut fields)) = serde_json::to_value(self) else { return Err(Problem::fault()) };
-        // A suite that is named is meant, and no other.
+        // A named suite replaces an uploaded one.
         if changes.contains_key("suite") {
             fields.remove("suite_archive");
         }
         for (name, value) in changes {
             match value {
-                Value::Null if ALWAYS.contains(&name.as_str()) => {
+                Value::Null if REQUIRED_SETTINGS.contains(&name.as_str()) => {
                     return Err(Problem::invalid(format!("{name} must not be null")));
                 }
                 Value::Null => drop(fields.remove(name)),
@@ -185,21 +186,22 @@ impl Settings {
         serde_json::from_value(Value::Object(fields)).map_err(|error| Problem::invalid(error.to_string()))
     }
 
-    /// Returns the settings, graded as by others.
+    /// Returns the settings, with the rules for grading from others.
     pub(in crate::domain) fn graded_as(&self, other: &Self) -> Self {
         let Self { suite, suite_archive, rules, hints, program, seconds, .. } = other.clone();
         Self { suite, suite_archive, rules, hints, program, seconds, ..self.clone() }
     }
 
-    /// Returns the settings as the database keeps them.
+    /// Returns the settings in the database's form.
     pub fn text(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Returns the settings with the suite's name filled in, where they make sense.
+    /// Returns the settings with the suite's full name, if they are valid.
     ///
     /// # Errors
-    /// The first setting that makes no sense.
+    ///
+    /// The first invalid setting.
     pub fn validate(&self, suites: &Suites) -> Result<Self, Problem> {
         let settings = Self { suite: suites.or_default(&self.suite), ..self.clone() };
         settings.check(suites)?;
@@ -220,7 +222,7 @@ impl Settings {
             archive.parse::<Digest>().map_err(|error| Problem::invalid(format!("suite_archive: {error}")))?;
         }
         if self.forms.is_empty() || self.forms.iter().any(|form| Form::from_name(form).is_none()) {
-            return Err(Problem::invalid("choose what may be handed in (forms): program, sources or traces"));
+            return Err(Problem::invalid("choose the accepted forms (forms): program, sources or traces"));
         }
         ensure(
             is_file_name(&self.program),
@@ -248,24 +250,24 @@ impl Settings {
         Ok(())
     }
 
-    /// Returns the part about being late.
+    /// Returns the settings for late submissions.
     pub(crate) fn late_policy(&self) -> LatePolicy {
         let Self { due_at, late_days, late_percent, time_zone, .. } = *self;
         LatePolicy { due_at, late_days, late_percent, time_zone }
     }
 
-    /// Returns whether a form of this name may be handed in.
+    /// Returns whether the form with this name is accepted.
     pub fn has_form(&self, form: &str) -> bool {
         self.forms.iter().any(|name| name == form)
     }
 
-    /// Returns the forms that are taken, in words.
+    /// Returns the accepted forms as text.
     pub fn describe_forms(&self) -> String {
         let taken = Form::ALL.into_iter().filter(|form| self.takes(*form));
         taken.map(Form::describe).collect::<Vec<_>>().join(" or ")
     }
 
-    /// Returns whether this may be handed in.
+    /// Returns whether the form is accepted.
     pub fn takes(&self, form: Form) -> bool {
         self.has_form(form.name())
     }

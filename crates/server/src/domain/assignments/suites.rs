@@ -1,16 +1,16 @@
-//! The suites that come with the grader, by name. The grader lists them itself (`suite list --format json`), so that
-//! this program need not know them.
+//! The suites of the grader, by name. The grader lists them itself (`suite list --format json`), so that this program
+//! is independent of them.
 use crate::problem::Problem;
 use serde::Deserialize;
 
-/// The names of these suites. A server whose workers are elsewhere may have no grader; then it accepts any plain name,
-/// and the worker's grader reports whether it has such a suite.
+/// The names of the grader's suites. A server whose workers are elsewhere may have no grader. It accepts any plain name
+/// then, and the worker's grader reports whether it has such a suite.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Suites {
     names: Vec<String>,
     /// The titles of the suites, in the same order.
     titles: Vec<String>,
-    /// Names without a version, each with the newest version's name.
+    /// The names without a version, each with the name of the newest version.
     newest: Vec<(String, String)>,
     default: String,
 }
@@ -23,7 +23,7 @@ struct ListedSuites {
 #[derive(Deserialize)]
 struct Entry {
     name: String,
-    /// The name without its version.
+    /// The suite's name without its version.
     #[serde(default)]
     suite: String,
     #[serde(default)]
@@ -31,7 +31,7 @@ struct Entry {
     default: bool,
 }
 
-/// Returns whether a name is one file in a folder on every system, and is unambiguous in every message.
+/// Returns whether a name is a single file name on every system, and is unambiguous in every message.
 pub fn is_file_name(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     (1..=100).contains(&name.len()) && name.chars().all(plain) && !name.starts_with(['.', '-'])
@@ -41,7 +41,8 @@ impl Suites {
     /// Reads the grader's list.
     ///
     /// # Errors
-    /// When it is none.
+    ///
+    /// When the JSON is not such a list.
     pub fn read(json: &[u8]) -> Result<Self, serde_json::Error> {
         let list: ListedSuites = serde_json::from_slice(json)?;
         let default = list.suites.iter().find(|suite| suite.default).map(|suite| suite.name.clone());
@@ -56,9 +57,9 @@ impl Suites {
         Ok(Self { names, titles, newest, default: default.unwrap_or_default() })
     }
 
-    /// Returns the name for settings. Without a name it is the grader's default; without a version it gets the newest
-    /// one, so that later versions of the grader change nothing. If the grader can't be called here, the name stays,
-    /// and the grader chooses.
+    /// Returns the suite's name for settings. An empty name becomes the grader's default, and a name without a version
+    /// gets the newest version, so that later versions of the grader change nothing. If the grader can't be called, the
+    /// name stays, and the grader chooses.
     pub(in crate::domain) fn or_default(&self, name: &str) -> String {
         let newest = self.newest.iter().find(|(suite, _)| suite == name);
         match newest {
@@ -68,7 +69,7 @@ impl Suites {
         }
     }
 
-    /// Checks that there is such a suite.
+    /// Checks that a suite exists.
     pub(in crate::domain) fn check(&self, name: &str) -> Result<(), Problem> {
         // The version follows an `@`.
         let is_name = name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name);
@@ -79,12 +80,12 @@ impl Suites {
         }
     }
 
-    /// Returns the suites' names and titles; none if the grader can't be called.
+    /// Returns the suites' names and titles; empty if the grader can't be called.
     pub fn titles(&self) -> impl Iterator<Item = (&str, &str)> {
         self.names.iter().zip(&self.titles).map(|(name, title)| (name.as_str(), title.as_str()))
     }
 
-    /// Returns which names there are, in words.
+    /// Returns the existing names, as text.
     pub fn describe(&self) -> String {
         match self.names.as_slice() {
             [] => "a name that `fosssim-oracle suite list` shows".to_owned(),

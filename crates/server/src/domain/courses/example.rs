@@ -1,4 +1,4 @@
-//! A course to try the service with: created on a fresh server on request.
+//! The example course for trying the service, created on a new server on request.
 use crate::domain::{
     App, NewSecret, Settings,
     accounts::identity::{self, Way},
@@ -6,17 +6,18 @@ use crate::domain::{
 };
 use crate::{problem::Problem, values};
 
-/// The course that is made; an existing course of this name is taken for it.
+/// The name and title of the course. An existing course with this name counts as the example.
 const COURSE: (&str, &str) = ("example", "Example course");
 const ASSIGNMENT: (&str, &str) = ("m1", "Theme 2, Milestone 2: continuous-time collisions");
 const STUDENT: (&str, &str) = ("student", "A student");
 
 impl App {
-    /// Makes the example course, with an assignment and a student, if there is no course yet. Returns a link that signs
-    /// the student in once, unless the example was made before.
+    /// Creates the example course, with an assignment and a student, if there is no course yet. Returns a link that
+    /// signs the student in once, unless the example was created before.
     ///
     /// # Errors
-    /// When there are other courses, or somebody else is called `student`: the server is in real use.
+    ///
+    /// When there are other courses, or another account is called `student`, because the server is in real use.
     pub async fn example(&self) -> Result<Option<NewSecret>, Problem> {
         let mut transaction = self.0.database.begin().await?;
         let statement = "SELECT count(*) AS courses, count(CASE WHEN slug = ? THEN 1 END) AS examples FROM course";
@@ -34,7 +35,7 @@ impl App {
                 ON CONFLICT (login) DO NOTHING RETURNING id";
             let made = transaction.row(statement, values![STUDENT.0, STUDENT.1, course]).await?;
             let Some(student) = made else {
-                return Err(Problem::conflict("an account is called student already", "start it without --example"));
+                return Err(Problem::conflict("an account `student` already exists", "start it without --example"));
             };
             let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, 'student', {now})";
             transaction.execute(statement, values![course, student.int("id")?]).await?;

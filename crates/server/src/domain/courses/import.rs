@@ -1,14 +1,14 @@
-//! A whole class by a table: name, login, e-mail address and role of each, as spreadsheets write it (CSV).
+//! Imports a class from a table (CSV), as spreadsheets write it: name, login, e-mail address and role of each member.
 use crate::domain::{Staff, courses::members::check_member};
 use crate::problem::Problem;
 use serde::Serialize;
 use std::collections::BTreeSet;
 use utoipa::ToSchema;
 
-/// The longest list.
-const MOST: usize = 5000;
+/// The maximum number of lines.
+const MAX_LINES: usize = 5000;
 
-/// The columns, in their order where the first line does not name them, each with how else it is called.
+/// The columns, in their default order, each with its other names.
 const COLUMNS: [&[&str]; 4] = [
     &["name", "fullname"],
     &["login", "username", "loginname", "userid"],
@@ -16,30 +16,30 @@ const COLUMNS: [&[&str]; 4] = [
     &["role"],
 ];
 
-/// A line of a table of members, and what became of it.
+/// A line of a table of members, and the result of its import.
 #[derive(Serialize, ToSchema)]
 pub struct MemberLine {
     pub(crate) line: u64,
     pub(crate) name: String,
     pub(crate) login: String,
-    // The address for the link; not kept.
+    // The address for the link, which is not stored.
     pub(crate) email: String,
     pub(crate) role: String,
-    /// The columns of the table that have something in this line, and of which nothing is kept.
+    /// The columns of the table with a value in this line that is not stored.
     pub(crate) unused: Vec<String>,
-    /// The error in the line; then nothing was done about any.
+    /// The error in the line; any error stops the whole import.
     pub(crate) error: Option<String>,
     /// A link that signs in once; `None` if the account existed.
     pub(crate) link: Option<String>,
 }
 
-/// Returns which column a heading names: "E-mail address" is "email".
+/// Returns the column that a heading names: "E-mail address" is "email".
 fn column(heading: &str) -> Option<usize> {
     let plain: String = heading.to_lowercase().chars().filter(|c| c.is_alphanumeric()).collect();
     COLUMNS.iter().position(|names| names.contains(&plain.as_str()))
 }
 
-/// Returns the places of the columns, by the headings of the first line; `None` if the line has no headings.
+/// Returns the positions of the columns, from the headings in the first line; `None` if it has no headings.
 fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     if words.iter().all(|word| column(word).is_none()) {
         return Ok(None);
@@ -47,7 +47,7 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     let mut places = [None; COLUMNS.len()];
     for (place, word) in words.iter().enumerate().filter(|(_, word)| !word.is_empty()) {
         if column(word).is_some_and(|column| places[column].replace(place).is_some()) {
-            return Err(Problem::invalid(format!("the column {word} is there twice")));
+            return Err(Problem::invalid(format!("the column {word} occurs twice")));
         }
     }
     match places[1] {
@@ -56,13 +56,13 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     }
 }
 
-/// Reads a table; each line comes with its faults.
+/// Reads a table; each line has its errors.
 fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
     let first = text.lines().next().unwrap_or_default();
     if first.trim_start().starts_with(['{', '[']) {
         return Err(Problem::invalid("this is JSON, not a table"));
     }
-    // Spreadsheets of other countries separate by something else.
+    // Spreadsheets of other countries use other separators.
     let delimiter = *b";\t,".iter().max_by_key(|c| first.bytes().filter(|byte| byte == *c).count()).unwrap_or(&b',');
     let mut reader = csv::ReaderBuilder::new()
         .delimiter(delimiter)
@@ -91,7 +91,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         let unused: Option<Vec<String>> =
             beside.map(|(place, _)| named.get(place).filter(|name| !name.is_empty()).cloned()).collect();
         let field = |column: usize| places[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
-        // A reader of tables takes the second byte of a line's end for the next line's.
+        // The CSV reader counts the second byte of a line end as part of the next line.
         let at = record.position().map_or(0, |position| usize::try_from(position.byte()).unwrap_or(0));
         let ends = |bytes: &[u8]| bytes.iter().filter(|byte| **byte == b'\n').count() as u64;
         counted = (at, counted.1 + ends(text.as_bytes().get(counted.0..at).unwrap_or_default()));
@@ -103,9 +103,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         let error = match checked {
             Err(problem) => Some(problem.detail),
             Ok(()) if !logins.insert(login.clone()) => Some("this login is in the table twice".to_owned()),
-            Ok(()) if unused.is_none() => {
-                Some("there is more in this line than name, login, email and role".to_owned())
-            }
+            Ok(()) if unused.is_none() => Some("this line has more fields than name, login, email and role".to_owned()),
             Ok(()) => None,
         };
         lines.push(MemberLine {
@@ -118,25 +116,26 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             error,
             link: None,
         });
-        if lines.len() > MOST {
-            return Err(Problem::invalid(format!("a table has at most {MOST} lines")));
+        if lines.len() > MAX_LINES {
+            return Err(Problem::invalid(format!("a table has at most {MAX_LINES} lines")));
         }
     }
     if lines.is_empty() { Err(Problem::invalid("the table has no lines: name, login, email, role")) } else { Ok(lines) }
 }
 
 impl Staff {
-    /// Makes all members of a table, if no line has a fault; with `preview` only reads it.
+    /// Adds all members of a table, if no line has an error; with `preview`, only reads the table.
     ///
     /// # Errors
-    /// When it is no table, or one of its members was changed since the event `seen`.
+    ///
+    /// When it is not a table, or one of its members was changed after the event `seen`.
     pub async fn import(&self, text: &str, preview: bool, seen: Option<i64>) -> Result<Vec<MemberLine>, Problem> {
         let mut lines = read(text)?;
         if preview || lines.iter().any(|line| line.error.is_some()) {
             return Ok(lines);
         }
         let mut transaction = self.begin().await?;
-        // The order does not depend on the table's, so that two simultaneous imports do not wait for each other.
+        // The order does not depend on the table's, so that two simultaneous imports cannot deadlock.
         let mut in_order: Vec<&mut MemberLine> = lines.iter_mut().collect();
         in_order.sort_by(|one, other| one.login.cmp(&other.login));
         for line in in_order {

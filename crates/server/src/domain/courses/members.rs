@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 /// A member of a course.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct MemberInfo {
-    /// The name of their account.
+    /// The login of the member's account.
     pub login: String,
     /// The member's name.
     pub name: String,
@@ -22,12 +22,12 @@ pub struct MemberInfo {
     pub role: String,
 }
 
-/// People on a page.
-pub(in crate::domain) const PEOPLE: i64 = 200;
+/// The number of people on a page.
+pub(in crate::domain) const PEOPLE_PER_PAGE: i64 = 200;
 
 from_row! { MemberInfo { login, name, role } }
 
-/// Checks that these are names and a role.
+/// Checks a member's names and role.
 pub(in crate::domain) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Problem> {
     identity::check_slug("a login", login)?;
     identity::check_title("a name", name)?;
@@ -46,11 +46,12 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Makes a person a member, or changes their role. It creates a missing account, with a link that signs in once.
-    /// Only an administrator may add an account that another course's staff made, since that staff can sign in as it.
+    /// Makes a person a member, or changes their role. A missing account is created, with a link that signs in once.
+    /// Only an administrator may add an account that another course's staff made, because that staff can sign in as it.
     ///
     /// # Errors
-    /// When a name is not valid, or the member was changed since the event `seen`.
+    ///
+    /// When a name is invalid, or the member was changed after the event `seen`.
     pub async fn set_member(&self, login: &str, name: &str, role: &str, seen: Option<i64>) -> Result<Link, Problem> {
         check_member(login, name, role)?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -60,9 +61,10 @@ impl Staff {
         Ok(Link { link })
     }
 
-    /// Returns the number of the course's last event: a reader of the members now has seen all up to it.
+    /// Returns the number of the course's newest event, to detect changes made after the members were read.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn last_event(&self) -> Result<i64, Problem> {
         let mut transaction = self.app.0.database.read().await?;
@@ -70,8 +72,9 @@ impl Staff {
         Ok(transaction.one(statement, values![self.course]).await?.int("id")?)
     }
 
-    /// Rejects a change of what another person changed since the event `seen`, and names the person and the change. It
-    /// looks for a later event of this kind, of an assignment or of none, whose text begins with these words.
+    /// Rejects a change if another person has changed the same thing after the event `seen`; the error names the person
+    /// and the change. The check looks for a later event of a kind, of an assignment or of none, whose text begins with
+    /// given words.
     pub(in crate::domain) async fn check_seen(
         &self,
         transaction: &mut Transaction,
@@ -122,7 +125,7 @@ impl Staff {
         let is_of_others = managed_by.is_some_and(|other| other != course);
         let is_admin = self.account.is_admin;
         if is_of_others && !is_admin {
-            let detail = format!("{login} is an account of another course: an administrator adds it");
+            let detail = format!("{login} is an account of another course; ask an administrator to add it");
             return Err(Problem::not_allowed(detail));
         }
         let ends_all = is_admin && role == "staff" && !identity::is_trusted(transaction, account).await?;
@@ -138,7 +141,7 @@ impl Staff {
         }
     }
 
-    /// Checks that the course keeps a member of staff when this member gets another role.
+    /// Checks that the course keeps a member of staff if this member gets another role.
     async fn check_left(&self, transaction: &mut Transaction, login: &str, role: &str) -> Result<(), Problem> {
         let statement = "SELECT count(*) AS n FROM member WHERE course = ? AND role = 'staff' AND account <> ?";
         let goes = login == self.account.login && role != "staff" && !self.account.is_admin;
@@ -148,12 +151,12 @@ impl Staff {
         Ok(())
     }
 
-    /// Returns the way in which a user of this person's link signs in.
+    /// Returns the sign-in method for links that this person makes.
     fn way(&self) -> Way {
         if self.account.is_admin { Way::Own } else { Way::Vouched }
     }
 
-    /// Makes a link that signs a person in once.
+    /// Creates a link that signs a person in once.
     async fn link(&self, transaction: &mut Transaction, account: i64, way: Way) -> Result<Option<String>, DbError> {
         let secret = identity::new_link(transaction, account, Some(self.account.id), way).await?;
         Ok(Some(self.app.welcome_address(&secret)))
@@ -166,10 +169,11 @@ impl Staff {
         self.note(transaction, "member", None, &format!("{login} is {role}")).await
     }
 
-    /// Takes a person out of the course; what they handed in stays.
+    /// Removes a person from the course; their submissions stay.
     ///
     /// # Errors
-    /// When the person is no member, or was changed since the event `seen`.
+    ///
+    /// When the person is not a member, or was changed after the event `seen`.
     pub async fn remove_member(&self, login: &str, seen: Option<i64>) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         self.check_seen(&mut transaction, ("member", None), &format!("{login} is "), seen).await?;
@@ -181,12 +185,13 @@ impl Staff {
         Ok(transaction.commit().await?)
     }
 
-    /// Returns a new link that signs a student in once. Staff makes it only for accounts that belong to this course
-    /// alone: made here, in no other course, without a provider or a platform of their own. A person who signs in as
-    /// another could do all that this other person may do.
+    /// Returns a new link that signs a student in once. Staff can create it only for accounts that belong to this
+    /// course alone: made here, in no other course, and without a provider or a platform. Otherwise staff could act as
+    /// a person with rights elsewhere.
     ///
     /// # Errors
-    /// When the account is more than that, or no member.
+    ///
+    /// When the account does not belong to this course alone, or is not a member.
     pub async fn new_link(&self, login: &str) -> Result<Link, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT account.id, account.is_admin, account.managed_by, member.role
@@ -196,8 +201,8 @@ impl Staff {
         let Some(row) = row else { return Err(Problem::not_found("member")) };
         let is_ours = row.maybe_int("managed_by")? == Some(self.course) && row.text("role")? == "student";
         if row.flag("is_admin")? || !(is_ours || self.account.is_admin) {
-            let detail = "this account is the person's own: it is more than a student of this course, or signs in \
-                at a provider";
+            let detail = "this account is not only a student of this course: it has other rights, or signs in at a \
+                provider";
             return Err(Problem::not_allowed(detail));
         }
         let link = self.link(&mut transaction, row.int("id")?, self.way()).await?;

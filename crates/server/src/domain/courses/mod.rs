@@ -1,4 +1,4 @@
-//! Courses and the people in them.
+//! Courses and their members.
 
 pub(super) mod example;
 pub(super) mod import;

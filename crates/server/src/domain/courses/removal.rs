@@ -1,6 +1,6 @@
 //! Removes people, submissions, assignments and courses with all their data. The audit log records the removal without
-//! names. Bytes in the store are removed once nothing names them, see [`retention`](crate::retention). A job that runs
-//! meanwhile loses its lease, and ends without effect.
+//! names. Bytes in the store are removed after the last reference to them, see [`retention`](crate::retention). A job
+//! that runs at the same time loses its lease, and ends without effect.
 use crate::domain::{Admin, Staff};
 use crate::{
     db::{Database, DbError, Transaction},
@@ -9,8 +9,8 @@ use crate::{
     values,
 };
 
-/// The rows that are kept of submissions, in the order in which they go.
-const PARTS: [&str; 10] = [
+/// The tables with rows of submissions, in the order of removal.
+const TABLES: [&str; 10] = [
     "DELETE FROM result_file WHERE result IN (SELECT result.id FROM result JOIN {each}
         ON result.submission = CAST(wanted.value AS {int}))",
     "DELETE FROM mark WHERE submission IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
@@ -25,7 +25,7 @@ const PARTS: [&str; 10] = [
     "DELETE FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
 ];
 
-/// The first of them: others write between two batches.
+/// Some submissions of an assignment. They are removed in batches, so that other transactions can write in between.
 const SOME_OF_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ? ORDER BY id LIMIT 500";
 const SOME_OF_COURSE: &str =
     "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)
@@ -36,8 +36,8 @@ const OF_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ?";
 const OF_COURSE: &str = "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)";
 const OF_PERSON: &str = "SELECT id FROM submission WHERE account = ?";
 
-/// Takes the jobs of submissions, which a statement finds, out of the queue; the submissions' numbers as JSON. What is
-/// finished in this moment is waited for: its result is there then, to be removed.
+/// Removes the jobs of the submissions that a statement selects, after waiting for jobs that are just finishing;
+/// returns the submissions' numbers as JSON.
 async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<String, DbError> {
     let rows = transaction.rows(which, values![value]).await?;
     let ids = rows.iter().map(|row| row.int("id")).collect::<Result<Vec<_>, _>>()?;
@@ -50,19 +50,21 @@ async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: 
     Ok(ids)
 }
 
-/// Removes the data of submissions that a statement finds. It waits for others that write about one of them.
+/// Removes the data of the submissions that a statement selects. It waits for other transactions that write about one
+/// of them.
 async fn remove_submissions(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<(), DbError> {
     let ids = cancel_jobs(transaction, which, value).await?;
     let locked = "SELECT id FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})
                   ORDER BY id {for removal}";
     transaction.rows(locked, values![&ids]).await?;
-    for statement in PARTS {
+    for statement in TABLES {
         transaction.execute(statement, values![&ids]).await?;
     }
     Ok(())
 }
 
-/// Removes submissions batch by batch, until a statement finds no more; the caller removes those that arrive meanwhile.
+/// Removes submissions batch by batch, until a statement selects no more. The caller removes those that arrive in the
+/// meantime.
 async fn remove_in_batches(database: &Database, which: &'static str, value: i64) -> Result<(), DbError> {
     loop {
         let mut transaction = database.begin().await?;
@@ -85,7 +87,8 @@ impl Staff {
     /// Removes a submission.
     ///
     /// # Errors
-    /// When the course has none of this number.
+    ///
+    /// When the course has no submission with this number.
     pub async fn remove_submission(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.begin().await?;
         let statement = "SELECT assignment.id FROM submission JOIN assignment ON assignment.id = submission.assignment
@@ -107,7 +110,7 @@ impl Staff {
         remove_in_batches(&self.app.0.database, SOME_OF_ASSIGNMENT, assignment.id).await?;
         let mut transaction = self.begin().await?;
         cancel_jobs(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
-        // From here on no uploads are accepted.
+        // No uploads are accepted after this.
         transaction.rows("SELECT id FROM assignment WHERE id = ? {for removal}", values![assignment.id]).await?;
         remove_submissions(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
         let rest = [
@@ -168,10 +171,11 @@ impl Admin {
     }
 
     /// Removes a person: their submissions with the results, their names, and every way to sign in. Their actions as
-    /// staff stay without a name.
+    /// staff stay in the log, without a name.
     ///
     /// # Errors
-    /// When there is no such account, or it is one's own.
+    ///
+    /// When the account does not exist, or is the administrator's own.
     pub async fn remove_person(&self, login: &str) -> Result<(), Problem> {
         ensure(login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.read().await?;
@@ -202,7 +206,7 @@ impl Admin {
         let statement = "UPDATE account SET login = ?, name = 'a removed person', is_admin = 0,
             managed_by = NULL, disabled_at = {now} WHERE id = ?";
         transaction.execute(statement, values![&nobody, account]).await?;
-        // The log has logins in its sentences, too.
+        // The sentences of the log contain logins, too.
         let statement = "SELECT id, text FROM event WHERE text LIKE '%' || CAST(? AS TEXT) || '%'";
         let rows = transaction.rows(statement, values![login]).await?;
         for row in &rows {
@@ -214,7 +218,7 @@ impl Admin {
     }
 }
 
-/// Returns a sentence with another name in it, where it is a word of its own.
+/// Returns a sentence in which a name is replaced, where it is a whole word.
 fn without_name(text: &str, name: &str, other: &str) -> String {
     let is_of_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     let mut left = text;

@@ -1,5 +1,5 @@
-//! The choices of staff who came from a platform: the course here that belongs to theirs, and the assignment to which a
-//! link leads.
+//! The choices of staff who came from a platform: the course here that belongs to the platform's, and the assignment
+//! that a link opens.
 use crate::domain::{
     Member, Person,
     platforms::launch,
@@ -13,25 +13,25 @@ use crate::{
     values,
 };
 
-/// The choices.
+/// The target that staff must choose.
 #[derive(Debug, Clone)]
 pub enum LinkTarget {
     /// The course: one of the person's, or a new one.
     Course {
-        /// The platform.
+        /// The name of the platform.
         platform: String,
-        /// The assignment's name there.
+        /// The assignment's name on the platform.
         title: String,
-        /// A name for a new course.
+        /// A proposed name for a new course.
         slug: String,
         /// The courses to choose from.
         courses: Vec<Course>,
     },
-    /// The assignment.
+    /// The assignment that a link opens.
     Assignment {
-        /// The course.
+        /// The course of the assignment.
         course: Course,
-        /// The name of the link there.
+        /// The name of the link on the platform.
         title: Option<String>,
         /// The assignments to choose from.
         assignments: Vec<Assignment>,
@@ -41,13 +41,13 @@ pub enum LinkTarget {
 /// The next step after an assignment was chosen.
 #[derive(Debug, Clone)]
 pub enum LinkStep {
-    /// Go to the assignment.
+    /// Redirect to an assignment, given by its path.
     Assignment(String),
-    /// Send this to the platform: address, origins, and token.
+    /// Send a form to the platform.
     Answer {
-        /// Where.
+        /// The address on the platform.
         address: String,
-        /// The platform's origins: a page may send forms there, and they may lead on among them.
+        /// The platform's origins. The page may send forms to them, and they may redirect to each other.
         origins: String,
         /// The signed answer.
         token: String,
@@ -58,7 +58,8 @@ impl Person {
     /// Returns the choices.
     ///
     /// # Errors
-    /// When there is nothing of this secret for this person.
+    ///
+    /// When the secret is unknown, or belongs to another person.
     pub async fn choice(&self, secret: &str) -> Result<LinkTarget, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
@@ -88,9 +89,10 @@ impl Person {
         })
     }
 
-    /// Connects the platform's course with a course of this person, or with a new one.
+    /// Connects the platform's course with a course of the person, or with a new one.
     ///
     /// # Errors
+    ///
     /// When there is no such course, or the new one's name is taken.
     pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
@@ -116,7 +118,7 @@ impl Person {
         let (platform, memberships) = (pending.platform.id, arrival.memberships.as_deref());
         let values = values![platform, &arrival.deployment, &arrival.context.id, title, course, memberships];
         let made = transaction.one(statement, values).await?.int("id")?;
-        // This session was begun by the platform's word, and ended all others of an account that was a student's.
+        // The platform's message began this session, and ended all other sessions of an account that was a student's.
         let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
             ON CONFLICT (platform_course, account) DO NOTHING";
         transaction.execute(statement, values![made, self.account.id]).await?;
@@ -129,10 +131,11 @@ impl Person {
         Ok(transaction.commit().await?)
     }
 
-    /// Makes the link lead to an assignment; if the platform requested the link, returns the answer for which it waits.
+    /// Makes the link open an assignment. If the platform requested the link, returns the expected answer.
     ///
     /// # Errors
-    /// When this person does not teach the course, or it has no such assignment.
+    ///
+    /// When the person does not teach the course, or it has no such assignment.
     pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<LinkStep, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
@@ -160,7 +163,7 @@ impl Person {
         transaction.commit().await?;
         let over_http = self.app.lti.over_http();
         let Some(address) = pending.platform.service(&wanted.deep_link_return_url, over_http) else {
-            return Err(Problem::refused_launch("the platform wants the answer at a host that no administrator named"));
+            return Err(Problem::refused_launch("the platform's return address is on a host that is not configured"));
         };
         let (launch, item) = (self.app.launch_address(), (assignment.slug.as_str(), assignment.title.as_str()));
         let token = lti::deep_linking_response(&self.app.0.database, &pending.platform, arrival, &launch, item).await?;
@@ -169,7 +172,7 @@ impl Person {
     }
 }
 
-/// Returns a name for addresses, to begin with.
+/// Returns a proposed name for addresses.
 fn slug_of(title: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let text: String = title.chars().map(plain).take(60).collect();
@@ -177,9 +180,10 @@ fn slug_of(title: &str) -> String {
 }
 
 impl Member {
-    /// Returns the platforms from which people come into this course.
+    /// Returns the platforms that are connected with this course.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn platforms(&self) -> Result<Vec<String>, Problem> {
         let mut transaction = self.app.0.database.read().await?;

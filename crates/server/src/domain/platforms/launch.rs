@@ -1,11 +1,11 @@
-//! Arrivals from a learning platform: the service asks the platform who the person is (SEC 5.1.1), accepts one answer,
-//! and signs the person in with their account here, in the course that belongs to the platform's.
+//! Launches from a learning platform. The service requests the person's identity from the platform (SEC 5.1.1), accepts
+//! one answer, and signs the person in with their account here, in the course that belongs to the platform's.
 use crate::domain::{
     App, NewSecret, Visitor,
     accounts::{
         identity::{self, Way},
         newcomer::Newcomer,
-        pending::{BegunSignIn, UNKNOWN},
+        pending::{BegunSignIn, UNKNOWN_SIGN_IN},
     },
     view::{self, Entry},
 };
@@ -18,41 +18,41 @@ use crate::{
 use serde::Deserialize;
 use url::Url;
 
-/// The time in which staff must choose.
-const CHOICE: i64 = 3600 * 1000;
+/// The time in which staff must choose, in milliseconds.
+const CHOICE_LIFETIME: i64 = 3600 * 1000;
 
-/// The message of a platform about a person who wants to sign in (LTI 4.1, SEC 5.1.1.1).
+/// A platform's message about a person who wants to sign in (LTI 4.1, SEC 5.1.1.1).
 #[derive(Debug, Clone, Deserialize)]
 pub struct LoginRequest {
     /// The platform's issuer.
     pub iss: String,
-    /// Sent back as they are.
+    /// A hint about the person, which is returned unchanged.
     pub login_hint: String,
-    /// The page to which the person wants to go.
+    /// The page that the person wants to open.
     pub target_link_uri: Option<String>,
-    /// Sent back as they are, about the message.
+    /// A hint about the message, which is returned unchanged.
     pub lti_message_hint: Option<String>,
-    /// The platform's name for this service, if it gives one.
+    /// The platform's name for this service, if it has one.
     pub client_id: Option<String>,
-    /// The deployment.
+    /// The deployment of this service on the platform.
     pub lti_deployment_id: Option<String>,
 }
 
 /// The next step of a browser.
 #[derive(Debug, Clone)]
 pub struct LoginAnswer {
-    /// The address to which the browser is sent.
+    /// The address to which the browser is redirected.
     pub address: String,
-    /// The secret that the browser must return.
+    /// The secret that the browser must send back.
     pub browser: String,
 }
 
-/// The page to which a signed-in person is sent.
+/// The page to which a signed-in person is redirected.
 #[derive(Debug, Clone)]
 pub struct LaunchTarget {
     /// The person's session.
     pub session: NewSecret,
-    /// A path of this service.
+    /// A path on this service.
     pub to: String,
 }
 
@@ -63,7 +63,7 @@ impl From<Rejection> for Problem {
 }
 
 impl App {
-    /// Checks that people may come from platforms: their cookies have to reach this service from another site.
+    /// Checks that launches from platforms can work: cookies must reach this service from another site.
     fn check_launchable(&self) -> Result<(), Problem> {
         if self.is_secure() || self.lti.over_http() {
             return Ok(());
@@ -72,17 +72,18 @@ impl App {
         Err(Problem::conflict("people come from learning platforms by HTTPS only", remedy))
     }
 
-    /// Returns the address that platforms send people to.
+    /// Returns the address to which platforms send people.
     pub fn launch_address(&self) -> String {
         format!("{}/lti/launch", self.public)
     }
 }
 
 impl Visitor {
-    /// Returns the platform from which a person claims to come.
+    /// Returns the platform that a person claims to come from.
     ///
     /// # Errors
-    /// When no platform of this name is registered.
+    ///
+    /// When no platform with this name is registered.
     pub async fn platform(&self, request: &LoginRequest) -> Result<Platform, Problem> {
         self.app.check_launchable()?;
         let mut transaction = self.app.0.database.read().await?;
@@ -93,14 +94,15 @@ impl Visitor {
         match rows.as_slice() {
             [row] => Ok(Platform::from_row(row)?),
             [] => Err(Problem::refused_launch("no administrator has registered this platform")),
-            _ => Err(Problem::refused_launch("the platform is registered several times, and does not say which it is")),
+            _ => Err(Problem::refused_launch("the platform has several registrations, and sent no client ID")),
         }
     }
 
-    /// Begins a sign-in, and returns the address to which the browser is sent.
+    /// Begins a sign-in, and returns the address to which the browser is redirected.
     ///
     /// # Errors
-    /// When there are too many, or the database does not answer.
+    ///
+    /// When there are too many sign-ins, or the database does not answer.
     pub async fn begin_login(&self, platform: &Platform, request: &LoginRequest) -> Result<LoginAnswer, Problem> {
         let browser = (&self.secrets, self.secrets.browser.as_ref());
         let BegunSignIn { state, browser } = self.app.begin_sign_in(&platform.id.to_string(), browser, (0, "")).await?;
@@ -127,27 +129,28 @@ impl Visitor {
     /// Signs in the person whom a platform names, in answer to a sign-in that this browser began.
     ///
     /// # Errors
-    /// When the answer does not belong to such a sign-in or platform, or this person may not sign in by it.
+    ///
+    /// When the answer does not belong to such a sign-in or platform, or the person may not sign in this way.
     pub async fn launch(&self, state: &str, token: &str) -> Result<LaunchTarget, Problem> {
         let pending = self.app.pending_sign_in(state, self.secrets.browser.as_ref(), Problem::refused_launch).await?;
         let statement = "SELECT id, name, settings FROM platform WHERE id = ? AND disabled_at IS NULL";
         let number: i64 = pending.at.parse().unwrap_or_default();
         let platform = self.app.0.database.read().await?.find(statement, values![number]).await?;
-        let platform: Platform = platform.ok_or_else(|| Problem::refused_launch(UNKNOWN))?;
+        let platform: Platform = platform.ok_or_else(|| Problem::refused_launch(UNKNOWN_SIGN_IN))?;
         let nonce = identity::digest(&self.app.word_of("nonce", state).await?);
         let message = self.app.lti.receive(&platform, token, &nonce).await?;
         let Some(role) = message.person.role else {
-            return Err(Problem::refused_launch("the platform says that you neither learn nor teach in this course"));
+            return Err(Problem::refused_launch("the platform says that you have no role in this course"));
         };
         let mut transaction = self.app.0.database.begin().await?;
-        ensure(pending.use_up(&mut transaction).await?, Problem::refused_launch(UNKNOWN))?;
+        ensure(pending.use_up(&mut transaction).await?, Problem::refused_launch(UNKNOWN_SIGN_IN))?;
         let launched = arrive(&mut transaction, &platform, &message, role).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(launched)
     }
 }
 
-/// A course of a platform that is known here.
+/// A known course of a platform.
 pub(in crate::domain) struct Place {
     pub(in crate::domain) id: i64,
     pub(in crate::domain) course: i64,
@@ -157,7 +160,7 @@ pub(in crate::domain) struct Place {
 
 from_row! { Place { id, course, slug, title } }
 
-/// Returns the course here that belongs to a person's course there.
+/// Returns the course here that belongs to a person's course on the platform.
 pub(in crate::domain) async fn place(
     transaction: &mut Transaction,
     platform: i64,
@@ -169,7 +172,7 @@ pub(in crate::domain) async fn place(
     transaction.find(statement, values![platform, &arrival.deployment, &arrival.context.id]).await
 }
 
-/// Finds or makes the account, updates its role, and returns the page to which it is sent.
+/// Finds or creates the account, updates its role, and returns the page to which it is redirected.
 async fn arrive(
     transaction: &mut Transaction,
     platform: &Platform,
@@ -190,7 +193,7 @@ async fn arrive(
     }
     enrol(transaction, platform.id, id, course, account, role).await?;
     let Some(resource) = &arrival.resource else {
-        ensure(staff, Problem::refused_launch("only teachers of the course can make links"))?;
+        ensure(staff, Problem::refused_launch("only teachers of the course can create links"))?;
         return choose(transaction, platform, arrival, account).await;
     };
     let statement = "SELECT platform_link.id, assignment.slug FROM platform_link
@@ -215,7 +218,8 @@ async fn arrive(
     }
 }
 
-/// Returns the assignment that a link names by itself: it was chosen by deep linking, or written by who made the link.
+/// Returns the assignment that a link names itself, because it was chosen by deep linking or written by the link's
+/// author.
 async fn find_named_assignment(
     transaction: &mut Transaction,
     place: i64,
@@ -230,7 +234,7 @@ async fn find_named_assignment(
     Ok(Some((link, slug.clone())))
 }
 
-/// Makes a link lead to an assignment.
+/// Makes a link open an assignment.
 pub(in crate::domain) async fn make_link(
     transaction: &mut Transaction,
     place: i64,
@@ -243,7 +247,7 @@ pub(in crate::domain) async fn make_link(
     transaction.one(statement, values![place, resource, assignment]).await?.int("id")
 }
 
-/// Notes the columns for scores of a link that the platform names today. A column that this service made stays.
+/// Stores the score columns of a link that the platform's message names. A column that this service created stays.
 pub(in crate::domain) async fn columns(
     transaction: &mut Transaction,
     link: i64,
@@ -254,7 +258,7 @@ pub(in crate::domain) async fn columns(
     transaction.execute(statement, values![arrival.line_item.clone(), arrival.line_items.clone(), link]).await.map(drop)
 }
 
-/// Signs staff in, and has them choose: a course, an assignment, or a link.
+/// Signs staff in, and asks them to choose a course, an assignment, or a link.
 async fn choose(
     transaction: &mut Transaction,
     platform: &Platform,
@@ -268,7 +272,7 @@ async fn choose(
     transaction.execute(expired, values![]).await?;
     let statement =
         "INSERT INTO platform_choice (digest, account, platform, arrival, expires_at) VALUES (?, ?, ?, ?, {now} + ?)";
-    transaction.execute(statement, values![secret.digest(), account, platform.id, text, CHOICE]).await?;
+    transaction.execute(statement, values![secret.digest(), account, platform.id, text, CHOICE_LIFETIME]).await?;
     // The choice could make a student's account staff.
     if !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;
@@ -288,7 +292,7 @@ async fn account(transaction: &mut Transaction, platform: &Platform, person: &Lt
     Ok(account)
 }
 
-/// Finds the account of a person, or makes it; its name is the platform's.
+/// Finds the account of a person, or creates it with the platform's name.
 pub(in crate::domain) async fn find_or_make(
     transaction: &mut Transaction,
     platform: &Platform,
@@ -303,7 +307,7 @@ pub(in crate::domain) async fn find_or_make(
     newcomer.find_or_make(transaction).await
 }
 
-/// Makes a person a member on a platform's word, or changes their role; roles that staff set here stay.
+/// Makes a person a member, as a platform requests, or changes their role; roles that staff set here stay.
 pub(in crate::domain) async fn enrol(
     transaction: &mut Transaction,
     platform: i64,
@@ -322,7 +326,7 @@ pub(in crate::domain) async fn enrol(
     {
         return Ok(());
     }
-    // A link or session from before must not do more than it could.
+    // An earlier link or session must not get more rights.
     if role == LtiRole::Staff && !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;
     } else {
@@ -336,13 +340,13 @@ pub(in crate::domain) async fn enrol(
     view::note(transaction, &Entry { course: Some(course), ..Entry::new("member", account, &text) }).await
 }
 
-/// The choice that staff has to make, and for whom it is.
+/// The choice that staff has to make, and its person.
 pub(in crate::domain) struct PendingLaunch {
     pub(in crate::domain) platform: Platform,
     pub(in crate::domain) arrival: Arrival,
 }
 
-/// Returns the choice that an account has to make by this secret.
+/// Returns the choice with a secret that an account has to make.
 pub(in crate::domain) async fn pending(
     transaction: &mut Transaction,
     account: i64,

@@ -1,4 +1,4 @@
-//! Learning platforms, and the people and links that come from them.
+//! Learning platforms, with their people and links.
 
 pub(super) mod choice;
 pub(super) mod launch;

@@ -1,4 +1,4 @@
-//! Platforms, as administrators register them, and what staff sees and does of them.
+//! Platforms, as administrators register them, and the actions of staff on them.
 use crate::domain::{
     Admin, App, Staff,
     accounts::identity,
@@ -20,40 +20,40 @@ use utoipa::ToSchema;
 pub struct RosterRead {
     /// The number of members that the platforms report.
     pub members: usize,
-    /// Members who left.
+    /// The number of members who left.
     pub left: usize,
-    /// The logins of people who were no members before.
+    /// The logins of people who joined.
     pub comes: Vec<String>,
     /// The logins of people who left.
     pub goes: Vec<String>,
 }
 
-/// The use of a roster.
+/// The handling of a roster that was read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RosterWish {
-    /// Nothing: who would come and go.
+    /// Only report who would join and leave.
     Preview,
-    /// The roster counts, unless many would leave.
+    /// Apply the roster, unless too many would leave.
     Apply,
-    /// The roster counts, even if many leave.
+    /// Apply the roster, even if many leave.
     Confirmed,
 }
 
 /// A score of a person's work that was sent to a platform.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ScoreInfo {
-    /// The platform.
+    /// The name of the platform.
     pub platform: String,
-    /// The student.
+    /// The login of the student.
     pub login: String,
     /// The score for the platform.
     #[schema(value_type = Object)]
     pub score: Value,
-    /// The time when that became so, in milliseconds since 1970.
+    /// The time of the score, in milliseconds since 1970.
     pub stamp: i64,
     /// The time when the platform accepted it; `None` until then.
     pub sent_at: Option<i64>,
-    /// The reason why it has not.
+    /// The reason why the platform has not accepted the score.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
 }
@@ -82,7 +82,8 @@ impl Admin {
     /// Registers a platform, or changes it.
     ///
     /// # Errors
-    /// When something in it makes no sense.
+    ///
+    /// When a setting is invalid.
     pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
         identity::check_slug("a platform's name", name)?;
         wish.check(self.app.lti.over_http())?;
@@ -93,7 +94,7 @@ impl Admin {
             let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
             return Err(Problem::conflict(detail, "change that one"));
         }
-        // Accounts belong to the people of one issuer: they must not become another issuer's.
+        // Accounts belong to the people of one issuer, and must not become another issuer's.
         let was = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
         if was.is_some_and(|was| was.text("issuer").is_ok_and(|issuer| issuer != wish.issuer)) {
             return Err(Problem::conflict("another issuer is registered under this name", "give it another name"));
@@ -110,10 +111,11 @@ impl Admin {
         Ok(Platform::from_row(&row)?)
     }
 
-    /// Closes a platform: nobody arrives from it any more, and no scores are sent. Accounts and courses stay.
+    /// Closes a platform: people cannot launch from it, and no scores are sent. Accounts and courses stay.
     ///
     /// # Errors
-    /// When there is no platform of this name.
+    ///
+    /// When there is no platform with this name.
     pub async fn shut_platform(&self, name: &str) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL";
@@ -123,9 +125,10 @@ impl Admin {
         Ok(transaction.commit().await?)
     }
 
-    /// Makes a new key, which signs from an hour on; the key before it is published until the next one.
+    /// Creates a new key, which signs after an hour; the key before it is published until the next one.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn new_platform_key(&self) -> Result<(), Problem> {
         lti::new_key(&self.app.0.database).await?;
@@ -137,9 +140,10 @@ impl Admin {
 
 impl Staff {
     /// Reads the members of the course from its platforms. Members that are no longer listed leave, unless staff made
-    /// them members; what they handed in stays. The person who requests it stays, and an empty list changes nothing.
+    /// them members; their submissions stay. The requesting person stays, and an empty list changes nothing.
     ///
     /// # Errors
+    ///
     /// When no platform gives a list, one does not answer, or more than a third would leave without a confirmation;
     /// then nothing changes.
     pub async fn read_roster(&self, wish: RosterWish) -> Result<RosterRead, Problem> {
@@ -154,7 +158,7 @@ impl Staff {
         let places = transaction.rows(statement, values![self.course]).await?;
         drop(transaction);
         if places.is_empty() {
-            let detail = "no learning platform has the members of this course";
+            let detail = "this course is connected with no learning platform";
             return Err(Problem::conflict(detail, "open an assignment from the platform once, as a teacher there"));
         }
         let mut read = RosterRead::default();
@@ -195,13 +199,13 @@ impl Staff {
             let row =
                 transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
             present.insert(account);
-            // Neither becomes more by a platform's word.
+            // A platform's list must not give rights to administrators or closed accounts.
             if row.flag("is_admin")? || row.maybe_int("disabled_at")?.is_some() {
                 continue;
             }
             enrol(&mut transaction, platform.id, place, course, account, role).await?;
         }
-        // An empty answer is a filter, or a fault.
+        // An empty answer comes from a filter, or an error.
         if present.is_empty() {
             return Ok(RosterRead::default());
         }
@@ -261,9 +265,10 @@ impl Staff {
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }
 
-    /// Sends all scores of an assignment once more, also those that platforms have, and returns their number.
+    /// Sends all scores of an assignment again, even those that platforms have, and returns their number.
     ///
     /// # Errors
+    ///
     /// When there is no such assignment.
     pub async fn send_scores(&self, slug: &str) -> Result<usize, Problem> {
         let assignment = self.assignment(slug).await?;

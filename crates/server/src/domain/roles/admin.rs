@@ -1,8 +1,8 @@
-//! Administrators.
+//! Administrators and their actions.
 use crate::domain::{
     App, NewSecret,
     accounts::identity::{self, Link, NewToken, TokenInfo, Way},
-    courses::members::PEOPLE,
+    courses::members::PEOPLE_PER_PAGE,
     view::{self, Account, Course, Entry, Event, Queue},
 };
 use crate::{
@@ -17,7 +17,7 @@ pub struct Admin {
     pub(crate) app: App,
 }
 
-/// A course with the logins of its staff, and how much is in it.
+/// A course with the logins of its staff, and its size.
 pub struct CourseSize {
     pub(crate) slug: String,
     pub(crate) title: String,
@@ -29,7 +29,7 @@ pub struct CourseSize {
 
 from_row! { CourseSize { slug, title, staff, students, assignments, submissions } }
 
-/// Makes a course of this name and title, and returns its number.
+/// Creates a course with a name and a title, and returns its number.
 pub(in crate::domain) async fn make_course(
     transaction: &mut Transaction,
     (slug, title): (&str, &str),
@@ -39,12 +39,12 @@ pub(in crate::domain) async fn make_course(
     let statement = "INSERT INTO course (slug, title, created_at) VALUES (?, ?, {now})
         ON CONFLICT (slug) DO NOTHING RETURNING id";
     let made = transaction.row(statement, values![slug, title]).await?;
-    let made = made.ok_or_else(|| Problem::conflict("a course has this name already", "give it another name"))?;
+    let made = made.ok_or_else(|| Problem::conflict("a course with this name exists", "give it another name"))?;
     Ok(made.int("id")?)
 }
 
 impl Admin {
-    /// Writes into the audit log.
+    /// Writes an entry into the audit log.
     pub(in crate::domain) async fn note(
         &self,
         transaction: &mut Transaction,
@@ -54,9 +54,10 @@ impl Admin {
         view::note(transaction, &Entry::new(kind, self.account.id, text)).await
     }
 
-    /// Makes a course.
+    /// Creates a course.
     ///
     /// # Errors
+    ///
     /// When its name is taken.
     pub async fn new_course(&self, slug: &str, title: &str) -> Result<Course, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
@@ -83,21 +84,22 @@ impl Admin {
         Ok(transaction.all(statement, values![]).await?)
     }
 
-    /// Returns accounts whose login or name has these words, after this login: a page of them, and whether there are
+    /// Returns a page of the accounts whose login or name contains given words, after a login, and whether there are
     /// more.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn accounts_page(&self, words: &str, after: &str) -> Result<(Vec<Account>, bool), Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL AND login > ?
                AND ({strpos}(lower(login || ' ' || name), ?) > 0 OR {strpos}(name, ?) > 0)
             ORDER BY login LIMIT ?";
-        let (words, most) = (words.trim(), PEOPLE + 1);
+        let (words, most) = (words.trim(), PEOPLE_PER_PAGE + 1);
         let values = values![after, words.to_lowercase(), words, most];
         let mut accounts: Vec<Account> = transaction.all(statement, values).await?;
         let has_more = accounts.len() as i64 == most;
-        accounts.truncate(PEOPLE as usize);
+        accounts.truncate(PEOPLE_PER_PAGE as usize);
         Ok((accounts, has_more))
     }
 
@@ -111,11 +113,12 @@ impl Admin {
         Ok(transaction.all(statement, values![]).await?)
     }
 
-    /// Makes an account, or changes whether it may do everything, and returns a link that signs in once. One that was
-    /// shut is open again.
+    /// Creates an account, or changes whether it is an administrator's, and returns a link that signs in once. A closed
+    /// account is opened again.
     ///
     /// # Errors
-    /// When a name is none.
+    ///
+    /// When a name is invalid.
     pub async fn set_account(&self, login: &str, name: &str, is_admin: bool) -> Result<Link, Problem> {
         identity::check_slug("a login", login)?;
         identity::check_title("a name", name)?;
@@ -138,10 +141,11 @@ impl Admin {
         Ok(Link { link: Some(self.app.welcome_address(&link)) })
     }
 
-    /// Closes an account: it can't sign in any more, and what it handed in stays.
+    /// Closes an account: it can't sign in, and its submissions stay.
     ///
     /// # Errors
-    /// When there is none, or it is one's own.
+    ///
+    /// When the account does not exist, or is the administrator's own.
     pub async fn disable_account(&self, login: &str) -> Result<(), Problem> {
         ensure(login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -163,10 +167,11 @@ impl Admin {
         Ok(transaction.all(statement, values![]).await?)
     }
 
-    /// Makes a token for workers.
+    /// Creates a token for workers.
     ///
     /// # Errors
-    /// When its name is none.
+    ///
+    /// When its name is invalid.
     pub async fn new_worker_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_slug("a worker's name", name)?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -179,7 +184,8 @@ impl Admin {
     /// Revokes a token of workers.
     ///
     /// # Errors
-    /// When there is none of this number.
+    ///
+    /// When there is no token with this number.
     pub async fn revoke_worker_token(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL";
@@ -198,9 +204,10 @@ impl Admin {
         Ok(view::queue(&mut transaction, &self.app).await?)
     }
 
-    /// Returns everything that happened before the event of this number, latest first.
+    /// Returns the events before an event, latest first.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
@@ -209,10 +216,11 @@ impl Admin {
 }
 
 impl App {
-    /// Returns the link of a fresh server: signs its first administrator in. Nothing once there is one who has signed
-    /// in.
+    /// Returns the link of a new server, which signs its first administrator in; `None` after an administrator has
+    /// signed in.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn first_link(&self) -> Result<Option<NewSecret>, Problem> {
         let mut transaction = self.0.database.begin().await?;
@@ -227,15 +235,16 @@ impl App {
         }
         let statement = "SELECT id FROM account WHERE login = 'admin' AND is_admin = 1";
         let account = transaction.one(statement, values![]).await?.int("id")?;
-        // Another server that starts at the same time printed one, too.
+        // Another server that starts at the same time has printed a link, too.
         let link = identity::further_link(&mut transaction, account, None, Way::Own).await?;
         transaction.commit().await?;
         Ok(Some(link))
     }
 
-    /// Returns a new link for an administrator, who can run programs on the server and has lost the old one.
+    /// Returns a new link for an administrator who can run programs on the server and has lost the link.
     ///
     /// # Errors
+    ///
     /// When there is no such administrator.
     pub async fn admin_link(&self, login: &str) -> Result<NewSecret, Problem> {
         let mut transaction = self.0.database.begin().await?;

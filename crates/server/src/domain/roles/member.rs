@@ -1,4 +1,5 @@
-//! A member of a course: a student, or staff who tries something out. They see their own submissions; staff sees all.
+//! A member of a course: a student, or staff who tries something out. Students see their own submissions; staff sees
+//! all.
 use crate::domain::{
     App,
     view::{self, Account, Assignment, Entry, History, Submission},
@@ -14,7 +15,7 @@ use crate::{
 };
 use futures_util::StreamExt;
 
-/// The report that holds no group that its suite hides from students.
+/// The name of the report without groups that the suite hides from students.
 const STUDENT_PAGE: &str = "report.html";
 
 /// A member of a course.
@@ -33,9 +34,10 @@ impl Member {
         Entry { course: Some(self.course), assignment, ..Entry::new(kind, self.account.id, text) }
     }
 
-    /// Returns the assignments that they may see.
+    /// Returns the assignments that the member may see.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn assignments(&self) -> Result<Vec<Assignment>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
@@ -45,7 +47,7 @@ impl Member {
         Ok(assignments.into_iter().map(|assignment| self.hide_course_suite(assignment)).collect())
     }
 
-    /// Returns an assignment as they may see it: which suite of the course it is graded by is staff's to know.
+    /// Returns an assignment as the member may see it: the course's own suite is hidden from students.
     fn hide_course_suite(&self, mut assignment: Assignment) -> Assignment {
         assignment.settings.suite_archive.take_if(|_| !self.is_staff);
         assignment
@@ -54,7 +56,8 @@ impl Member {
     /// Returns an assignment of the member's course.
     ///
     /// # Errors
-    /// When there is none.
+    ///
+    /// When the assignment does not exist.
     pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
         Ok(self.hide_course_suite(self.read_at(slug).await?.1))
     }
@@ -88,7 +91,7 @@ impl Member {
             if !self.is_staff {
                 submission.fault = None;
             }
-            // Its hidden parts were not separated yet; that needs its files.
+            // The hidden parts were not separated yet, which needs the files.
             if submission.grade.as_ref().is_some_and(|grade| !self.is_staff && grade.shown.is_none()) {
                 *submission = self.find_submission(&mut transaction, submission.id).await?;
                 submission.grade.iter_mut().for_each(|grade| grade.outcome.files.clear());
@@ -99,10 +102,11 @@ impl Member {
         Ok(submissions)
     }
 
-    /// Returns all that the owner of a submission handed in to its assignment, newest first.
+    /// Returns all submissions of a submission's owner to its assignment, newest first.
     ///
     /// # Errors
-    /// When they do not see the assignment.
+    ///
+    /// When the member does not see the assignment.
     pub async fn attempts(&self, submission: &Submission) -> Result<Vec<Submission>, Problem> {
         if !self.is_staff {
             return self.submissions(&submission.assignment).await;
@@ -111,8 +115,8 @@ impl Member {
         Ok(view::submissions_of(&mut transaction, assignment.id, submission.account).await?)
     }
 
-    /// Leaves out what the reader does not see: parts for staff, groups that the suite hides until they are published,
-    /// and pages about another part of the grade than the points that the reader sees.
+    /// Removes everything that the reader may not see: parts for staff, groups that the suite hides until they are
+    /// published, and pages about another part of the grade than the reader sees.
     async fn withhold(&self, submission: &mut Submission) -> Result<(), Problem> {
         let Some(grade) = submission.grade.as_mut() else { return Ok(()) };
         let files = &mut grade.outcome.files;
@@ -124,14 +128,14 @@ impl Member {
             }
             return Ok(());
         }
-        // Hidden parts of what older versions graded were not separated yet.
+        // Older versions did not separate the hidden parts.
         let kept = match grade.outcome.shown.take() {
             Some(kept) => kept,
             None => shown::read_texts(&self.app.0.store, &grade.outcome.files).await?.shown,
         };
         if let Some(shown) = ShownGrade::read(&kept) {
             shown.cover(&mut grade.outcome, STUDENT_PAGE);
-            grade.created_at = shown::hour(grade.created_at);
+            grade.created_at = shown::round_to_hour(grade.created_at);
             submission.is_withheld = true;
             grade.outcome.shown = Some(kept);
             submission.overrule();
@@ -154,29 +158,32 @@ impl Member {
         Ok(submission)
     }
 
-    /// Returns a submission: one of their own, or any of the course for staff.
+    /// Returns a submission: the member's own, or any of the course for staff.
     ///
     /// # Errors
-    /// When they may see none of this number.
+    ///
+    /// When the member sees no submission with this number.
     pub async fn submission(&self, id: i64) -> Result<Submission, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         self.find_submission(&mut transaction, id).await
     }
 
-    /// Returns how its grade came to count.
+    /// Returns the history of a submission's grade.
     ///
     /// # Errors
-    /// When the person may see no submission of this number.
+    ///
+    /// When the member sees no submission with this number.
     pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
         Ok(view::history(&mut transaction, id, submission.is_withheld, self.is_staff).await?)
     }
 
-    /// Returns one of the reports on it, to be opened.
+    /// Opens report `name` of submission `id`.
     ///
     /// # Errors
-    /// When there is none of this name.
+    ///
+    /// When there is no report with this name.
     pub async fn report(&self, id: i64, name: &str) -> Result<OutputFile, Problem> {
         let submission = self.read_with_bytes(id).await?;
         submission
@@ -185,10 +192,11 @@ impl Member {
             .ok_or_else(|| Problem::not_found("report"))
     }
 
-    /// Returns the upload, to be opened.
+    /// Returns a submission and its uploaded file.
     ///
     /// # Errors
-    /// When they may see none of this number.
+    ///
+    /// When the member sees no submission with this number.
     pub async fn upload(&self, id: i64) -> Result<(Submission, Artifact), Problem> {
         let submission = self.read_with_bytes(id).await?;
         let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is invalid")));
@@ -197,23 +205,25 @@ impl Member {
         Ok((submission, Artifact { digest, size }))
     }
 
-    /// Returns a submission whose bytes are still there.
+    /// Returns a submission whose bytes are still stored.
     async fn read_with_bytes(&self, id: i64) -> Result<Submission, Problem> {
         let submission = self.submission(id).await?;
         if submission.removed_at.is_some() { Err(Problem::removed()) } else { Ok(submission) }
     }
 
-    /// Opens an artifact that they may see.
+    /// Opens an artifact that the member may see.
     ///
     /// # Errors
+    ///
     /// When the store fails.
     pub async fn open(&self, artifact: &Artifact) -> Result<OpenArtifact, Problem> {
         Ok(self.app.0.store.open(&artifact.digest).await?)
     }
 
-    /// Returns the first bytes of an artifact that they may see.
+    /// Returns the first bytes of an artifact that the member may see.
     ///
     /// # Errors
+    ///
     /// When the store fails.
     pub async fn beginning(&self, artifact: &Artifact, most: usize) -> Result<Vec<u8>, Problem> {
         let mut pieces = self.open(artifact).await?.pieces;

@@ -1,4 +1,4 @@
-//! The roles: who may do what.
+//! The roles and their permissions.
 
 pub(super) mod admin;
 pub(super) mod member;

@@ -1,4 +1,4 @@
-//! Somebody who is signed in.
+//! A person who is signed in.
 use crate::domain::{
     App,
     accounts::identity::{self, NewToken, SessionState, TokenInfo, Way},
@@ -12,7 +12,7 @@ use crate::{
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// A course, and the person's role in it.
+/// A course, with the person's role in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct CourseOf {
     /// The course.
@@ -32,19 +32,19 @@ pub struct Person {
 }
 
 impl Person {
-    /// Returns whether the person signed in by a token, or by a session that a token began.
+    /// Returns whether the person signed in with a token, or in a session from a token.
     pub fn is_by_token(&self) -> bool {
         self.session.as_ref().is_none_or(|session| session.is_by_token)
     }
 
-    /// Returns the session if the person is at a browser: a right of a token ends with the token.
+    /// Returns the session if the person uses a browser. A token must not create rights that outlive it.
     pub(in crate::domain) fn at_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.session.as_ref().filter(|_| !self.is_by_token());
         session.ok_or_else(|| Problem::sign_in_again("a token can't do this, and neither can a session that it began"))
     }
 
-    /// Returns the session if the person signed in lately: a finder of an open browser creates no further ways to sign
-    /// in.
+    /// Returns the session if the person signed in recently, so that somebody who finds an open browser cannot create
+    /// further ways to sign in.
     pub(in crate::domain) fn lately_at_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.at_browser()?;
         match session.is_recent {
@@ -53,9 +53,10 @@ impl Person {
         }
     }
 
-    /// Returns the courses that they may see.
+    /// Returns the courses that the person may see.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn courses(&self) -> Result<Vec<CourseOf>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
@@ -79,10 +80,11 @@ impl Person {
         Ok(transaction.all(statement, values![self.account.id]).await?)
     }
 
-    /// Makes a token.
+    /// Creates a token.
     ///
     /// # Errors
-    /// When its name is none, there are too many, or they did not sign in lately.
+    ///
+    /// When its name is invalid, there are too many, or the person did not sign in recently.
     pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_title("a token's name", name)?;
         let way = if self.lately_at_browser()?.is_vouched { Way::Vouched } else { Way::Own };
@@ -97,10 +99,11 @@ impl Person {
         Ok(token)
     }
 
-    /// Revokes one of their tokens.
+    /// Revokes a token of the person.
     ///
     /// # Errors
-    /// When they have none of this number.
+    ///
+    /// When the person has no token with this number.
     pub async fn revoke_token(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account = ? AND revoked_at IS NULL";

@@ -1,5 +1,5 @@
-//! A worker on another machine. It runs hostile programs, so a submission may control it one day: it can claim jobs,
-//! read their files, and report their results. It sees no course, no student and no other submission.
+//! A worker on another machine. It runs hostile programs, so a submission may control it some day. It can claim jobs,
+//! read their files, and report their results, but it sees no courses, no students and no other submissions.
 use crate::domain::App;
 use crate::{
     problem::{Problem, ensure},
@@ -12,15 +12,15 @@ use crate::{
 };
 use std::path::Path;
 
-/// A worker with a token.
+/// A worker that is identified by its token.
 pub struct Remote {
     pub(crate) app: App,
     token: i64,
     worker: String,
 }
 
-/// The largest report.
-const MAX_FILE: u64 = 256 << 20;
+/// The maximum size of a report, in bytes.
+const MAX_FILE_BYTES: u64 = 256 << 20;
 
 impl From<SourceError> for Problem {
     fn from(error: SourceError) -> Self {
@@ -31,7 +31,7 @@ impl From<SourceError> for Problem {
             }
             SourceError::Refused(error) => Self::invalid(error),
             SourceError::Dismissed => {
-                Self::unknown_secret("worker token", "ask the server's administrator for a new one")
+                Self::unknown_secret("worker token", "ask the server's administrator for a new token")
             }
         }
     }
@@ -55,7 +55,7 @@ impl Remote {
         .with_token(self.token)
     }
 
-    /// Returns whether a lease was given to this token: another's counts for nothing.
+    /// Returns whether a lease was given to this token; other leases are ignored.
     async fn owns(&self, lease: &Lease) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.first().read().await?;
         let statement = "SELECT token FROM job WHERE id = ? AND attempt = ?";
@@ -71,22 +71,24 @@ impl Remote {
         Ok(self.source().claim().await?)
     }
 
-    /// Reports that the worker is alive, its slots or why it can't grade, and its version.
+    /// Records that the worker is alive, with its slots or the reason why it can't grade, and its version.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn tick(&self, slots: usize, fault: Option<&str>, version: &str) -> Result<Manners, Problem> {
         let fault = fault.map(|fault| strip_controls(fault, 2000));
         let source = self.source().with_version(strip_controls(version, 60));
-        source.tick(slots.min(MANY_SLOTS), fault.as_deref()).await?;
+        source.tick(slots.min(MAX_SLOTS), fault.as_deref()).await?;
         let tick_every = self.app.0.policy.tick_every().as_millis();
         let tick_every = u64::try_from(tick_every).unwrap_or(u64::MAX);
         Ok(Manners { tick_every, version: env!("CARGO_PKG_VERSION").to_owned() })
     }
 
-    /// Extends a lease, and keeps how far the grading is.
+    /// Extends a lease, and stores the progress of the grading.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<bool, Problem> {
         Ok(self.owns(lease).await? && self.source().renew(lease, progress).await?.held)
@@ -108,10 +110,11 @@ impl Remote {
         Ok(self.owns(lease).await? && self.source().fail(lease, &strip_controls(fault, 2000)).await?.held)
     }
 
-    /// Stores a result. A worker is not trusted: the result may name only files that the worker stored for this job.
+    /// Stores a result. Workers are not trusted, so the result may name only files that the worker stored for this job.
     ///
     /// # Errors
-    /// When it makes no sense.
+    ///
+    /// When the result is invalid.
     pub async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<bool, Problem> {
         if !self.owns(lease).await? {
             return Ok(false);
@@ -133,8 +136,8 @@ impl Remote {
             ensure(is_number, Problem::invalid("points and seconds must be numbers"))?;
         }
         let value = |text: &Option<String>| text.as_ref().and_then(|text| text.parse::<f64>().ok());
-        if let (Some(points), most) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MOST_POINTS))
-            && !(0.0..=most.min(MOST_POINTS)).contains(&points)
+        if let (Some(points), most) = (value(&outcome.points), value(&outcome.max_points).unwrap_or(MAX_POINTS))
+            && !(0.0..=most.min(MAX_POINTS)).contains(&points)
         {
             return Err(Problem::invalid("points must be between 0 and the maximum"));
         }
@@ -147,7 +150,7 @@ impl Remote {
         let mut transaction = self.app.0.database.first().read().await?;
         let mut names = std::collections::BTreeSet::new();
         for file in &mut outcome.files {
-            // A report's name and media type are not the worker's to choose.
+            // The worker cannot choose the name or media type of a report.
             let Some((_, _, media_type)) = REPORTS.iter().find(|(_, name, _)| *name == file.name) else {
                 return Err(Problem::invalid(format!("no report is called {}", strip_controls(&file.name, 60))));
             };
@@ -164,7 +167,7 @@ impl Remote {
         Ok(outcome)
     }
 
-    /// Returns the task of a job that the worker holds right now.
+    /// Returns the task of a job that the worker holds.
     async fn leased_task(&self, lease: &Lease) -> Result<Task, Problem> {
         let mut transaction = self.app.0.database.first().read().await?;
         let statement = "SELECT payload FROM job
@@ -174,10 +177,11 @@ impl Remote {
         serde_json::from_str(&row.text("payload")?).map_err(|_| Problem::fault())
     }
 
-    /// Returns an artifact of a job that it holds.
+    /// Returns an artifact of a job that the worker holds.
     ///
     /// # Errors
-    /// When the job is not its own (any more), or the artifact is not the job's.
+    ///
+    /// When the worker does not hold the job, or the artifact is not the job's.
     pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<OpenArtifact, Problem> {
         let task = self.leased_task(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
@@ -185,15 +189,16 @@ impl Remote {
         Ok(self.app.0.store.open(digest).await?)
     }
 
-    /// Stores a report of a job that it holds.
+    /// Stores a report of a job that the worker holds.
     ///
     /// # Errors
-    /// When the job is not its own (any more), or the store fails.
+    ///
+    /// When the worker does not hold the job, or the store fails.
     pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, Problem> {
         self.leased_task(lease).await?;
         let artifact = self.app.0.store.put_file(file).await?;
         let mut transaction = self.app.0.database.first().begin().await?;
-        // A request that takes the job away meanwhile waits for this one, or this one finds that the job was taken.
+        // A request that takes the job away waits for this one, or this one finds that the job was taken.
         let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
             {for update}";
         let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
@@ -206,20 +211,21 @@ impl Remote {
         Ok(artifact)
     }
 
-    /// Returns whether it holds the job: before anything is received for it.
+    /// Checks that the worker holds the job, before a body is received, and returns the job's size limit.
     ///
     /// # Errors
-    /// When it does not.
+    ///
+    /// When the worker does not hold the job.
     pub async fn check_held(&self, lease: &Lease) -> Result<u64, Problem> {
-        self.leased_task(lease).await.map(|_| MAX_FILE)
+        self.leased_task(lease).await.map(|_| MAX_FILE_BYTES)
     }
 }
 
-/// More points than any suite has, and slots than any machine.
-const MOST_POINTS: f64 = 1e9;
-const MANY_SLOTS: usize = 256;
+/// A number of points that no suite reaches.
+const MAX_POINTS: f64 = 1e9;
+const MAX_SLOTS: usize = 256;
 
-/// Returns words of a stranger: one line, not too long, without orders to terminals.
+/// Returns untrusted text on one line, without control characters, cut to `most`.
 fn strip_controls(text: &str, most: usize) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(most).collect()
 }

@@ -1,4 +1,4 @@
-//! The role of a request's sender, by the secrets that the request shows.
+//! The role of a request's sender, by the secrets in the request.
 use crate::domain::{
     Admin, App, Member, Person, Remote, Secrets, Staff, Visitor,
     accounts::identity::{self, SessionState},
@@ -12,7 +12,7 @@ use crate::{
 use std::time::Instant;
 
 impl App {
-    /// Returns the owner of these secrets.
+    /// Returns the owner of the secrets.
     async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<SessionState>), Problem> {
         let (account, seen) = match secrets {
             Secrets { bearer: Some(token), .. } => {
@@ -40,7 +40,7 @@ impl App {
         Ok((account, seen))
     }
 
-    /// Returns a visitor, who may be anyone.
+    /// Returns the request's sender as a visitor, who may be anyone.
     pub fn visitor(&self, secrets: Secrets) -> Visitor {
         Visitor { app: self.clone(), secrets }
     }
@@ -48,7 +48,8 @@ impl App {
     /// Returns the person who is signed in.
     ///
     /// # Errors
-    /// When the request is not signed in, or there are too many.
+    ///
+    /// When the request is not signed in, or there are too many requests.
     pub async fn person(&self, secrets: &Secrets) -> Result<Person, Problem> {
         let (account, session) = self.account(secrets).await?;
         Ok(Person { account, session, app: self.clone() })
@@ -57,20 +58,21 @@ impl App {
     /// Returns a worker by its token; the worker chooses its own name.
     ///
     /// # Errors
-    /// When the token is no worker's, or no longer valid.
+    ///
+    /// When the token is not a worker's, or no longer valid.
     pub async fn remote(&self, token: &str, name: &str) -> Result<Remote, Problem> {
         let mut transaction = self.0.database.read().await?;
         let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
         let row = transaction.row(statement, values![identity::digest(token)]).await?;
         let Some(row) = row else {
-            return Err(Problem::unknown_secret("worker token", "ask the server's administrator for a new one"));
+            return Err(Problem::unknown_secret("worker token", "ask the server's administrator for a new token"));
         };
         Ok(Remote::new(self.clone(), row.int("id")?, &row.text("name")?, name))
     }
 }
 
 impl Person {
-    /// Returns whether their session lasts longer from now on: the browser is to keep its cookie as long.
+    /// Returns whether the session was extended, so that the browser must extend its cookie.
     pub fn is_renewed(&self) -> bool {
         self.session.as_ref().is_some_and(|session| session.is_stale)
     }
@@ -78,7 +80,9 @@ impl Person {
     /// Returns the person as a member of a course.
     ///
     /// # Errors
-    /// When they are not in it, or there is no such course: who is not of it does not learn that it exists.
+    ///
+    /// When the person is not a member, or there is no such course; the error is the same, so that others do not learn
+    /// whether it exists.
     pub async fn member_of(self, slug: &str) -> Result<Member, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT course.id, course.slug, course.title, member.role FROM course
@@ -100,7 +104,8 @@ impl Person {
     /// Returns the person as an administrator.
     ///
     /// # Errors
-    /// When they are none.
+    ///
+    /// When the person is not an administrator.
     pub fn admin(self) -> Result<Admin, Problem> {
         match self.account.is_admin {
             true => Ok(Admin { account: self.account, app: self.app }),
@@ -113,7 +118,8 @@ impl Member {
     /// Returns the person as staff of the course.
     ///
     /// # Errors
-    /// When the person is not.
+    ///
+    /// When the person is not staff.
     pub fn staff(self) -> Result<Staff, Problem> {
         if self.is_staff { Ok(Staff(self)) } else { Err(Problem::not_allowed("this is for the course's staff")) }
     }

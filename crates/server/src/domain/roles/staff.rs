@@ -1,4 +1,4 @@
-//! The staff of a course.
+//! The staff of a course, and their actions.
 use crate::domain::{
     Member, Settings,
     accounts::identity,
@@ -15,14 +15,14 @@ use std::{ops::Deref, path::Path};
 /// A member of a course's staff.
 pub struct Staff(pub(in crate::domain) Member);
 
-/// A change of an assignment; parts that are not named stay as they are.
+/// A change of an assignment; parts that are `None` do not change.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct AssignmentChange<'a> {
     /// The assignment's title.
     pub title: Option<&'a str>,
     /// Whether students see the assignment.
     pub visible: Option<bool>,
-    /// The revision that was changed: the change is rejected if there is a later one.
+    /// The revision that the change is based on; it is rejected if there is a later one.
     pub revision: Option<i64>,
     /// A suite that was just uploaded.
     pub suite: Option<&'a NewSuite>,
@@ -33,7 +33,7 @@ pub struct AssignmentChange<'a> {
 pub struct NewSuite {
     /// The digest of the suite's archive.
     pub digest: String,
-    /// The suite's name.
+    /// Whether the suite hides groups.
     pub name: String,
     /// Whether it hides groups.
     pub hides: bool,
@@ -44,7 +44,7 @@ pub struct NewSuite {
 pub struct UploadedSuite {
     /// The digest of the suite's archive.
     pub digest: String,
-    /// The suite's name; `None` if an older version received it.
+    /// The suite's name; `None` for uploads to an older version.
     pub name: String,
     /// The time of the last upload.
     pub uploaded_at: Option<i64>,
@@ -52,7 +52,7 @@ pub struct UploadedSuite {
 
 from_row! { UploadedSuite { digest, name, uploaded_at } }
 
-/// Rejects a change of what another person changed meanwhile, and names the person and the change.
+/// Rejects a change if another person has changed the assignment since; the error names the person and the change.
 async fn check_revision(
     transaction: &mut Transaction,
     assignment: &Assignment,
@@ -78,7 +78,7 @@ impl Deref for Staff {
 }
 
 impl Staff {
-    /// Writes into the course's audit log.
+    /// Writes an entry into the course's audit log.
     pub(in crate::domain) async fn note(
         &self,
         transaction: &mut Transaction,
@@ -89,11 +89,12 @@ impl Staff {
         view::note(transaction, &self.entry(kind, assignment, text)).await
     }
 
-    /// Makes an assignment, or changes it. Publishing the groups of the last suite does not include groups that another
-    /// suite hides: they are withheld.
+    /// Creates an assignment, or changes it. If the suite changes, groups that the new suite hides are not published,
+    /// even if the old suite's were.
     ///
     /// # Errors
-    /// When a part of it makes no sense, or it was changed since `revision`.
+    ///
+    /// When a part of it is invalid, or the assignment was changed after `revision`.
     pub async fn set_assignment(
         &self,
         slug: &str,
@@ -127,12 +128,12 @@ impl Staff {
                published_at = CASE WHEN ? = 0 THEN assignment.published_at END
             RETURNING id, slug, title, visible, settings, published_at, revision";
         let is_same_suite = (&before.suite, &before.suite_archive) == (&settings.suite, &settings.suite_archive);
-        // Another suite is known to hide groups or not to, or may.
+        // The new suite hides groups, or it is unknown whether it does.
         let hides = change.suite.is_none_or(|suite| suite.hides);
         let withholds = was_published && hides && !is_same_suite;
         let values = values![self.course, slug, title, visible, settings.text(), withholds];
         let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;
-        // Late submissions may have another worth now, and platforms get what is shown.
+        // Late submissions may have other points now, and platforms receive the shown points.
         if withholds || before.late_policy() != settings.late_policy() {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
@@ -152,7 +153,7 @@ impl Staff {
         Ok(assignment)
     }
 
-    /// Checks that an archive that settings name is a suite of this course: a digest opens nothing.
+    /// Checks that an archive in settings is a suite of this course, because a digest alone must not give access.
     pub(in crate::domain) async fn check_suite(
         &self,
         transaction: &mut Transaction,
@@ -171,9 +172,10 @@ impl Staff {
         )
     }
 
-    /// Shows students what the suite hides, or withholds it again; platforms get what is shown.
+    /// Publishes the groups that the suite hides, or withholds them again; platforms receive the shown points.
     ///
     /// # Errors
+    ///
     /// When there is no such assignment.
     pub async fn publish(&self, slug: &str, published: bool) -> Result<Assignment, Problem> {
         let mut transaction = self.begin().await?;
@@ -189,10 +191,11 @@ impl Staff {
         Ok(Assignment::from_row(&row)?)
     }
 
-    /// Stores an archive with a suite and makes it the assignment's. Submissions from now on are graded by it.
+    /// Stores an archive with a suite and makes it the assignment's. Later submissions are graded by it.
     ///
     /// # Errors
-    /// When there is no such assignment, it was changed since `revision`, or the store fails.
+    ///
+    /// When there is no such assignment, it was changed after `revision`, or the store fails.
     pub async fn set_suite(
         &self,
         slug: &str,
@@ -218,32 +221,34 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Returns whether something that was handed in to an assignment was graded by a suite that hides groups.
+    /// Returns whether any submission to an assignment was graded by a suite that hides groups.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn hides(&self, assignment: &Assignment) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        // Hidden parts of what older versions graded may not be separated yet.
+        // Older versions may not have separated the hidden parts.
         let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
             WHERE submission.assignment = ? AND coalesce(result.shown, 'unknown') <> '' AND result.code <> 'JE'
             LIMIT 1";
         Ok(transaction.row(statement, values![assignment.id]).await?.is_some())
     }
 
-    /// Returns submissions to an assignment of the course after this number, oldest first: a page of them, none after
-    /// the last.
+    /// Returns a page of the submissions to an assignment after a number, oldest first; empty after the last.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn submissions_after(&self, assignment: i64, after: i64) -> Result<Vec<Submission>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(view::submissions_after(&mut transaction, assignment, after).await?)
     }
 
-    /// Returns the events of the course before this number, latest first; with `None` up to now.
+    /// Returns the events of the course before a number, latest first; `None` for the latest.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.app.0.database.read().await?;

@@ -1,4 +1,4 @@
-//! Anybody.
+//! Visitors, who need not be signed in.
 use crate::domain::{
     App, NewSecret,
     accounts::identity::{self, Way},
@@ -7,18 +7,18 @@ use crate::domain::{
 use crate::problem::{Problem, ensure};
 use std::{net::IpAddr, time::Instant};
 
-/// The secrets that a request shows of its asker.
+/// The secrets in a request.
 #[derive(Clone, Default)]
 pub struct Secrets {
-    /// A token.
+    /// The token of a person.
     pub bearer: Option<String>,
     /// The secret of a browser's session.
     pub session: Option<String>,
-    /// The secret of a browser that comes from a learning platform.
+    /// The secret of a browser whose sign-in at a learning platform has begun.
     pub browser: Option<String>,
-    /// The secret of a browser that comes from a provider.
+    /// The secret of a browser whose sign-in at a provider has begun.
     pub provider: Option<String>,
-    /// The address from which the request comes.
+    /// The address that the request comes from.
     pub address: Option<IpAddr>,
 }
 
@@ -28,24 +28,25 @@ pub struct Visitor {
     pub(in crate::domain) secrets: Secrets,
 }
 
-/// Sign-ins by link or token from one address in a minute: a lecture hall may share an address.
-const SIGN_INS: u32 = 600;
+/// The maximum number of sign-ins by link or token from one address per minute; a lecture hall may share an address.
+const MAX_SIGN_INS: u32 = 600;
 
 impl Visitor {
     fn count_sign_in(&self) -> Result<(), Problem> {
-        let bucket = throttle::bucket(self.secrets.address, "sign-in");
-        let passes = self.app.0.throttle.pass(bucket, SIGN_INS, Instant::now());
-        ensure(passes, Problem::too_many("too many people sign in from your address at this moment"))
+        let bucket = throttle::bucket_id(self.secrets.address, "sign-in");
+        let passes = self.app.0.throttle.pass(bucket, MAX_SIGN_INS, Instant::now());
+        ensure(passes, Problem::too_many("too many people are signing in from your address"))
     }
 
-    /// Signs in by a link, which is used up.
+    /// Signs in with a link, which is used up.
     ///
     /// # Errors
-    /// When it is unknown, used or too old.
+    ///
+    /// When the link is unknown, used or too old.
     pub async fn sign_in_by_link(&self, link: &str) -> Result<NewSecret, Problem> {
         self.count_sign_in()?;
         let unknown = || Problem::unknown_secret("link", "ask the course's staff for a new one");
-        // Only who has a link keeps others from writing.
+        // Only requests with a valid link may take the write lock.
         ensure(self.is_link(link).await?, unknown())?;
         let mut transaction = self.app.0.database.begin().await?;
         let (account, way) = identity::use_link(&mut transaction, link).await?.ok_or_else(unknown)?;
@@ -63,10 +64,11 @@ impl Visitor {
         Ok(identity::is_link(&mut transaction, link).await?)
     }
 
-    /// Signs in by a token of a person, until it is revoked.
+    /// Signs in with a token of a person, until it is revoked.
     ///
     /// # Errors
-    /// When it is unknown or revoked.
+    ///
+    /// When the token is unknown or revoked.
     pub async fn sign_in_by_token(&self, token: &str) -> Result<NewSecret, Problem> {
         self.count_sign_in()?;
         let mut transaction = self.app.0.database.read().await?;
@@ -78,9 +80,10 @@ impl Visitor {
         Ok(session)
     }
 
-    /// Ends the session that the request shows.
+    /// Ends the session of the request.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn sign_out(&self) -> Result<(), Problem> {
         if let Some(session) = &self.secrets.session {
@@ -99,15 +102,17 @@ impl Visitor {
     /// Checks that requests can be served.
     ///
     /// # Errors
+    ///
     /// When they can't.
     pub async fn check_ready(&self) -> Result<(), Problem> {
         self.app.0.storage.prove().await
     }
 
-    /// Returns numbers for a monitor, in Prometheus' text format. If the database does not answer they are the
-    /// process's alone.
+    /// Returns the metrics in Prometheus' text format. If the database does not answer, they contain only the process's
+    /// own.
     ///
     /// # Errors
+    ///
     /// When they can't be written as text.
     pub async fn metrics(&self) -> Result<String, Problem> {
         let parts = &self.app.0;

@@ -1,4 +1,4 @@
-//! Grades again what the grader failed on.
+//! Grades submissions again on which the grader failed.
 use crate::domain::{
     Staff,
     submissions::bulk::enqueue_replaced,
@@ -19,10 +19,11 @@ pub struct RegradeOrder {
 }
 
 impl Staff {
-    /// Grades a submission once more, by the assignment's settings as they are.
+    /// Grades a submission again, with the assignment's present settings.
     ///
     /// # Errors
-    /// When there is none of this number, it is being graded, or its bytes are not kept any longer.
+    ///
+    /// When there is no submission with this number, it is being graded, or its bytes are no longer stored.
     pub async fn grade_again(&self, id: i64) -> Result<RegradeOrder, Problem> {
         let submission = self.submission(id).await?;
         let assignment = self.assignment(&submission.assignment).await?;
@@ -40,10 +41,11 @@ impl Staff {
         Ok(RegradeOrder { jobs })
     }
 
-    /// Grades all submissions of an assignment, or of all assignments of the course, on which the grader failed once
-    /// more; how many these are.
+    /// Grades all submissions again on which the grader failed, of one assignment or of the whole course; returns their
+    /// number.
     ///
     /// # Errors
+    ///
     /// When there is no such assignment.
     pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<RegradeOrder, Problem> {
         let assignments = match assignment {

@@ -7,7 +7,7 @@ use crate::{
 };
 use std::ops::RangeInclusive;
 
-/// The payload of a job for a row of `submission`, as [`pieces`] describes.
+/// Builds the payload of a job for a row of `submission`, as described at [`pieces`].
 macro_rules! payload {
     () => {
         "CAST(? AS TEXT) || submission.form || CAST(? AS TEXT) || {quoted}(submission.file_name) || CAST(? AS TEXT)
@@ -16,7 +16,7 @@ macro_rules! payload {
 }
 pub(in crate::domain) use payload;
 
-/// Returns the texts between the columns in a [`payload`]: the same for all submissions to an assignment.
+/// Returns the texts between the columns in a [`payload`], which are the same for all submissions to an assignment.
 pub(in crate::domain) fn pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
     let any = crate::store::Artifact { digest: crate::store::Digest::from_bytes(b""), size: 0 };
     let task = assignment.settings.task(Input { form: Form::Program, name: String::new(), artifact: any });
@@ -32,7 +32,7 @@ pub(in crate::domain) fn pieces(assignment: &Assignment) -> Result<[String; 5], 
     ])
 }
 
-/// Enqueues the submissions to an assignment, of these numbers, on request; their jobs are replaced.
+/// Enqueues submissions to an assignment, given by number, on request; their earlier jobs are replaced.
 pub(in crate::domain) async fn enqueue_replaced(
     transaction: &mut Transaction,
     assignment: &Assignment,
@@ -43,7 +43,7 @@ pub(in crate::domain) async fn enqueue_replaced(
     let mut values: Vec<Value> = vec![format!("again {}", assignment.id).into()];
     values.extend(pieces.into_iter().map(Value::from));
     values.extend([by, assignment.id, *ids.start(), *ids.end()].map(Value::from));
-    // A second apart: uploads that come meanwhile are graded in between.
+    // The jobs are a second apart, so that new uploads are graded in between.
     let statement = concat!(
         "INSERT INTO job (lane, submission, fair_key, payload, state, rank, run_after, enqueued_at, asked_by)
          SELECT 'grading', submission.id, CAST(? AS TEXT), ",

@@ -1,4 +1,4 @@
-//! The work of regrades: one statement does it for all submissions, so that each step is done completely or not at all.
+//! The operations of regrades. One statement handles all submissions, so that each step is complete or has no effect.
 use crate::domain::{
     submissions::bulk::{payload, pieces},
     view::Assignment,
@@ -12,8 +12,8 @@ use crate::{
     values,
 };
 
-/// Enqueues the submissions to an assignment, with a regrade's settings, that the regrade does not know yet; how many
-/// these are.
+/// Enqueues the submissions to an assignment that a regrade does not contain yet, with the regrade's settings; returns
+/// their number.
 pub(in crate::domain) async fn enqueue_missing(
     transaction: &mut Transaction,
     campaign: i64,
@@ -40,8 +40,8 @@ pub(in crate::domain) async fn enqueue_missing(
     Ok(transaction.execute(statement, &values).await?)
 }
 
-/// Makes a regrade's results count, on a person's request, for a reason that students read. Where the grader failed,
-/// the old grade stays.
+/// Makes a regrade's results count, on a person's request, with a reason for students. If the grader failed, the old
+/// grade stays.
 pub(in crate::domain) async fn apply(
     transaction: &mut Transaction,
     campaign: i64,
@@ -70,7 +70,7 @@ pub(in crate::domain) async fn apply(
     score::note_regrade(transaction, campaign).await
 }
 
-/// Takes the rest of a regrade out of the queue.
+/// Cancels the waiting jobs of a regrade.
 pub(in crate::domain) async fn cancel(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
     let statement = "WITH left_over AS (SELECT id FROM job WHERE campaign = ? AND state IN ('waiting', 'running')
            ORDER BY id {for update})

@@ -1,4 +1,4 @@
-//! The texts that are kept with results next to their grades, and the scenes that an attempt has changed.
+//! The texts that are stored with results next to their grades, and the scenes that changed between attempts.
 use crate::domain::{Member, view::Submission};
 use crate::{
     db::{DbError, Row},
@@ -8,49 +8,50 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// Scenes that a result does not accept, each with its verdict in short.
+/// The scenes that a result does not accept, each with its verdict's code.
 pub type FailedScenes = BTreeMap<String, String>;
 
-/// The scenes that an attempt has changed.
+/// The scenes that changed in an attempt.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AttemptChange {
-    /// The number of the attempt before it.
+    /// The number of the preceding attempt.
     pub since: i64,
-    /// Scenes that became right.
+    /// The scenes that became right.
     pub right: Vec<String>,
-    /// Scenes that are no longer right.
+    /// The scenes that are no longer right.
     pub wrong: Vec<String>,
 }
 
 impl AttemptChange {
     /// Returns the difference between two attempts.
-    pub fn between(since: i64, old: &FailedScenes, new: &FailedScenes) -> Self {
+    pub fn compare(since: i64, old: &FailedScenes, new: &FailedScenes) -> Self {
         let names = |scenes: &FailedScenes| scenes.keys().cloned().collect::<BTreeSet<_>>();
         let (old, new) = (names(old), names(new));
         Self { since, right: (&old - &new).into_iter().collect(), wrong: (&new - &old).into_iter().collect() }
     }
 }
 
-/// Reads the column as it is kept: `WA Group/name` in each line.
+/// Reads the column's form: a line such as `WA Group/name` for each scene.
 fn read(text: &str) -> FailedScenes {
     let lines = text.lines().filter_map(|line| line.split_once(' '));
     lines.map(|(code, scene)| (scene.to_owned(), code.to_owned())).collect()
 }
 
-/// The texts that are kept with a result next to its grade.
+/// The texts that are stored with a result next to its grade.
 #[derive(Debug, Default)]
 pub struct KeptResult {
-    /// The scenes that it does not accept.
+    /// The scenes that the result does not accept.
     pub failed: FailedScenes,
-    /// Points of groups and likely mistakes; empty if an older version graded.
+    /// The points of groups and the likely mistakes; empty for results of an older version.
     pub parts: GradeParts,
 }
 
 impl Member {
-    /// Returns the kept texts of results of the course, by their numbers; none for results of older versions. They
-    /// describe hidden groups, too: students may read them if the groups are published, or none is hidden.
+    /// Returns the stored texts of the course's results, by number; empty for results of older versions. They include
+    /// hidden groups, so students may read them only if the groups are published, or none is hidden.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn kept_results(&self, results: &[i64]) -> Result<BTreeMap<i64, KeptResult>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
@@ -69,10 +70,11 @@ impl Member {
         Ok(rows.iter().map(kept).collect::<Result<_, DbError>>()?)
     }
 
-    /// Returns the changes that attempts of one person made since the graded one before each, by their numbers on this
-    /// server. The newest comes first. Attempts with withheld groups are left out.
+    /// Returns the changes between consecutive graded attempts of one person, by the number of the later one, newest
+    /// first. Attempts with withheld groups are left out.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn changes(&self, attempts: &[Submission]) -> Result<BTreeMap<i64, AttemptChange>, Problem> {
         let graded = attempts.iter().filter_map(|one| Some((one, one.grade.as_ref()?.result)));
@@ -81,7 +83,7 @@ impl Member {
         let kept = self.kept_results(&results).await?;
         let change = |pair: &[(&Submission, i64)]| {
             let [(later, new), (earlier, old)] = *pair else { return None };
-            let change = AttemptChange::between(earlier.number, &kept.get(&old)?.failed, &kept.get(&new)?.failed);
+            let change = AttemptChange::compare(earlier.number, &kept.get(&old)?.failed, &kept.get(&new)?.failed);
             Some((later.id, change))
         };
         Ok(graded.windows(2).filter_map(change).collect())
@@ -96,7 +98,7 @@ mod tests {
     fn an_attempt_makes_scenes_right_and_others_wrong() {
         let (old, new) = (read("WA a/b\nTLE a/c d\n"), read("WA a/c d\nRTE e"));
         assert_eq!(old["a/c d"], "TLE");
-        let change = AttemptChange::between(3, &old, &new);
+        let change = AttemptChange::compare(3, &old, &new);
         assert_eq!((change.right, change.wrong), (vec!["a/b".to_owned()], vec!["e".to_owned()]));
         assert_eq!(read(""), FailedScenes::new());
     }

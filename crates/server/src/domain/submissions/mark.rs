@@ -1,4 +1,4 @@
-//! Decisions of staff about a student's work: other points, a comment, more time; and requests of students.
+//! Decisions of staff about a student's work (other points, a comment, more time), and students' requests for a review.
 use crate::domain::{
     Member, Staff,
     accounts::identity,
@@ -12,39 +12,39 @@ use crate::{
     values,
 };
 
-/// The greatest length of a comment or a request.
-const LONGEST: usize = 2000;
+/// The maximum length of a comment or a request.
+const MAX_TEXT_LENGTH: usize = 2000;
 
 /// A student's work on an assignment.
 #[derive(Debug, Clone)]
 pub struct StudentHistory {
-    /// The name of their account.
+    /// The login of the student's account.
     pub login: String,
     /// The student's name.
     pub name: String,
     /// All submissions of the student, newest first.
     pub submissions: Vec<Submission>,
-    /// The time until which the student may hand in, if it differs from the others'.
+    /// The student's own due date, if it differs from the assignment's.
     pub extended_to: Option<i64>,
 }
 
-/// An unanswered request of a student.
+/// A student's request for a review that was not answered.
 #[derive(Debug, Clone)]
 pub struct Request {
-    /// The submission.
+    /// The submission's number.
     pub submission: i64,
     /// The owner's login.
     pub login: String,
-    /// The question.
+    /// The student's question about the grade.
     pub text: String,
 }
 
 /// The state of an assignment, for the table of its course.
 #[derive(Debug, Clone)]
 pub struct Overview {
-    /// Students of the course.
+    /// The number of students in the course.
     pub students: i64,
-    /// Those of them who handed something in.
+    /// The number of students who have submitted something.
     pub handed_in: i64,
     /// The number of submissions.
     pub submissions: i64,
@@ -64,15 +64,16 @@ fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
             hidden.escape_unicode()
         )));
     }
-    let is_fit = (least..=LONGEST).contains(&length);
-    ensure(is_fit, Problem::invalid(format!("{what} must have {least} to {LONGEST} characters")))
+    let is_fit = (least..=MAX_TEXT_LENGTH).contains(&length);
+    ensure(is_fit, Problem::invalid(format!("{what} must have {least} to {MAX_TEXT_LENGTH} characters")))
 }
 
 impl Staff {
-    /// Gives a submission other points than the grader, or the grader's again, with a reason. That answers a request.
+    /// Gives a submission other points than the grader's, or the grader's again, with a reason. This answers a request.
     ///
     /// # Errors
-    /// When there is no such submission, these are no points, or it was marked since the mark of the moment `seen`.
+    ///
+    /// When there is no such submission, the points are invalid, or the submission was marked after the time `seen`.
     pub async fn mark(
         &self,
         id: i64,
@@ -82,7 +83,7 @@ impl Staff {
     ) -> Result<Submission, Problem> {
         check_words("a comment", comment, 0)?;
         if points.is_some() && comment.is_empty() {
-            return Err(Problem::conflict("other points need a reason", "say it in the comment"));
+            return Err(Problem::conflict("different points need a reason", "write it in the comment"));
         }
         let is_number = |text: &str| {
             text.len() <= 30
@@ -143,10 +144,11 @@ impl Staff {
         Ok(transaction.all(statement, values![assignment.id]).await?)
     }
 
-    /// Returns all that a student handed in to an assignment.
+    /// Returns all submissions of a student to an assignment.
     ///
     /// # Errors
-    /// When they are no member and handed nothing in.
+    ///
+    /// When the person is not a member and has submitted nothing.
     pub async fn student_history(&self, slug: &str, login: &str) -> Result<StudentHistory, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?;
@@ -172,10 +174,11 @@ impl Staff {
         row.ok_or_else(|| Problem::not_found("member"))
     }
 
-    /// Gives a student another due date than the others, or the same again.
+    /// Sets a student's own due date, or removes it.
     ///
     /// # Errors
-    /// When there is no such student, or the date was changed since the event `seen`.
+    ///
+    /// When there is no such student, or the date was changed after the event `seen`.
     pub async fn extend(&self, slug: &str, login: &str, due_at: Option<i64>, seen: Option<i64>) -> Result<(), Problem> {
         identity::check_slug("a login", login)?;
         if due_at.is_some_and(|due| !calendar::is_plausible(due)) {
@@ -208,20 +211,21 @@ impl Staff {
 }
 
 impl Member {
-    /// Requests that staff reviews one's own submission.
+    /// Requests that staff reviews the member's submission.
     ///
     /// # Errors
-    /// When it is not one's own, or the request is empty.
+    ///
+    /// When the submission is not the member's, or the request is empty.
     pub async fn request(&self, id: i64, text: &str) -> Result<(), Problem> {
         check_words("a request", text, 1)?;
         let mut transaction = self.app.0.database.begin().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
         if submission.account != self.account.id {
-            return Err(Problem::not_allowed("this is for the person who handed it in"));
+            return Err(Problem::not_allowed("only the person who submitted it can do this"));
         }
         let before = submission.mark.and_then(|mark| mark.request).unwrap_or_default();
-        if before.chars().count() + text.chars().count() > 5 * LONGEST {
-            return Err(Problem::conflict("your requests are too long together", "speak with the course's staff"));
+        if before.chars().count() + text.chars().count() > 5 * MAX_TEXT_LENGTH {
+            return Err(Problem::conflict("your requests are too long altogether", "talk to the course's staff"));
         }
         let text = if before.is_empty() { text.to_owned() } else { format!("\n\n{text}") };
         let statement = "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})
@@ -250,9 +254,10 @@ impl Member {
         Ok(transaction.find(statement, values![self.course, assignment.id, self.course, assignment.id]).await?)
     }
 
-    /// Returns the time until which this member may hand in.
+    /// Returns the member's due date.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn due(&self, assignment: &Assignment) -> Result<Option<i64>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
@@ -266,7 +271,7 @@ async fn extension(transaction: &mut Transaction, assignment: i64, account: i64)
     row.map(|row| row.int("due_at")).transpose()
 }
 
-/// Returns the time until which an account may hand in: an extension gives more time, and never less.
+/// Returns an account's due date; an extension can only give more time.
 pub(in crate::domain) async fn due(
     transaction: &mut Transaction,
     assignment: &Assignment,

@@ -1,4 +1,4 @@
-//! Submissions: handing in, grading again, marks and standings.
+//! Submissions: uploading, grading again, marks and standings.
 
 pub(super) mod again;
 pub(super) mod bulk;

@@ -1,5 +1,5 @@
-//! A regrade: new results next to the old ones, at low priority, until a member of staff applies or discards them.
-//! Until then no grade changes.
+//! Regrades: new results next to the old ones, at low priority, until a member of staff applies or discards them. Until
+//! then no grade changes.
 use crate::domain::{Settings, Staff, submissions::campaign, view::Assignment};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
@@ -10,18 +10,18 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// The greatest number of changes in one answer.
-const CHANGES: i64 = 1000;
+/// The maximum number of changes in one answer.
+const MAX_CHANGES: i64 = 1000;
 
-/// The place where a regrade is.
+/// The state of a regrade.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum RegradeState {
-    /// No decision was made yet.
+    /// Staff have not decided yet.
     Open,
     /// The regrade's results count.
     Applied,
-    /// The results never counted.
+    /// The regrade was discarded, and its results never counted.
     Discarded,
 }
 
@@ -30,57 +30,57 @@ pub enum RegradeState {
 pub struct Regrade {
     /// The regrade's number.
     pub id: i64,
-    /// The place where it is.
+    /// The state of the regrade.
     pub state: RegradeState,
-    /// The reason why it is done, as students read it when it is applied.
+    /// The reason for the regrade, which students read after it is applied.
     pub reason: String,
-    /// The settings by which submissions are graded this time.
+    /// The settings that the regrade uses.
     pub settings: Settings,
     /// The account that began the regrading.
     pub by: String,
-    /// The time of its creation, in milliseconds since 1970.
+    /// The time of creation, in milliseconds since 1970.
     pub created_at: i64,
-    /// The number of submissions that it grades.
+    /// The number of submissions in the regrade.
     pub submissions: usize,
     /// The number of submissions that are still to be graded.
     pub left: usize,
-    /// The number of submissions on which the grader failed: their grades stay.
+    /// The number of submissions on which the grader failed; their grades stay.
     pub failed: usize,
     /// The number of grades that change.
     pub changed: usize,
-    /// The changes, by submission: as many as were requested.
+    /// The changes by submission, up to the requested number.
     pub changes: Vec<Change>,
-    /// The submission after which there are more changes.
+    /// The submission after which there are more changes; null if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<i64>,
 }
 
-/// A grade that changes, and why.
+/// A changed grade, with the reasons.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Change {
-    /// The submission.
+    /// The submission's number on this server.
     pub submission: i64,
     /// The number of the submission among those of its owner to the assignment.
     pub number: i64,
-    /// The owner's login.
+    /// The login of the owner.
     pub login: String,
-    /// The verdict that counts now.
+    /// The verdict that counts at present.
     pub old_code: Option<String>,
-    /// The points that count now.
+    /// The points that count at present.
     pub old_points: Option<String>,
-    /// One line about the result.
+    /// The present result in one line.
     pub old_summary: Option<String>,
     /// The verdict of the regrade.
     pub new_code: String,
-    /// The new points.
+    /// The points of the regrade.
     pub new_points: Option<String>,
-    /// The new result in one line.
+    /// The result of the regrade in one line.
     pub new_summary: String,
-    /// The differences of the two gradings: version, suite, rules, limits.
+    /// The differences between the two gradings, such as version, suite, rules or limits.
     pub why: Vec<String>,
 }
 
-/// Regrades without their changes; the rest of the statement selects them.
+/// Selects regrades without their changes; the argument is the rest of the statement.
 macro_rules! regrades {
     ($which:literal) => {
         concat!(
@@ -92,10 +92,11 @@ macro_rules! regrades {
 }
 
 impl Staff {
-    /// Begins a regrade of all submissions to an assignment by settings.
+    /// Begins a regrade of all submissions to an assignment, with given settings.
     ///
     /// # Errors
-    /// When another one is open.
+    ///
+    /// When another regrade of the assignment is open.
     pub async fn regrade(&self, slug: &str, reason: &str, settings: &Settings) -> Result<Regrade, Problem> {
         crate::domain::accounts::identity::check_title("a reason", reason)?;
         let assignment = self.assignment(slug).await?;
@@ -138,11 +139,12 @@ impl Staff {
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
     }
 
-    /// Makes the results of a regrade count, and its settings about grading the assignment's. Where the grader failed,
-    /// the old grade stays.
+    /// Makes the results of a regrade count, and copies its settings for grading to the assignment. If the grader
+    /// failed, the old grade stays.
     ///
     /// # Errors
-    /// When it is not finished: submissions that arrived meanwhile are graded first, too.
+    ///
+    /// When the regrade is not finished; submissions that arrived since must be graded first, too.
     pub async fn apply_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
@@ -154,7 +156,7 @@ impl Staff {
             return Err(Problem::conflict(
                 match missing {
                     1 => "1 submission arrived meanwhile, and is graded now".to_owned(),
-                    _ => format!("{missing} submissions arrived meanwhile, and are graded now"),
+                    _ => format!("{missing} submissions arrived since the regrade began, and are being graded"),
                 },
                 "check them, then apply",
             ));
@@ -162,7 +164,7 @@ impl Staff {
         let statement = "SELECT count(*) AS n FROM job WHERE campaign = ? AND state IN ('waiting', 'running')";
         let waiting = transaction.one(statement, values![id]).await?.int("n")?;
         ensure(waiting == 0, Problem::conflict(format!("{waiting} submissions are not graded yet"), "wait"))?;
-        // From now on submissions are graded by these settings.
+        // Later submissions are graded by these settings.
         let before = "SELECT settings FROM assignment WHERE id = ? {for update}";
         let before = transaction.one(before, values![of_regrade.id]).await?.text("settings")?;
         let settings = Settings::read(&before)?.graded_as(&settings).text();
@@ -173,10 +175,11 @@ impl Staff {
         self.show_regrade(slug, id, None).await
     }
 
-    /// Discards a regrade: its waiting jobs are canceled, and nothing changes.
+    /// Discards a regrade: its waiting jobs are canceled, and no grade changes.
     ///
     /// # Errors
-    /// When there is none, or it was applied or discarded.
+    ///
+    /// When there is no such regrade, or it was applied or discarded.
     pub async fn discard_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
@@ -202,7 +205,7 @@ impl Staff {
         }
     }
 
-    /// Writes the decision on a regrade.
+    /// Stores the decision on a regrade.
     async fn decide(
         &self,
         mut transaction: Transaction,
@@ -237,7 +240,7 @@ impl FromRow for Regrade {
     }
 }
 
-/// The jobs of a regrade whose results differ from what counts, or counted before it was applied.
+/// Selects the jobs of a regrade whose results differ from the counting ones, or from those before it was applied.
 macro_rules! changes {
     ($columns:literal, $rest:literal) => {
         concat!(
@@ -279,8 +282,8 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
             old.version AS old_version, old.task AS old_task",
         "AND job.submission > ? ORDER BY job.submission LIMIT ?"
     );
-    regrade.changes = transaction.all(statement, values![id, after, CHANGES]).await?;
-    let is_full = i64::try_from(regrade.changes.len()).is_ok_and(|changes| changes == CHANGES);
+    regrade.changes = transaction.all(statement, values![id, after, MAX_CHANGES]).await?;
+    let is_full = i64::try_from(regrade.changes.len()).is_ok_and(|changes| changes == MAX_CHANGES);
     regrade.next = regrade.changes.last().filter(|_| is_full).map(|change| change.submission);
     Ok(regrade)
 }
@@ -294,10 +297,10 @@ impl FromRow for Change {
     }
 }
 
-/// Returns the differences of two gradings of one submission.
+/// Returns the differences between two gradings of one submission.
 fn differences(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
-        return Ok(vec!["there was no grade before".to_owned()]);
+        return Ok(vec!["there was no earlier grade".to_owned()]);
     };
     let mut why = Vec::new();
     let new_version = row.text("new_version")?;

@@ -1,5 +1,5 @@
-//! The standing of a class: the submission of each student that counts. The database puts each student's attempts into
-//! one row, and only submissions that are shown are read whole. Simultaneous requests share one answer.
+//! The standings of a class: for each student, the submission that counts. The database puts each student's attempts
+//! into one row, and only submissions that are shown are read completely. Simultaneous requests share one answer.
 use crate::domain::{
     Staff,
     view::{self, Assignment, Submission},
@@ -21,67 +21,67 @@ use utoipa::ToSchema;
 /// The standing of a student in an assignment.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Standing {
-    /// The name of their account.
+    /// The login of the student's account.
     pub login: String,
     /// The student's name.
     pub name: String,
     /// The number of the student's submissions.
     pub submissions: usize,
-    /// The submission that counts: the one with the most points, of equal ones the later; the last one while none has
+    /// The submission that counts: the one with the most points, of equal ones the latest; the last one if none has
     /// points.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub counts: Option<Submission>,
 }
 
-/// A student's standing in short, for the class's figures.
+/// A student's standing, reduced to what statistics need.
 #[derive(Debug, Clone)]
 pub struct ShortStanding {
-    /// The name of their account.
+    /// The login of the student's account.
     pub login: String,
     /// The student's name.
     pub name: String,
     /// The number of the student's submissions.
     pub submissions: usize,
-    /// The submission that counts.
+    /// The submission that counts, reduced.
     pub counts: Option<CountedSubmission>,
 }
 
-/// The submission that counts, in short.
+/// A submission that counts, reduced to what statistics need.
 #[derive(Debug, Clone)]
 pub struct CountedSubmission {
     /// The submission's number.
     pub id: i64,
-    /// The submission's points, by hand or less what being late costs.
+    /// The submission's points, set by staff or reduced for being late.
     pub points: Option<String>,
-    /// The submission's verdict in short, once it is graded.
+    /// The code of the submission's verdict, after it is graded.
     pub code: Option<String>,
-    /// The digest of the file that was handed in, once it is graded.
+    /// The digest of the uploaded file, after it is graded.
     pub digest: String,
-    /// Whether it arrived late, and that costs points.
+    /// Whether the submission is late and loses points.
     pub is_late: bool,
-    /// The most points that could be had.
+    /// The maximum number of points.
     pub max_points: Option<String>,
     /// One line about the result.
     pub summary: String,
 }
 
-/// Answers that simultaneous requests share.
+/// Answers that simultaneous requests share, by assignment.
 #[derive(Debug, Default)]
 pub(in crate::domain) struct SharedStandings(Mutex<HashMap<i64, Arc<SharedAnswer>>>);
 
-/// The last answer, and when its making began.
+/// The last answer, and the time when its computation began.
 type SharedAnswer = tokio::sync::Mutex<Option<(Instant, Arc<Vec<ShortStanding>>)>>;
 
-/// If there are more answers than this, those without a waiting request are dropped.
-const MANY: usize = 32;
+/// The number of answers above which those without waiting requests are dropped.
+const MAX_ANSWERS: usize = 32;
 
-/// Submissions that are read whole at a time.
-const PAGE: usize = 500;
+/// The number of submissions that are read completely in one statement.
+const PAGE_SIZE: usize = 500;
 
 impl SharedStandings {
     fn answer_for(&self, assignment: i64) -> Arc<SharedAnswer> {
         let mut answers = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if answers.len() > MANY {
+        if answers.len() > MAX_ANSWERS {
             answers.retain(|_, answer| Arc::strong_count(answer) > 1);
         }
         answers.entry(assignment).or_default().clone()
@@ -89,15 +89,16 @@ impl SharedStandings {
 }
 
 impl Staff {
-    /// Returns the standing of all students in an assignment, in short and by their logins.
+    /// Returns the reduced standings of all students in an assignment, by their logins.
     ///
     /// # Errors
+    ///
     /// When the database does not answer.
     pub async fn short_standings(&self, assignment: &Assignment) -> Result<Arc<Vec<ShortStanding>>, Problem> {
         let asked = Instant::now();
         let answer = self.app.0.standings.answer_for(assignment.id);
         let mut last = answer.lock().await;
-        // An answer that was begun since is up to date.
+        // An answer whose computation began after the request is recent enough.
         if let Some((_, standings)) = last.as_ref().filter(|(began, _)| *began >= asked) {
             return Ok(standings.clone());
         }
@@ -126,7 +127,7 @@ impl Staff {
         let ids: Vec<i64> = short.iter().filter_map(|one| Some(one.counts.as_ref()?.id)).collect();
         let mut submissions = HashMap::new();
         let mut transaction = self.app.0.database.read().await?;
-        for ids in ids.chunks(PAGE) {
+        for ids in ids.chunks(PAGE_SIZE) {
             let read = view::submissions_named(&mut transaction, ids).await?;
             submissions.extend(read.into_iter().map(|submission| (submission.id, submission)));
         }
@@ -140,7 +141,7 @@ impl Staff {
     }
 }
 
-/// The attempt of a student that counts so far.
+/// The best attempt of a student so far.
 #[derive(Clone)]
 struct Best {
     id: i64,
@@ -149,7 +150,7 @@ struct Best {
 }
 
 impl Best {
-    /// Returns the best of attempts, oldest first: `ID MOMENT POINTS`, with commas between them.
+    /// Returns the best of several attempts, which are given oldest first as `ID TIME POINTS`, separated by commas.
     fn from_list(
         list: &str,
         by_hand: &HashMap<i64, String>,
@@ -196,12 +197,12 @@ async fn read(
     let statement = "SELECT account, due_at FROM extension WHERE assignment = ?";
     let rows = transaction.rows(statement, values![id]).await?;
     let own_due: HashMap<i64, i64> = map(&rows, |row| Ok((row.int("account")?, row.int("due_at")?)))?;
-    // The names of members, and of others who handed something in.
+    // The names of members, and of others who have submitted something.
     let statement = "SELECT account.id, account.login, account.name, coalesce(member.role, 'student') AS role
         FROM account LEFT JOIN member ON member.account = account.id AND member.course = ?
         WHERE member.role IS NOT NULL OR account.id IN (SELECT account FROM submission WHERE assignment = ?)";
     let people = transaction.rows(statement, values![course, id]).await?;
-    // Staff tries assignments, too.
+    // Staff try assignments, too.
     let staff = people.iter().filter(|row| row.text("role").is_ok_and(|role| role == "staff"));
     let staff = staff.map(|row| row.int("id")).collect::<Result<HashSet<_>, _>>()?;
     let statement = "SELECT submission.account, count(*) AS n, string_agg(submission.id || ' ' || submission.created_at

@@ -1,4 +1,4 @@
-//! Handing in: the submission, its job and the event are written in one transaction, after its bytes are safely stored.
+//! Uploading: the submission, its job and the event are written in one transaction, after its bytes are safely stored.
 use crate::domain::{
     Member,
     submissions::mark,
@@ -19,53 +19,54 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The time that an upload waits until all earlier ones are written: at a deadline no upload is rejected after it was
-/// let in.
-const CROWD: Duration = Duration::from_secs(240);
+/// The maximum time that an upload waits for earlier ones: at a deadline, no upload is rejected after its request was
+/// accepted.
+const CROWD_TIMEOUT: Duration = Duration::from_secs(240);
 
 const MINUTE: i64 = 60 * 1000;
 const HOUR: i64 = 60 * MINUTE;
 
-/// The upload.
+/// An upload before it becomes a submission.
 #[derive(Debug, Clone)]
 pub struct Upload<'a> {
     /// The upload's form.
     pub form: Form,
-    /// The upload's name: a plain file name.
+    /// The upload's name, which is a plain file name.
     pub name: &'a str,
-    /// The place of its bytes.
+    /// The file with the upload's bytes.
     pub file: &'a Path,
-    /// The sender's name for this upload: sent twice, it is one submission.
+    /// The sender's key for the upload; two uploads with one key are one submission.
     pub key: Option<&'a str>,
-    /// The time when its request arrived, by the database's clock: it decides about due dates and limits.
+    /// The time when the request arrived, by the database's clock, which counts for due dates and limits.
     pub came_at: i64,
 }
 
-/// The outcome.
+/// The result of an upload.
 #[derive(Debug, Clone)]
 pub struct SubmitResult {
     /// The submission.
     pub submission: Submission,
-    /// Whether it had been handed in before, by the same key.
+    /// Whether the submission existed already, with the same key.
     pub repeated: bool,
 }
 
 impl Member {
-    /// Hands in.
+    /// Submits an upload.
     ///
     /// # Errors
-    /// When the assignment does not accept it (any more), or the server can't. Then nothing was handed in, or the same
-    /// key finds the submission.
+    ///
+    /// When the assignment does not accept it, or the server can't store it. Then there is no submission, or the same
+    /// key finds it.
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<SubmitResult, Problem> {
         let (_, assignment) = self.read_at(assignment).await?;
         if !assignment.settings.takes(upload.form) {
             let (taken, found) = (assignment.settings.describe_forms(), upload.form.describe());
             return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
         }
-        // Simultaneous uploads of an account are checked one after another, so that nothing is stored of an upload for
-        // which the one before leaves no room.
+        // Simultaneous uploads of an account are checked one after another, so that nothing of an upload is stored if
+        // the one before used up the limit.
         let _turn = self.app.limits.turn(self.account.id).await?;
-        // Nothing is stored of an upload that is rejected, or was stored before.
+        // An upload that is rejected, or was stored before, is not stored.
         let artifact = digest_of_file(upload.file).await?;
         let mut transaction = self.app.0.database.read().await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
@@ -73,8 +74,8 @@ impl Member {
         }
         drop(transaction);
         let artifact = self.app.0.store.put_file(upload.file).await?;
-        let mut transaction = self.app.0.database.begin_within(CROWD).await?;
-        // One after another for each student: numbers are given out here, and limits counted.
+        let mut transaction = self.app.0.database.begin_within(CROWD_TIMEOUT).await?;
+        // Uploads of one student are handled one after another, because numbers are assigned and limits counted here.
         transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
             return Ok(SubmitResult { submission, repeated: true });
@@ -84,11 +85,12 @@ impl Member {
         Ok(SubmitResult { submission: self.submission(submission).await?, repeated: false })
     }
 
-    /// Returns when the request of an upload arrived, by the database's clock. It also checks the key and the announced
-    /// size: an upload that is rejected later would have been sent for nothing.
+    /// Returns the time when the request of an upload arrived, by the database's clock. Checks the key and the
+    /// announced size before the body is sent.
     ///
     /// # Errors
-    /// When it may not be handed in.
+    ///
+    /// When the upload is not allowed.
     pub async fn check_announced(
         &self,
         assignment: &str,
@@ -101,7 +103,7 @@ impl Member {
         let Some((key, size)) = announced else { return Ok(came_at) };
         if let Some(key) = key {
             let statement = "SELECT word FROM upload_key WHERE account = ? AND word = ?";
-            // It may have been handed in before.
+            // The upload may be a repetition.
             if transaction.row(statement, values![self.account.id, key]).await?.is_some() {
                 return Ok(came_at);
             }
@@ -113,7 +115,7 @@ impl Member {
         Ok(came_at)
     }
 
-    /// Returns the earlier submission with this key, or nothing if this upload may become one.
+    /// Returns the earlier submission with the same key, or `None` if a new one is allowed.
     async fn admit(
         &self,
         transaction: &mut Transaction,
@@ -145,8 +147,8 @@ impl Member {
         let Some(row) = row else { return Ok(None) };
         if row.int("assignment")? != assignment.id || row.text("digest")? != artifact.digest.as_str() {
             return Err(Problem::conflict(
-                "this key was used for another upload",
-                "give every upload a key of its own",
+                "this key was already used for another upload",
+                "use a different key for every upload",
             ));
         }
         Ok(Some(self.find_submission(transaction, row.int("submission")?).await?))
@@ -159,7 +161,7 @@ impl Member {
         came_at: i64,
     ) -> Result<(), Problem> {
         let settings = &assignment.settings;
-        // A failure of the grader costs no try.
+        // A failure of the grader does not count as an attempt.
         let statement = "SELECT {now} AS now, count(*) AS n,
                count(CASE WHEN submission.created_at > ? AND submission.created_at <= {now} THEN 1 END) AS recent,
                min(CASE WHEN submission.created_at > ? THEN submission.created_at END) AS oldest
@@ -171,7 +173,7 @@ impl Member {
             transaction.one(statement, values![came_at - HOUR, came_at - HOUR, assignment.id, self.account.id]).await?;
         let due = mark::due(transaction, assignment, self.account.id).await?;
         if due.is_some_and(|due| came_at > settings.late_policy().closes_at(due)) {
-            return Err(Problem::conflict("the due date is over", "ask the course's staff"));
+            return Err(Problem::conflict("the due date has passed", "ask the course's staff"));
         }
         if settings.attempts > 0 && row.int("n")? >= settings.attempts.into() {
             return Err(Problem::conflict(
@@ -180,7 +182,7 @@ impl Member {
             ));
         }
         if settings.per_hour > 0 && row.int("recent")? >= settings.per_hour.into() {
-            // Until the oldest of this hour is an hour old.
+            // The limit allows a submission when the oldest one is an hour old.
             let again = row.int("oldest")? + HOUR;
             let detail = format!(
                 "at most {} submissions in an hour: the next one is possible from {} UTC",
@@ -202,7 +204,7 @@ impl Member {
     ) -> Result<i64, Problem> {
         let input = Input { form: upload.form, name: upload.name.to_owned(), artifact: artifact.clone() };
         let task = assignment.settings.task(input);
-        // A number that was given out once is not given out again, whatever was removed since.
+        // A number is never assigned again, even after a removal.
         let statement = "INSERT INTO numbering (assignment, account, last) VALUES (?, ?, 1)
             ON CONFLICT (assignment, account) DO UPDATE SET last = numbering.last + 1 RETURNING last AS number";
         let number = transaction.one(statement, values![assignment.id, self.account.id]).await?.int("number")?;

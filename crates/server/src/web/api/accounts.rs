@@ -1,4 +1,4 @@
-//! Accounts, tokens, and what administrators see.
+//! The API of accounts, tokens, and administrators' lists.
 use super::super::input::{AddressParts, Body, ListEnd, QueryInput};
 use crate::{
     domain::{Account, Admin, Event, Link, NewToken, Person, Queue, TokenInfo},
@@ -17,7 +17,7 @@ pub(in crate::web) struct TokenName {
     pub(in crate::web) name: String,
 }
 
-/// The name of workers with a token.
+/// The names of a worker and its token.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct WorkerTokenName {
@@ -42,7 +42,7 @@ pub(super) async fn me(person: Person) -> Json<Account> {
     Json(person.account.clone())
 }
 
-/// Makes a token for oneself.
+/// Creates a token for the person who is signed in.
 #[utoipa::path(post, path = "/api/v1/tokens", tag = "accounts", security(("session" = [])), request_body = TokenName,
     responses((status = 201, body = NewToken)))]
 pub(super) async fn new_token(
@@ -52,7 +52,7 @@ pub(super) async fn new_token(
     Ok((StatusCode::CREATED, Json(person.new_token(&wish.name).await?)))
 }
 
-/// Returns everything that happened, latest first, 200 at a time.
+/// Returns the events of the audit log, latest first, 200 at a time.
 #[utoipa::path(get, path = "/api/v1/audit", tag = "administration",
     params(("before" = Option<i64>, Query, description = "Only events before this one")),
     responses((status = 200, body = Vec<Event>)))]
@@ -61,31 +61,31 @@ pub(super) async fn audit(admin: Admin, QueryInput(asked): QueryInput<ListEnd>) 
 }
 
 answers! { CREATED:
-    /// Makes a token for workers on other machines.
+    /// Creates a token for workers on other machines.
     post "/api/v1/worker-tokens" "administration"
         new_worker_token(admin: Admin, wish: WorkerTokenName) -> NewToken: admin.new_worker_token(&wish.name);
 }
 
 answers! { OK:
-    /// Makes an account or changes it, and returns a link that signs in once.
+    /// Creates an account or changes it, and returns a link that signs in once.
     put "/api/v1/accounts/{login}" "administration"
         set_account(admin: Admin, { login }, wish: AccountWish) -> Link:
             admin.set_account(&login, &wish.name, wish.is_admin);
-    /// One's own tokens.
+    /// Lists the tokens of the person who is signed in.
     get "/api/v1/tokens" "accounts" tokens(person: Person) -> Vec<TokenInfo>: person.tokens();
-    /// All accounts.
+    /// Lists all accounts.
     get "/api/v1/accounts" "administration" accounts(admin: Admin) -> Vec<Account>: admin.accounts();
-    /// The tokens of workers.
+    /// Lists the tokens of workers.
     get "/api/v1/worker-tokens" "administration" worker_tokens(admin: Admin) -> Vec<TokenInfo>: admin.worker_tokens();
-    /// The queue and the workers.
+    /// Returns the queue and the workers.
     get "/api/v1/queue" "administration" queue(admin: Admin) -> Queue: admin.queue();
 }
 
 deeds! { NO_CONTENT:
-    /// Revokes a token of one's own.
+    /// Revokes a token of the person who is signed in.
     delete "/api/v1/tokens/{id}" "accounts"
         revoke_token(person: Person, { id }) -> "Revoked": person.revoke_token(id);
-    /// Shuts an account.
+    /// Closes an account.
     delete "/api/v1/accounts/{login}" "administration"
         disable_account(admin: Admin, { login }) -> "Shut": admin.disable_account(&login);
     /// Removes a person: their submissions with the results, their names, and every way to sign in. This cannot be

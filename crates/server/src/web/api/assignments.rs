@@ -1,4 +1,4 @@
-//! Assignments, and a class's results.
+//! The API of assignments, and of a class's results.
 use super::super::{
     input::{AddressParts, Body, QueryInput, SeenEvent, whole_numbers},
     look, upload,
@@ -21,22 +21,22 @@ use serde_json::{Map, Value};
 use std::path::Path;
 use utoipa::ToSchema;
 
-/// The largest archive of a suite.
-const SUITE: u64 = 64 << 20;
+/// The maximum size of a suite's archive, in bytes.
+const MAX_SUITE_BYTES: u64 = 64 << 20;
 
-/// The new state of an assignment. Parts and settings that are not named stay as they are; a setting that is null is
+/// The new state of an assignment. Parts and settings that are not given stay as they are; a setting that is null is
 /// removed.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AssignmentWish {
     #[schema(value_type = Title)]
     title: String,
-    /// Whether students see it; not at first.
+    /// Whether students see the assignment; by default they do not.
     visible: Option<bool>,
     #[serde(default, deserialize_with = "whole_numbers")]
     #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
-    /// The revision that was changed: with it the change is rejected if there is a later one.
+    /// The revision that the change is based on. If it is given, the change is rejected if there is a later one.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     revision: Option<i64>,
 }
@@ -60,24 +60,24 @@ pub(super) struct GradesFormat {
     format: Option<String>,
 }
 
-/// A due date of a student's own.
+/// A student's own due date.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Extension {
-    /// Milliseconds since 1970, or a date with its time zone.
+    /// The due date in milliseconds since 1970, or as a date with its time zone.
     #[serde(deserialize_with = "moment")]
     #[schema(schema_with = moment_schema, required = true)]
     due_at: Option<i64>,
-    /// The last event of the audit log that the sender has seen: with it a change is rejected if there is a later one
-    /// of this extension.
+    /// The last event of the audit log that the sender has seen. If it is given, the change is rejected if there is a
+    /// later one of this extension.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     seen: Option<i64>,
 }
 
-/// Uploads an archive (zip, tar, tar.gz) with a `suite.toml` at its top as the assignment's suite.
-/// Groups that it hides are withheld, also where others were published.
+/// Uploads an archive (zip, tar, tar.gz) with a `suite.toml` at its top as the assignment's suite. Groups that it hides
+/// are withheld, even if others were published.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
-    params(("revision" = Option<i64>, Query, description = "The revision of the assignment that the change is of")),
+    params(("revision" = Option<i64>, Query, description = "The revision that the change is based on")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 200, body = Assignment)))]
 pub(super) async fn set_suite(
@@ -96,7 +96,7 @@ pub(in crate::web) async fn receive_suite(
     asked: &Revision,
     request: Request,
 ) -> Result<Assignment, Problem> {
-    let received = upload::receive(&staff.app, request, SUITE).await?;
+    let received = upload::receive(&staff.app, request, MAX_SUITE_BYTES).await?;
     let app = &staff.app;
     ensure(std::fs::metadata(&received.file)?.len() > 0, Problem::no_suite("the file is empty"))?;
     let folder = tempfile::tempdir_in(&app.incoming)?;
@@ -108,14 +108,14 @@ pub(in crate::web) async fn receive_suite(
     staff.set_suite(assignment, &received.file, suite, asked.revision).await
 }
 
-/// The largest `suite.toml`.
-const SUITE_FILE: u64 = 1 << 20;
+/// The maximum size of a `suite.toml`, in bytes.
+const MAX_SUITE_FILE_BYTES: u64 = 1 << 20;
 
-/// Checks that a suite keeps to itself: its scenes are in the archive, or come with the program. A worker would read
-/// any other file of its machine for it. Returns the suite, without a digest.
+/// Checks that the scenes of a suite are in the archive, or are scenes of the grader; otherwise a worker would read
+/// other files of its machine. Returns the suite without its digest.
 fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
     let file = folder.join("suite.toml");
-    if std::fs::metadata(&file).is_ok_and(|file| file.len() > SUITE_FILE) {
+    if std::fs::metadata(&file).is_ok_and(|file| file.len() > MAX_SUITE_FILE_BYTES) {
         return Err(Problem::no_suite("suite.toml is larger than a mebibyte"));
     }
     let Ok(text) = std::fs::read_to_string(&file) else {
@@ -155,7 +155,7 @@ pub(super) async fn export(
     Ok(([(header::CONTENT_TYPE, kind), (header::CONTENT_DISPOSITION, disposition.as_str())], body).into_response())
 }
 
-/// Returns the standing of all students, with the points of groups and the likely mistakes.
+/// Returns the standings of all students as a table, with the points of groups and the likely mistakes.
 async fn table(staff: &Staff, assignment: &str) -> Result<String, Problem> {
     let standings = staff.standings(assignment).await?;
     let grades = standings.iter().filter_map(|one| one.counts.as_ref()?.grade.as_ref());
@@ -163,7 +163,7 @@ async fn table(staff: &Staff, assignment: &str) -> Result<String, Problem> {
     super::export_csv(&standings, &kept)
 }
 
-/// Returns all submissions, a line for each, read as they are sent.
+/// Returns all submissions, one line each, which are read while they are sent.
 async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
     let transfer = staff.transfer()?;
     let assignment = staff.assignment(assignment).await?;
@@ -186,37 +186,37 @@ async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
 }
 
 answers! { OK:
-    /// Makes an assignment or changes it. Grades stay as they are until a regrade. A change of the rule for late work
+    /// Creates an assignment or changes it. Grades stay as they are until a regrade. A change of the rule for late work
     /// counts immediately.
     put "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         set_assignment(staff: Staff, { assignment }, wish: AssignmentWish) -> Assignment:
             staff.set_assignment(&assignment, wish.change(), |before| before.with(&wish.settings));
-    /// The assignments of a course.
+    /// Lists the assignments of a course.
     get "/api/v1/courses/{course}/assignments" "assignments"
         assignments(member: Member) -> Vec<Assignment>: member.assignments();
-    /// An assignment.
+    /// Returns an assignment.
     get "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         assignment(member: Member, { assignment }) -> Assignment: member.assignment(&assignment);
-    /// Shows students what the suite hides: from now on hidden groups count for them, too.
+    /// Publishes the groups that the suite hides; they count for students from then on.
     put "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         publish(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, true);
-    /// Withholds the publication again.
+    /// Withholds the hidden groups again.
     delete "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         withhold(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, false);
-    /// The standing of all students: the submission that counts, and its points.
+    /// Returns the standings of all students: the submission that counts, and its points.
     get "/api/v1/courses/{course}/assignments/{assignment}/class" "assignments"
         standings(staff: Staff, { assignment }) -> Vec<Standing>: staff.standings(&assignment);
 }
 
 deeds! { NO_CONTENT:
-    /// Gives a student another due date than the others.
+    /// Sets a student's own due date.
     put "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
         extend(staff: Staff, { assignment, login }, wish: Extension) -> "Set":
             staff.extend(&assignment, &login, wish.due_at, wish.seen);
     /// Removes an assignment with all submissions to it, forever.
     delete "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         remove_assignment(staff: Staff, { assignment }) -> "Removed": staff.remove_assignment(&assignment);
-    /// Gives a student the same due date as the others again.
+    /// Removes a student's own due date.
     delete "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
         extend_no_more(staff: Staff, { assignment, login }, ?asked: SeenEvent) -> "Set":
             staff.extend(&assignment, &login, None, asked.event());

@@ -1,4 +1,4 @@
-//! Courses and their members.
+//! The API of courses and their members.
 use super::super::input::{AddressParts, Body, ListEnd, PlainBody, QueryInput, SeenEvent};
 use crate::{
     domain::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, Person, Staff},
@@ -23,21 +23,21 @@ pub(in crate::web) struct CourseWish {
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MemberWish {
-    /// Used when the account is new.
+    /// The member's name, used if the account is new.
     #[schema(value_type = Title)]
     name: String,
-    /// `student` or `staff`.
+    /// The member's role: `student` or `staff`.
     #[schema(pattern = "^(student|staff)$")]
     role: String,
-    /// The last event of the audit log that the sender has seen: with it a change is rejected if there is a later one
-    /// of this member.
+    /// The last event of the audit log that the sender has seen. If it is given, the change is rejected if there is a
+    /// later one of this member.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     seen: Option<i64>,
 }
 
 /// Removes a course with its assignments, submissions and log, forever. Accounts stay.
 #[utoipa::path(delete, path = "/api/v1/courses/{course}", tag = "administration",
-    params(("confirm" = String, Query, description = "The course's name once more")),
+    params(("confirm" = String, Query, description = "The course's name, as confirmation")),
     responses((status = 204, description = "Removed")))]
 pub(super) async fn remove_course(
     admin: Admin,
@@ -45,7 +45,7 @@ pub(super) async fn remove_course(
     QueryInput(asked): QueryInput<Confirm>,
 ) -> Result<StatusCode, Problem> {
     if asked.confirm != course {
-        return Err(Problem::conflict("confirm must be the course's name", "name the course once more in confirm"));
+        return Err(Problem::conflict("confirm must be the course's name", "repeat the course's name in confirm"));
     }
     admin.remove_course(&course).await?;
     Ok(StatusCode::NO_CONTENT)
@@ -57,15 +57,15 @@ pub(super) struct Confirm {
     confirm: String,
 }
 
-/// Whether the table is only read, without making members.
+/// Whether the table is only read, without adding members.
 #[derive(Deserialize)]
 pub(super) struct Preview {
     #[serde(default)]
     preview: bool,
 }
 
-/// Makes all members of a table: `name,login,email,role`, or as its first line names them. If anything is wrong with a
-/// line, nothing is done.
+/// Adds all members of a table with the columns `name,login,email,role`, or those in its first line. If any line has an
+/// error, nothing is changed.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/members", tag = "courses",
     params(("preview" = Option<bool>, Query, description = "Only check the table"), SeenEvent),
     request_body(content = String, content_type = "text/csv"),
@@ -88,27 +88,28 @@ pub(super) async fn audit(staff: Staff, QueryInput(asked): QueryInput<ListEnd>) 
 }
 
 answers! { CREATED:
-    /// Makes a course.
+    /// Creates a course.
     post "/api/v1/courses" "administration"
         new_course(admin: Admin, wish: CourseWish) -> Course: admin.new_course(&wish.slug, &wish.title);
 }
 
 answers! { OK:
-    /// Makes a person a member, and their account if there is none; a new account gets a link that signs in once.
+    /// Makes a person a member, and creates their account if there is none; a new account gets a link that signs in
+    /// once.
     put "/api/v1/courses/{course}/members/{login}" "courses"
         set_member(staff: Staff, { login }, wish: MemberWish) -> Link:
             staff.set_member(&login, &wish.name, &wish.role, wish.seen);
-    /// A new link that signs a student of this course in once.
+    /// Creates a link that signs a student of the course in once.
     post "/api/v1/courses/{course}/members/{login}/link" "courses"
         member_link(staff: Staff, { login }) -> Link: staff.new_link(&login);
-    /// Lists one's own courses.
+    /// Lists the courses of the person who is signed in.
     get "/api/v1/courses" "courses" courses(person: Person) -> Vec<CourseOf>: person.courses();
-    /// The members of a course.
+    /// Lists the members of a course.
     get "/api/v1/courses/{course}/members" "courses" members(staff: Staff) -> Vec<MemberInfo>: staff.members();
 }
 
 deeds! { NO_CONTENT:
-    /// Takes a person out of the course; what they handed in stays.
+    /// Removes a person from the course; their submissions stay.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
         remove_member(staff: Staff, { login }, ?asked: SeenEvent) -> "The member is removed":
             staff.remove_member(&login, asked.event());

@@ -1,7 +1,7 @@
-//! The API. The first argument of each handler names the role that it serves.
+//! The HTTP API. The first argument of each handler names the role that it serves.
 
-/// Operations that return data, one a row: method, address, tag, and name; the role that it serves, the parts of the
-/// address that it takes, and its body; and the type of its answer. The status of the answers comes first.
+/// Declares operations that return data, one per row. A row has the method, address, tag and name; the role that it
+/// serves, the parts of the address and the body; and the type of its answer. The status of the answers comes first.
 macro_rules! answers {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $wish:ident: $body:ty)?)
@@ -17,7 +17,7 @@ macro_rules! answers {
     };
 }
 
-/// The routes of handlers that only perform an action: the answer describes in words what was done.
+/// Declares the routes of handlers that only perform an action; the answer describes the action as text.
 macro_rules! deeds {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, ?$asked:ident: $query:ty)?
@@ -53,7 +53,7 @@ pub(super) use submissions::{RequestWish, cell, receive};
 use crate::domain::App;
 use utoipa_axum::{router::OpenApiRouter, routes};
 
-/// A router with the operations of each module.
+/// Builds a router with the operations of each module.
 macro_rules! operations {
     ($($module:ident: $($operation:ident)*;)*) => {
         pub(super) fn routes() -> OpenApiRouter<App> {

@@ -1,4 +1,4 @@
-//! For the people who run the server.
+//! The API for the operators of the server.
 use crate::{domain::Visitor, problem::Problem};
 use axum::{
     http::header,
@@ -12,7 +12,7 @@ pub(super) async fn health() -> &'static str {
     "alive\n"
 }
 
-/// Returns whether requests can be served: the database answers, and its tables are of this version.
+/// Returns whether requests can be served: the database answers, and its tables have the version of this program.
 #[utoipa::path(get, path = "/ready", tag = "operations",
     responses((status = 200, body = String, content_type = "text/plain", description = "Requests can be served")))]
 pub(super) async fn ready(visitor: Visitor) -> Result<&'static str, Problem> {
@@ -20,15 +20,15 @@ pub(super) async fn ready(visitor: Visitor) -> Result<&'static str, Problem> {
     Ok("ready\n")
 }
 
-/// Returns this description.
+/// Returns the description of the API.
 #[utoipa::path(get, path = "/api/openapi.json", tag = "operations",
     responses((status = 200, body = Object, description = "OpenAPI 3.1")))]
 pub(super) async fn openapi() -> Response {
     ([(header::CONTENT_TYPE, "application/json")], crate::web::openapi()).into_response()
 }
 
-/// Returns numbers for Prometheus. They describe no person. If the database does not answer they are the process's
-/// alone.
+/// Returns metrics for Prometheus, without personal data. If the database does not answer, they contain only the
+/// process's own.
 #[utoipa::path(get, path = "/metrics", tag = "operations",
     responses((status = 200, body = String, content_type = "text/plain", description = "Prometheus' text format")))]
 pub(super) async fn metrics(visitor: Visitor) -> Result<Response, Problem> {

@@ -1,4 +1,4 @@
-//! Regrades: begun, reviewed, applied or discarded.
+//! The API of regrades.
 use super::super::input::{AddressParts, Body, ListStart, QueryInput, whole_numbers};
 use crate::{
     domain::{Regrade, Settings, Staff},
@@ -14,16 +14,16 @@ use utoipa::ToSchema;
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RegradeWish {
-    /// Why, as students read it when it is applied.
+    /// The reason for the regrade, which students read after it is applied.
     #[schema(value_type = Title)]
     reason: String,
-    /// Settings about grading that differ from the assignment's.
+    /// The settings for grading that differ from the assignment's.
     #[serde(default, deserialize_with = "whole_numbers")]
     #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
 }
 
-/// Returns the changes that a regrade would make, or made, and why.
+/// Returns the changes of a regrade that is open or applied, with their reasons.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
     params(("after" = Option<i64>, Query,
         description = "Only changes of submissions after this one: `next` of the answer before")),
@@ -37,7 +37,7 @@ pub(super) async fn show(
 }
 
 answers! { CREATED:
-    /// Grades all submissions again, next to their grades. Nothing changes until the regrade is applied.
+    /// Grades all submissions again, without replacing the grades. Nothing changes until the regrade is applied.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
         begin(staff: Staff, { assignment }, wish: RegradeWish) -> Regrade: async {
             let settings = staff.assignment(&assignment).await?.settings.with(&wish.settings)?;
@@ -46,13 +46,13 @@ answers! { CREATED:
 }
 
 answers! { OK:
-    /// Makes its results count.
+    /// Makes the results of a regrade count.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply" "regrades"
         apply(staff: Staff, { assignment, id }) -> Regrade: staff.apply_regrade(&assignment, id);
-    /// Discards a regrade; nothing changes.
+    /// Discards a regrade, so that no grade changes.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard" "regrades"
         discard(staff: Staff, { assignment, id }) -> Regrade: staff.discard_regrade(&assignment, id);
-    /// The regrades of an assignment, latest first.
+    /// Lists the regrades of an assignment, latest first.
     get "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
         regrades(staff: Staff, { assignment }) -> Vec<Regrade>: staff.regrades(&assignment);
 }

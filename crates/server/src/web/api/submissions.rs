@@ -1,4 +1,4 @@
-//! Submissions.
+//! The API of submissions.
 use super::super::{
     download,
     input::{AddressParts, ArrivalTime, Body, QueryInput},
@@ -20,20 +20,20 @@ use serde::Deserialize;
 use std::{collections::BTreeMap, time::Instant};
 use utoipa::ToSchema;
 
-/// The parameters of an upload that is the whole body.
+/// The parameters of an upload without a form.
 #[derive(Deserialize)]
 pub(super) struct UploadParameters {
     name: Option<String>,
     form: Option<String>,
 }
 
-/// Hands in a submission: the body is the file, or a form (`multipart/form-data`) with a field `file`. With an
-/// `Idempotency-Key` the same upload sent twice is one submission: 201 the first time, 200 from then on.
+/// Uploads a submission. The body is the file, or a form (`multipart/form-data`) with a field `file`. With an
+/// `Idempotency-Key`, repeated uploads are one submission: the answer is 201 the first time, and 200 later.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
     params(("name" = Option<String>, Query, description = "The file's name"),
         ("form" = Option<String>, Query, description = "program, sources or traces; otherwise recognized from the \
             file"),
-        ("Idempotency-Key" = Option<String>, Header, description = "The sender's own name for this upload")),
+        ("Idempotency-Key" = Option<String>, Header, description = "The sender's key for this upload")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
     responses((status = 201, body = Submission), (status = 200, body = Submission)))]
 pub(super) async fn submit(
@@ -54,7 +54,7 @@ pub(super) async fn submit(
     Ok((status, [(header::LOCATION, place)], Json(submission)).into_response())
 }
 
-/// Receives an upload and hands it in.
+/// Receives an upload and submits it.
 pub(in crate::web) async fn receive(
     member: &Member,
     assignment: &str,
@@ -67,18 +67,18 @@ pub(in crate::web) async fn receive(
     let settings = member.assignment(assignment).await?.settings;
     let most = settings.max_bytes;
     let since = request.extensions().get::<ArrivalTime>().map_or_else(Instant::now, |ArrivalTime(since)| *since);
-    // A form does not show yet whether it was sent before.
+    // A form's key is not known before its body is read.
     let announced = (!upload::is_form(&request)).then(|| (key, upload::announced_size(&request).unwrap_or(0)));
     let came_at = match member.check_announced(assignment, announced, since).await {
         Ok(came_at) => came_at,
-        Err(problem) => return Err(upload::refuse(&member.app, request, most, problem).await),
+        Err(problem) => return Err(upload::reject(&member.app, request, most, problem).await),
     };
     let received = upload::receive(&member.app, request, most).await?;
     let too_long = since.elapsed().saturating_sub(upload::fair_time(std::fs::metadata(&received.file)?.len()));
     let came_at = came_at.saturating_add(millis(too_long));
     let form = look::examine(member, &received.file, received.form.as_deref().or(form), &settings).await?;
     let name = upload::plain_name(received.name.as_deref().or(name).unwrap_or("submission"));
-    // A page's key and the file together: another file from the same page is another submission.
+    // The page's key is combined with the file, because another file from the same page is another submission.
     let of_page = match &received.key {
         Some(key) => Some(format!("{key} {}", crate::store::digest_of_file(&received.file).await?.digest)),
         None => None,
@@ -90,33 +90,34 @@ pub(in crate::web) async fn receive(
     member.submit(assignment, &Upload { form, name: &name, file: &received.file, key, came_at }).await
 }
 
-/// The mark that staff gives a submission.
+/// The comment and points that staff give a submission.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MarkWish {
-    /// Points that count instead of the grader's; without them the grader's count.
+    /// The points that count instead of the grader's; null for the grader's.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 1_000_000)]
     points: Option<f64>,
-    /// Why, as the student reads it.
+    /// The reason, for the student.
     #[serde(default)]
     #[schema(max_length = 2000, pattern = r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]*$")]
     comment: String,
-    /// The time of the last mark that the sender has seen: with it a mark is rejected if there is a later one.
+    /// The time of the last mark that the sender has seen. If it is given, the mark is rejected if there is a later
+    /// one.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     marked_at: Option<i64>,
 }
 
-/// The question of a student.
+/// A student's request for a review.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct RequestWish {
-    /// The fault of the grade.
+    /// The student's question about the grade.
     #[schema(min_length = 1, max_length = 2000, pattern = r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]*$")]
     pub(in crate::web) text: String,
 }
 
-/// Returns a report on it, as the grader wrote it: `grade.json`, `report.txt`, ...
+/// Returns a report on a submission, as the grader wrote it: `grade.json`, `report.txt`, ...
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/files/{name}", tag = "submissions",
     responses((status = 200, description = "The report")))]
 pub(super) async fn report(
@@ -126,7 +127,7 @@ pub(super) async fn report(
 ) -> Result<Response, Problem> {
     let file = member.report(id, &name).await?;
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
-    // The report holds words of a stranger's program: a browser shows it as a page of no site, without this site's
+    // The report contains text from an untrusted program, so the browser shows it without this site's origin and
     // cookies.
     let policy = if file.media_type.starts_with("text/html") {
         "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src \
@@ -138,7 +139,7 @@ pub(super) async fn report(
     Ok((headers, download::send(&member, &asked, &file.artifact).await?).into_response())
 }
 
-/// Returns the upload.
+/// Returns the uploaded file.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/upload", tag = "submissions",
     responses((status = 200, description = "The file")))]
 pub(super) async fn upload(
@@ -147,7 +148,7 @@ pub(super) async fn upload(
     asked: HeaderMap,
 ) -> Result<Response, Problem> {
     let (submission, artifact) = member.upload(id).await?;
-    // A stranger's file, which is saved and never shown. Its name was made harmless when it arrived.
+    // An untrusted file, which is saved and never shown. Its name was made safe when it arrived.
     let disposition = format!("attachment; filename=\"{}\"", submission.file_name);
     let headers = [
         (header::CONTENT_TYPE, HeaderValue::from_static("application/octet-stream")),
@@ -160,10 +161,11 @@ pub(super) async fn upload(
     Ok((headers, download::send(&member, &asked, &artifact).await?).into_response())
 }
 
-/// Returns a class's grades as a table, with a column for each group. What spreadsheets would take for a formula is
+/// Returns a class's grades as a table, with a column for each group. Text that spreadsheets would read as a formula is
 /// marked as text.
 ///
 /// # Errors
+///
 /// Never, in memory.
 pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Result<String, Problem> {
     let mut writer = csv::Writer::from_writer(Vec::new());
@@ -204,25 +206,25 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
     String::from_utf8(bytes).map_err(|_| Problem::fault())
 }
 
-/// Returns a cell that no spreadsheet takes for a formula.
+/// Returns a cell that no spreadsheet reads as a formula.
 pub(in crate::web) fn cell(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
 }
 
 answers! { ACCEPTED:
-    /// Grades a submission once more, by the assignment's settings as they are.
+    /// Grades a submission again, with the assignment's present settings.
     post "/api/v1/courses/{course}/submissions/{id}/again" "submissions"
         grade_again(staff: Staff, { id }) -> RegradeOrder: staff.grade_again(id);
-    /// Grades all submissions to an assignment on which the grader failed once more.
+    /// Grades all submissions to an assignment again on which the grader failed.
     post "/api/v1/courses/{course}/assignments/{assignment}/judge-errors/again" "submissions"
         grade_errors_again(staff: Staff, { assignment }) -> RegradeOrder: staff.grade_errors_again(Some(&assignment));
-    /// Grades again all judge errors of a course's assignments.
+    /// Grades all submissions to a course's assignments again on which the grader failed.
     post "/api/v1/courses/{course}/judge-errors/again" "submissions"
         grade_all_errors_again(staff: Staff) -> RegradeOrder: staff.grade_errors_again(None);
 }
 
 answers! { OK:
-    /// Gives a submission other points than the grader, with a comment, or the grader's again.
+    /// Gives a submission other points than the grader's, with a comment, or the grader's again.
     put "/api/v1/courses/{course}/submissions/{id}/mark" "submissions"
         mark(staff: Staff, { id }, wish: MarkWish) -> Submission:
             staff.mark(
@@ -231,19 +233,19 @@ answers! { OK:
                 &wish.comment,
                 wish.marked_at.map(Some)
             );
-    /// One's own submissions, newest first.
+    /// Lists the submissions of the person who is signed in, newest first.
     get "/api/v1/courses/{course}/assignments/{assignment}/submissions" "submissions"
         own(member: Member, { assignment }) -> Vec<Submission>: member.submissions(&assignment);
-    /// A submission: its place in the queue, and its result.
+    /// Returns a submission with its position in the queue and its result.
     get "/api/v1/courses/{course}/submissions/{id}" "submissions"
         submission(member: Member, { id }) -> Submission: member.submission(id);
-    /// The history of its grade: the person, the time, the reason, the version and the rules.
+    /// Returns the history of the submission's grade: the person, the time, the reason, the version and the rules.
     get "/api/v1/courses/{course}/submissions/{id}/history" "submissions"
         history(member: Member, { id }) -> Vec<History>: member.history(id);
 }
 
 deeds! { NO_CONTENT:
-    /// Requests that staff reviews one's own submission.
+    /// Requests that staff reviews a submission of the person who is signed in.
     post "/api/v1/courses/{course}/submissions/{id}/request" "submissions"
         request(member: Member, { id }, wish: RequestWish) -> "Staff sees it": member.request(id, &wish.text);
     /// Removes a submission with its grades and reports, forever.

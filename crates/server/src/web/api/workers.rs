@@ -1,5 +1,5 @@
-//! The requests of workers on other machines: claim, renew, finish, and the files of the jobs that they hold. A lease
-//! is shown in the header `Fosssim-Lease` as `JOB:ATTEMPT:KEY` where the body is a file.
+//! The API for workers on other machines: claim, renew, finish, and the files of their jobs. If the body is a file, the
+//! lease is in the header `Fosssim-Lease`, as `JOB:ATTEMPT:KEY`.
 use super::super::{
     download,
     input::{AddressParts, Body},
@@ -19,7 +19,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 
-/// Claims the next job; 204 when there is none.
+/// Claims the next job; the answer is 204 if there is none.
 #[utoipa::path(post, path = "/api/v1/worker/claim", tag = "workers",
     responses((status = 200, body = ClaimedJob), (status = 204, description = "No job")))]
 pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
@@ -37,7 +37,7 @@ answers! { OK:
     /// Extends a lease, and reports the progress of the grading.
     post "/api/v1/worker/renew" "workers"
         renew(remote: Remote, renewal: Renewal) -> LeaseAnswer: remote.renew(&renewal.lease, renewal.progress);
-    /// Returns a job at no cost.
+    /// Returns a job without counting a failure.
     post "/api/v1/worker/release" "workers" release(remote: Remote, lease: Lease) -> LeaseAnswer:
         remote.release(&lease);
     /// Reports that a try failed.
@@ -70,7 +70,7 @@ pub(super) async fn artifact(
     let digest: Digest = digest.parse().map_err(Problem::invalid)?;
     let opened = remote.artifact(&lease(&headers)?, &digest).await?;
     let kind = [(header::CONTENT_TYPE, "application/octet-stream")];
-    Ok((kind, download::whole(opened, None)).into_response())
+    Ok((kind, download::whole_answer(opened, None)).into_response())
 }
 
 /// Stores a report of a job that the worker holds; its bytes must match the digest.

@@ -1,4 +1,4 @@
-//! One's courses and tokens.
+//! The pages with a person's courses and tokens.
 use super::{
     super::{
         api::TokenName,
@@ -6,7 +6,7 @@ use super::{
     },
     Page, PageFrame,
     course::{Row, rows},
-    see, show, text,
+    redirect_to, show, text,
 };
 use crate::{
     domain::{Course, Member, Person, TokenInfo},
@@ -15,8 +15,8 @@ use crate::{
 use askama::Template;
 use axum::response::Redirect;
 
-/// If there are more courses than this, an administrator sees the assignments of their own only.
-const FEW: usize = 5;
+/// The number of courses above which an administrator sees only the assignments of their own.
+const MAX_COURSES: usize = 5;
 
 #[derive(Template)]
 #[template(path = "home.html")]
@@ -24,7 +24,7 @@ struct Home {
     frame: PageFrame,
     name: String,
     courses: Vec<HomeCourse>,
-    /// Further courses of which an administrator is no member.
+    /// Further courses that an administrator is not a member of.
     others: Vec<Course>,
     /// Whether the server has the page that checks traces.
     checks_traces: bool,
@@ -33,7 +33,7 @@ struct Home {
 /// A course of the person.
 struct HomeCourse {
     member: Member,
-    /// The assignments to which something can be handed in.
+    /// The assignments that accept submissions.
     assignments: Vec<Row>,
     /// The number of the other assignments.
     rest: usize,
@@ -53,7 +53,7 @@ pub(super) async fn home(person: Person) -> Page {
     let frame = PageFrame::for_account(&person.account);
     let (mut courses, mut others) = (Vec::new(), Vec::new());
     for course in person.courses().await? {
-        if course.role == "admin" && courses.len() >= FEW {
+        if course.role == "admin" && courses.len() >= MAX_COURSES {
             others.push(course.course);
             continue;
         }
@@ -75,7 +75,7 @@ pub(super) async fn account(person: Person) -> Page {
     page(&person, None).await
 }
 
-/// Makes a token, whose secret is shown in the answer itself, and nowhere again.
+/// Creates a token, whose secret is shown only in this answer.
 pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -> Page {
     let token = person.new_token(form.name.trim()).await?.token;
     page(&person, Some(token)).await

@@ -6,7 +6,7 @@ use super::{
     },
     Page, PageFrame,
     course::People,
-    see, show, text,
+    redirect_to, show, text,
 };
 use crate::{
     domain::{Account, Admin, CourseSize, Event, Queue, TokenInfo},
@@ -17,7 +17,7 @@ use askama::Template;
 use axum::{http::Uri, response::Redirect};
 use serde::Deserialize;
 
-/// The subjects: the ends of their addresses, and their titles.
+/// The subjects, each with the end of its address and its title.
 const PARTS: [(&str, &str); 5] = [
     ("", "Courses"),
     ("/people", "People"),
@@ -30,7 +30,7 @@ const PARTS: [(&str, &str); 5] = [
 #[template(path = "admin.html")]
 struct AdminPage {
     frame: PageFrame,
-    /// The subject.
+    /// The shown subject.
     part: (&'static str, &'static str),
     courses: Vec<CourseSize>,
     accounts: Vec<Account>,
@@ -39,7 +39,7 @@ struct AdminPage {
     after: Option<String>,
     workers: Vec<TokenInfo>,
     platforms: Vec<Platform>,
-    /// The addresses for platforms.
+    /// The address of this service, for platforms.
     public: String,
     queue: Queue,
     events: Vec<Event>,

@@ -1,4 +1,4 @@
-//! Two submissions to an assignment side by side: the scenes in which they differ.
+//! The comparison of two submissions to an assignment: the scenes in which they differ.
 use super::{
     super::input::{AddressParts, QueryInput},
     Page, PageFrame, grades, show, text,
@@ -12,7 +12,7 @@ use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use url::form_urlencoded::byte_serialize;
 
-/// The other submission: its number on this server, or the login of a student, whose last submission is meant.
+/// The other submission: its number on this server, or the login of a student, for the student's last one.
 #[derive(Deserialize)]
 pub(super) struct OtherSubmission {
     #[serde(default)]
@@ -30,19 +30,19 @@ struct ComparisonPage {
     kinds: DifferingScenes,
 }
 
-/// The scenes that two results judge differently, by both verdicts in short.
+/// The scenes that two results judge differently, by the codes of both verdicts.
 type DifferingScenes = BTreeMap<[String; 2], Vec<String>>;
 
-/// The greatest number of scenes of a kind that are not folded.
+/// The maximum number of scenes of a kind that are not folded.
 const FEW: usize = 6;
 
-/// Returns the part of an address that leads to a scene in a report.
+/// Returns the fragment of an address that leads to a scene in a report.
 fn place(scene: &str) -> String {
     byte_serialize(scene.as_bytes()).collect()
 }
 
 /// Returns the scenes that two results judge differently.
-fn differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
+fn find_differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
     let names: BTreeSet<&String> = one.keys().chain(other.keys()).collect();
     let code = |of: &FailedScenes, scene: &String| of.get(scene).map_or("AC", String::as_str).to_owned();
     let mut kinds = DifferingScenes::new();
@@ -72,9 +72,9 @@ pub(super) async fn page(
     let results = [result(&one)?, result(&other)?];
     let kept = staff.kept_results(&results).await?;
     let [Some(first), Some(second)] = results.map(|result| kept.get(&result)) else { return Err(missing()) };
-    let kinds = differing(&first.failed, &second.failed);
+    let kinds = find_differing(&first.failed, &second.failed);
     let address = format!("/c/{slug}/s/{id}/beside");
-    let frame = grades::frame(&staff, &assignment).then(address, "Side by side");
+    let frame = grades::class_frame(&staff, &assignment).then(address, "Side by side");
     show(&ComparisonPage { frame, slug, both: [one, other], count: kinds.values().map(Vec::len).sum(), kinds })
 }
 
@@ -89,7 +89,7 @@ mod tests {
         };
         let (one, other) =
             (of(&[("a", "WA"), ("b", "WA"), ("c", "TLE"), ("e", "WA")]), of(&[("b", "WA"), ("c", "WA"), ("d", "WA")]));
-        let kinds = differing(&one, &other);
+        let kinds = find_differing(&one, &other);
         let told: Vec<String> =
             kinds.iter().map(|(codes, scenes)| format!("{}: {}", codes.join(" "), scenes.join(" "))).collect();
         assert_eq!(told, ["AC WA: d", "TLE WA: c", "WA AC: a e"]);

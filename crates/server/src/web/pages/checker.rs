@@ -1,4 +1,5 @@
-//! The page that checks traces in a browser. It is the grader's and holds no data of people: any visitor may read it.
+//! The page that checks traces in a browser. It is a part of the grader and contains no personal data, so any visitor
+//! may read it.
 use crate::{domain::App, problem::Problem};
 use axum::{
     extract::State,
@@ -6,10 +7,10 @@ use axum::{
     response::{Html, IntoResponse, Response},
 };
 
-/// Returns the page under the policy that it brings along: it may do less than other pages in all, but run its module.
+/// Returns the page with its own, stricter policy, which allows only its WebAssembly module.
 pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
-    let page = app.checker.clone().ok_or_else(|| Problem::not_found("page that checks traces: the grader has none"))?;
-    let policy = policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
+    let page = app.checker.clone().ok_or_else(|| Problem::not_found("page /check: the grader was built without it"))?;
+    let policy = find_policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
     let mut answer = Html(page).into_response();
     if let Some(policy) = policy {
         answer.headers_mut().insert(header::CONTENT_SECURITY_POLICY, policy);
@@ -19,7 +20,7 @@ pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
 }
 
 /// Returns the policy in the head of a page.
-fn policy(page: &str) -> Option<&str> {
+fn find_policy(page: &str) -> Option<&str> {
     let (_, rest) = page.split_once("http-equiv=\"Content-Security-Policy\" content=\"")?;
     Some(rest.split_once('"')?.0)
 }

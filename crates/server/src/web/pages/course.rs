@@ -1,7 +1,7 @@
-//! A course: its assignments, members, queue and audit log.
+//! A course's pages: its assignments, members, queue and audit log.
 use super::{
     super::input::{AddressParts, Fields, ListEnd, QueryInput},
-    Page, PageFrame, see, show, text,
+    Page, PageFrame, redirect_to, show, text,
 };
 use crate::{
     domain::{Assignment, AssignmentChange, Event, Member, MemberInfo, Overview, Queue, Staff, Submission},
@@ -18,7 +18,7 @@ struct CoursePage {
     frame: PageFrame,
     member: Member,
     assignments: Vec<Row>,
-    /// Sentences about the room for uploads.
+    /// The sentences about the space for uploads.
     kept: Vec<String>,
 }
 
@@ -31,25 +31,25 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// Returns whether something can still be handed in.
+    /// Returns whether the assignment still accepts submissions.
     pub(super) fn is_open(&self) -> bool {
         if self.overview.is_some() { !self.work.is_over } else { self.work.is_open() }
     }
 }
 
-/// The work of a member in an assignment, and how much they may still do.
+/// A member's submissions to an assignment, and the remaining attempts.
 pub(super) struct OwnWork {
-    /// The time until which the student may hand in.
+    /// The student's due date.
     pub(super) due: Option<i64>,
-    /// Whether that has passed.
+    /// Whether the due date has passed.
     pub(super) is_late: bool,
-    /// Whether nothing is taken any more, not even late.
+    /// Whether no submissions are accepted, not even late ones.
     pub(super) is_over: bool,
-    /// The number of submissions that are left, if it is limited.
+    /// The number of remaining submissions, if it is limited.
     pub(super) left: Option<usize>,
     /// All submissions of the student, newest first.
     pub(super) submissions: Vec<Submission>,
-    /// The submission with the most points, of equal ones the later.
+    /// The submission with the most points, of equal ones the latest.
     pub(super) best: Option<Submission>,
 }
 
@@ -74,7 +74,7 @@ impl OwnWork {
         })
     }
 
-    /// Returns whether they may hand in now.
+    /// Returns whether students may submit to the assignment now.
     pub(super) fn is_open(&self) -> bool {
         !self.is_over && self.left != Some(0)
     }
@@ -94,7 +94,7 @@ struct MembersPage {
     platforms: Vec<String>,
     /// The last event of the course that the page shows.
     seen: i64,
-    /// A link to be handed on, and to whom.
+    /// A sign-in link, and its person.
     link: Option<(String, String)>,
 }
 
@@ -132,7 +132,7 @@ pub(super) struct MemberRemoval {
     seen: Option<i64>,
 }
 
-/// Returns the assignments of a course as its tables show them.
+/// Returns the assignments of a course, in the form of its tables.
 pub(super) async fn rows(member: &Member) -> Result<Vec<Row>, Problem> {
     let mut rows = Vec::new();
     for assignment in member.assignments().await? {
@@ -152,15 +152,15 @@ pub(super) async fn course(member: Member) -> Page {
 pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignment>) -> Result<Redirect, Problem> {
     let slug = form.slug.trim();
     if staff.assignments().await?.iter().any(|assignment| assignment.slug == slug) {
-        return Err(Problem::conflict("an assignment has this name already", "give it another name"));
+        return Err(Problem::conflict("an assignment with this name already exists", "give it another name"));
     }
     let change =
         AssignmentChange { title: Some(form.title.trim()), visible: Some(false), ..AssignmentChange::default() };
     staff.set_assignment(slug, change, |before| Ok(before.clone())).await?;
-    Ok(see(&format!("/c/{}/a/{slug}/settings", staff.slug)))
+    Ok(redirect_to(&format!("/c/{}/a/{slug}/settings", staff.slug)))
 }
 
-/// Which people to show: those whose login or name has these words, of a role in the course, behind a login.
+/// The filter of people: text in the login or name, a role in the course, and the login to start after.
 #[derive(Default, Deserialize)]
 pub(super) struct People {
     #[serde(default)]
@@ -171,18 +171,18 @@ pub(super) struct People {
     pub(super) after: String,
 }
 
-/// The number of members on a page.
-const PEOPLE: usize = 200;
+/// The maximum number of members on a page.
+const PEOPLE_PER_PAGE: usize = 200;
 
 impl People {
-    /// Returns whether a member is to be shown.
+    /// Returns whether the filter includes a member.
     fn wants(&self, member: &MemberInfo) -> bool {
         let words = self.q.trim().to_lowercase();
         let has_words = member.login.contains(&words) || member.name.to_lowercase().contains(&words);
         has_words && (self.role.is_empty() || member.role == self.role) && member.login > self.after
     }
 
-    /// Returns the address of the page after the last of these logins, if there are more.
+    /// Returns the address of the page after the last of some logins, if there are more.
     pub(super) fn next(&self, last: Option<&str>) -> Option<String> {
         let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
         Some(query.append_pair("q", &self.q).append_pair("role", &self.role).append_pair("after", last?).finish())
@@ -192,16 +192,16 @@ impl People {
 async fn members_page(staff: &Staff, look: People, link: Option<(String, String)>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff).then(format!("/c/{slug}/members"), "Members");
-    // Read before the members: later changes are not seen.
+    // Read the event before the members, so that later changes are detected.
     let seen = staff.last_event().await?;
     let mut members = staff.members().await?;
     let staff_count = members.iter().filter(|member| member.role == "staff").count();
     let students = members.len() - staff_count;
     members.retain(|member| look.wants(member));
-    // A database may have another order.
+    // The database may sort in another order.
     members.sort_by(|one, other| one.login.cmp(&other.login));
-    let has_more = members.len() > PEOPLE;
-    members.truncate(PEOPLE);
+    let has_more = members.len() > PEOPLE_PER_PAGE;
+    members.truncate(PEOPLE_PER_PAGE);
     let after = look.next(members.last().filter(|_| has_more).map(|last| last.login.as_str()));
     let platforms = staff.platforms().await?;
     show(&MembersPage { frame, slug, members, students, staff: staff_count, look, after, platforms, seen, link })

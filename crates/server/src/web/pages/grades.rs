@@ -1,7 +1,7 @@
-//! The class, and regrades.
+//! The pages of the class and of regrades.
 use super::{
     super::input::{AddressParts, Fields, ListStart, QueryInput},
-    Page, PageFrame, scenes, see,
+    Page, PageFrame, redirect_to, scenes,
     settings::{Grading, SuiteOption, suites},
     show,
     statistics::{self, Statistics},
@@ -16,7 +16,7 @@ use axum::response::Redirect;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// The rows of scenes of the class page that `grade` writes.
+/// The rows of scenes, with the code of the page that `grade` writes.
 #[path = "../../../../report/src/page/heat.rs"]
 mod heat;
 
@@ -27,8 +27,8 @@ struct GradesPage {
     slug: String,
     assignment: Assignment,
     standings: Vec<Standing>,
-    look: Look,
-    /// The number of students that were found.
+    look: GradesQuery,
+    /// The number of students that match.
     found: usize,
     before: Option<String>,
     after: Option<String>,
@@ -36,12 +36,12 @@ struct GradesPage {
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::domain::Request>,
     statistics: Statistics,
-    /// The kept texts of the results that count, by their numbers.
+    /// The stored texts of the results that count, by the results' numbers.
     kept: BTreeMap<i64, KeptResult>,
-    /// Scenes that students on the page have wrong, and these students.
+    /// The scenes that students on the page have wrong, and the students.
     scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
-    /// Whether students see less than staff until it is published.
+    /// Whether students see less than staff before the publication.
     hides: bool,
 }
 
@@ -54,27 +54,27 @@ struct RegradePage {
     regrade: Regrade,
 }
 
-/// Students on one page.
-const PAGE: usize = 100;
+/// The maximum number of students on a page.
+const PAGE_SIZE: usize = 100;
 
-/// The choice of students, their order, and the page.
+/// The filter of students, their order, and the page.
 #[derive(Deserialize)]
-pub(super) struct Look {
+pub(super) struct GradesQuery {
     #[serde(default)]
     q: String,
     #[serde(default)]
     sort: String,
-    /// The part of the class.
+    /// The selected part of the class.
     #[serde(default)]
     part: String,
-    /// A likely mistake.
+    /// A likely mistake, by which students are selected.
     #[serde(default)]
     mistake: String,
     page: Option<usize>,
 }
 
-impl Look {
-    /// Returns the students to show, their number on all pages, and the addresses of the pages before and after.
+impl GradesQuery {
+    /// Returns the students on the page, their number on all pages, and the addresses of the pages before and after.
     fn at(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let words = self.q.trim().to_lowercase();
         let made = |one: &ShortStanding| one.counts.as_ref().and_then(statistics::mistake) == Some(&*self.mistake);
@@ -92,11 +92,11 @@ impl Look {
             "name" => standings.sort_by_cached_key(|one| one.name.to_lowercase()),
             "points" => standings.sort_by(|one, other| points(other).total_cmp(&points(one))),
             "submissions" => standings.sort_by_key(|one| std::cmp::Reverse(one.submissions)),
-            // They come by their logins.
+            // The students are sorted by their logins.
             _ => {}
         }
         let found = standings.len();
-        let pages = found.div_ceil(PAGE).max(1);
+        let pages = found.div_ceil(PAGE_SIZE).max(1);
         let page = self.page.unwrap_or(1).clamp(1, pages);
         let address = |page: usize| {
             let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
@@ -104,7 +104,7 @@ impl Look {
             query.append_pair("mistake", &self.mistake).append_pair("page", &page.to_string());
             query.finish()
         };
-        let shown = standings.into_iter().skip((page - 1) * PAGE).take(PAGE).cloned().collect();
+        let shown = standings.into_iter().skip((page - 1) * PAGE_SIZE).take(PAGE_SIZE).cloned().collect();
         (shown, found, [(page > 1).then(|| address(page - 1)), (page < pages).then(|| address(page + 1))])
     }
 }
@@ -116,8 +116,8 @@ pub(super) struct NewRegrade {
     grading: Grading,
 }
 
-/// Returns the frame of the class, and of the pages below it.
-pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
+/// Returns the frame for the pages of the class.
+pub(super) fn class_frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
     let frame = PageFrame::assignment(staff, assignment);
     frame.then(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")
 }
@@ -125,7 +125,7 @@ pub(super) fn frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
 pub(super) async fn class(
     staff: Staff,
     AddressParts { course: slug, assignment, .. }: AddressParts,
-    QueryInput(look): QueryInput<Look>,
+    QueryInput(look): QueryInput<GradesQuery>,
 ) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let standings = staff.short_standings(&assignment).await?;
@@ -136,7 +136,7 @@ pub(super) async fn class(
         standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
     let kept = staff.kept_results(&results).await?;
     show(&GradesPage {
-        frame: frame(&staff, &assignment),
+        frame: class_frame(&staff, &assignment),
         slug,
         look,
         found,
@@ -162,7 +162,7 @@ pub(super) async fn begin(
 ) -> Result<Redirect, Problem> {
     let settings = form.grading.over(&staff.assignment(&assignment).await?.settings)?;
     let regrade = staff.regrade(&assignment, form.reason.trim(), &settings).await?;
-    Ok(see(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
+    Ok(redirect_to(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
 }
 
 pub(super) async fn show_regrade(
@@ -173,7 +173,7 @@ pub(super) async fn show_regrade(
     let assignment = staff.assignment(&assignment).await?;
     let regrade = staff.show_regrade(&assignment.slug, id, asked.after).await?;
     let address = format!("/c/{slug}/a/{}/regrades/{id}", assignment.slug);
-    show(&RegradePage { frame: frame(&staff, &assignment).then(address, "Regrade"), slug, assignment, regrade })
+    show(&RegradePage { frame: class_frame(&staff, &assignment).then(address, "Regrade"), slug, assignment, regrade })
 }
 
 deeds! {

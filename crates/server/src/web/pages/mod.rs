@@ -1,7 +1,7 @@
-//! The pages. They work without JavaScript; with it a submission's state changes by itself, and files can be dropped.
+//! The pages. They work without JavaScript; with it, the state of a submission is updated, and files can be dropped.
 
-/// Handlers that do one thing and lead to a page, one a row: name, the role that they serve, the parts of the address,
-/// and the form; the action, and the next page.
+/// Declares handlers that perform an action and redirect to a page, one per row: name, role, parts of the address, and
+/// form; the action, and the next page.
 macro_rules! deeds {
     ($($(#[doc = $doc:literal])*
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $form:ident: $fields:ty)?):
@@ -11,7 +11,7 @@ macro_rules! deeds {
             $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, Fields($form): Fields<$fields>)?
         ) -> Result<Redirect, Problem> {
             $do.await?;
-            Ok(see(&format!($to $(, $part)*)))
+            Ok(redirect_to(&format!($to $(, $part)*)))
         })*
     };
 }
@@ -49,7 +49,7 @@ use axum::{
 };
 use url::form_urlencoded::byte_serialize;
 
-/// A router, and the list of its contents.
+/// Builds a router, and the list of its pages.
 macro_rules! pages {
     ($($method:ident $path:literal => $handler:path,)*) => {
         /// Every page: method and path.
@@ -141,7 +141,7 @@ pages! {
 }
 
 async fn style() -> Response {
-    // One style sheet for reports and pages; rules for pages alone follow.
+    // Reports and pages share a style sheet, which is followed by rules for pages only.
     constant(
         "text/css; charset=utf-8",
         concat!(
@@ -165,17 +165,17 @@ fn constant(kind: &'static str, text: &'static str) -> Response {
     ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "max-age=300")], text).into_response()
 }
 
-/// The frame of every page; by default without a person.
+/// The frame of every page; the default is that of a visitor.
 #[derive(Default)]
 pub(super) struct PageFrame {
-    /// The person who is signed in.
+    /// The login of the person who is signed in.
     login: Option<String>,
     is_admin: bool,
-    /// The way here: addresses and titles.
+    /// The addresses and titles of the pages above this one.
     way: Vec<(String, String)>,
-    /// The pages about the same thing: addresses and titles.
+    /// The addresses and titles of the related pages.
     tabs: Vec<(String, &'static str)>,
-    /// The address of this page, which is one of them.
+    /// The address of this page among the related ones.
     tab: String,
 }
 
@@ -191,7 +191,7 @@ impl PageFrame {
         if member.is_staff { frame.with_pages(&place, &pages) } else { frame }
     }
 
-    /// Returns the place at an assignment of a course.
+    /// Returns the frame for the page of an assignment.
     fn assignment(member: &Member, assignment: &Assignment) -> Self {
         let place = format!("/c/{}/a/{}", member.slug, assignment.slug);
         let pages = [("/class", "Class"), ("", "Hand in"), ("/settings", "Settings")];
@@ -202,13 +202,13 @@ impl PageFrame {
         }
     }
 
-    /// Sets the pages about the thing at an address, by what their own addresses have behind it.
+    /// Adds the related pages of the thing at an address, by the ends of their addresses.
     fn with_pages(mut self, place: &str, pages: &[(&str, &'static str)]) -> Self {
         self.tabs = pages.iter().map(|(end, title)| (format!("{place}{end}"), *title)).collect();
         self
     }
 
-    /// Returns the frame of a page about the same subject, or of one below it.
+    /// Returns the frame for a related page, or for a page below.
     fn then(mut self, address: String, title: &str) -> Self {
         if self.tabs.iter().any(|(tab, _)| *tab == address) {
             self.tab = address;
@@ -219,19 +219,19 @@ impl PageFrame {
     }
 }
 
-/// A page, or why there is none.
+/// A page, or the reason why there is none.
 type Page = Result<Html<String>, Problem>;
 
 /// Returns a page from its template.
 fn show(template: &impl Template) -> Page {
     template.render().map(Html).map_err(|error| {
-        tracing::error!(%error, "a page could not be made");
+        tracing::error!(%error, "a page could not be rendered");
         Problem::fault()
     })
 }
 
-/// Redirects after a form was sent, to a page that may be loaded again.
-fn see(address: &str) -> Redirect {
+/// Redirects after a form was sent, to a page that can be reloaded.
+fn redirect_to(address: &str) -> Redirect {
     Redirect::to(address)
 }
 
@@ -257,24 +257,25 @@ pub(super) async fn show_others(request: Request, next: Next) -> Response {
     if wants_page { as_page(answer, None) } else { answer }
 }
 
-/// Returns the answer where nothing is.
-pub(super) async fn missing() -> Problem {
+/// Returns the answer for addresses without a page.
+pub(super) async fn no_page() -> Problem {
     Problem::not_found("page")
 }
 
-/// Returns the answer to a method that an address does not take.
+/// Returns the answer to a method that an address does not support.
 pub(super) async fn wrong_method(method: Method) -> Problem {
     Problem::wrong_method(method.as_str())
 }
 
-/// Returns a rejection as a page; other answers stay. A person who must sign in first comes to the page afterwards.
+/// Returns a rejection as a page; other answers do not change. A person who must sign in first is redirected to the
+/// page afterwards.
 fn as_page(mut response: Response, wanted: Option<&Uri>) -> Response {
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
     if let Some(wanted) = wanted.filter(|_| problem.status() == StatusCode::UNAUTHORIZED) {
         let to = wanted.path_and_query().map_or("/", PathAndQuery::as_str);
         let query = byte_serialize(to.as_bytes()).collect::<String>();
         let address = if to == "/" { "/sign-in".to_owned() } else { format!("/sign-in?to={query}") };
-        return see(&address).into_response();
+        return redirect_to(&address).into_response();
     }
     let status = problem.status();
     match show(&ProblemPage { frame: PageFrame::default(), problem }) {

@@ -1,10 +1,10 @@
-//! Coming from a learning platform.
+//! The pages for launches from a learning platform.
 use super::{
     super::{
         input::{AddressParts, Fields},
         who::browser_cookie,
     },
-    Page, PageFrame, see, show, sign_in,
+    Page, PageFrame, redirect_to, show, sign_in,
 };
 use crate::{
     domain::{Admin, App, LinkStep, LinkTarget, LoginRequest, Person, RosterRead, RosterWish, Staff, Visitor},
@@ -21,7 +21,7 @@ use axum::{
 use serde::Deserialize;
 use serde_json::{Value, json};
 
-/// The platform's answer.
+/// The parameters of the platform's answer.
 #[derive(Deserialize)]
 pub(super) struct Answer {
     state: Option<String>,
@@ -95,9 +95,9 @@ pub(super) struct NewPlatform {
     hosts: String,
 }
 
-/// Returns the browser's secret while it comes from a platform. Other sites must be able to make the browser send it,
-/// because the platform's answer comes that way. In a frame many browsers keep it apart, or drop it, so that no sign-in
-/// works in a frame.
+/// Returns the cookie with the browser's secret during a launch from a platform. Other sites must be able to make the
+/// browser send it, because the platform's answer is sent that way. In a frame, many browsers isolate or drop the
+/// cookie, so no sign-in works there.
 fn browser_word(app: &App, word: &str) -> String {
     let secure = app.is_secure();
     let rest = if secure { "SameSite=None; Secure; Partitioned" } else { "SameSite=Lax" };
@@ -132,7 +132,8 @@ pub(super) async fn login(
         for (name, value) in fields {
             value.map(|value| query.append_pair(name, &value));
         }
-        // A link and no form: the policy for forms covers all redirections, too, and this one leads to the platform.
+        // A link is used instead of a form: the policy for forms covers redirections, and this one leads to the
+        // platform.
         let address = format!("/lti/login?{}", query.finish());
         let page = show(&WindowPage { frame: PageFrame::default(), address })?.into_response();
         let origins = platform.origins(app.lti.over_http());
@@ -153,7 +154,7 @@ pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<Answer>) -> 
         });
     };
     let launched = visitor.launch(state, token).await?;
-    Ok(sign_in::enter(&visitor.app, &launched.session, &launched.to))
+    Ok(sign_in::start_session(&visitor.app, &launched.session, &launched.to))
 }
 
 /// Returns the service's public keys, at the address that platforms read.
@@ -162,7 +163,7 @@ pub(super) async fn keys(State(app): State<App>) -> Result<Response, Problem> {
     Ok(([(header::CACHE_CONTROL, "public, max-age=300")], Json(keys)).into_response())
 }
 
-/// Returns the configuration whose address an administrator of Canvas enters.
+/// Returns the configuration whose address an administrator enters in Canvas.
 pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
     let public = &app.public;
     let launch = app.launch_address();
@@ -201,7 +202,7 @@ pub(super) async fn choose_assignment(
     Fields(choice): Fields<AssignmentChoice>,
 ) -> Result<Response, Problem> {
     match person.choose_assignment(&secret, &choice.assignment).await? {
-        LinkStep::Assignment(path) => Ok(see(&path).into_response()),
+        LinkStep::Assignment(path) => Ok(redirect_to(&path).into_response()),
         LinkStep::Answer { address, origins, token } => {
             let page =
                 show(&AnswerPage { frame: PageFrame::for_account(&person.account), address, token })?.into_response();
@@ -233,12 +234,12 @@ impl NewPlatform {
     }
 }
 
-/// Shows who would come and go first.
+/// Shows first who would join and leave.
 pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) -> Result<Response, Problem> {
     let members = format!("/c/{}/members", staff.slug);
     if form.confirm.is_some() {
         staff.read_roster(RosterWish::Confirmed).await?;
-        return Ok(see(&members).into_response());
+        return Ok(redirect_to(&members).into_response());
     }
     let read = staff.read_roster(RosterWish::Preview).await?;
     let frame = PageFrame::course(&staff).then(members, "Members");

@@ -1,7 +1,7 @@
-//! Signing in at an OpenID Connect provider.
+//! The pages for signing in at an OpenID Connect provider.
 use super::{
     super::{input::QueryInput, who::provider_cookie},
-    see,
+    redirect_to,
     sign_in::{self, NextPage},
 };
 use crate::{
@@ -14,7 +14,7 @@ use axum::{
 };
 use serde::Deserialize;
 
-/// The provider's answer.
+/// The parameters of the provider's answer.
 #[derive(Deserialize)]
 pub(super) struct Answer {
     state: Option<String>,
@@ -23,24 +23,24 @@ pub(super) struct Answer {
     error_description: Option<String>,
 }
 
-/// Leads to the provider, with a cookie by which the browser is known when it comes back. What the provider makes a
-/// browser send is a page that it opens, so `Lax` will do.
-fn lead(app: &App, begun: &LoginAnswer) -> Response {
+/// Redirects to the provider and sets a cookie that identifies the browser on return. The browser returns by opening a
+/// page, so `Lax` is sufficient.
+fn redirect(app: &App, begun: &LoginAnswer) -> Response {
     let secure = if app.is_secure() { "; Secure" } else { "" };
     let (name, word) = (provider_cookie(app.is_secure()), &begun.browser);
     let cookie = format!("{name}={word}; Path=/; HttpOnly; SameSite=Lax; Max-Age=600{secure}");
     sign_in::with_cookie(&cookie, &begun.address)
 }
 
-/// Begins a sign-in. A provider that is away is told of on the page with the other ways in.
+/// Begins a sign-in. If the provider is unavailable, the sign-in page says so and offers the other ways.
 pub(super) async fn begin(
     visitor: Visitor,
     QueryInput(NextPage { to }): QueryInput<NextPage>,
 ) -> Result<Response, Problem> {
-    match visitor.begin_at_provider(sign_in::local(&to), None).await {
-        Ok(begun) => Ok(lead(&visitor.app, &begun)),
+    match visitor.begin_at_provider(sign_in::local_path(&to), None).await {
+        Ok(begun) => Ok(redirect(&visitor.app, &begun)),
         Err(problem) if problem.status() == StatusCode::SERVICE_UNAVAILABLE => {
-            let page = sign_in::ways(&visitor, to, problem.detail)?;
+            let page = sign_in::render_ways(&visitor, to, problem.detail)?;
             Ok((StatusCode::SERVICE_UNAVAILABLE, page).into_response())
         }
         Err(problem) => Err(problem),
@@ -49,7 +49,7 @@ pub(super) async fn begin(
 
 pub(super) async fn connect(visitor: Visitor, person: Person) -> Result<Response, Problem> {
     let begun = visitor.begin_at_provider("/account", Some(&person)).await?;
-    Ok(lead(&visitor.app, &begun))
+    Ok(redirect(&visitor.app, &begun))
 }
 
 pub(super) async fn answer(visitor: Visitor, QueryInput(answer): QueryInput<Answer>) -> Result<Response, Problem> {
@@ -60,7 +60,7 @@ pub(super) async fn answer(visitor: Visitor, QueryInput(answer): QueryInput<Answ
         });
     };
     let signed_in = visitor.sign_in_by_provider(state, code).await?;
-    Ok(sign_in::enter(&visitor.app, &signed_in.session, sign_in::local(&signed_in.to)))
+    Ok(sign_in::start_session(&visitor.app, &signed_in.session, sign_in::local_path(&signed_in.to)))
 }
 
 deeds! {

@@ -1,7 +1,7 @@
-//! Permanent removal: forms that list what is removed, and require its name.
+//! The pages for permanent removal: forms that list the things to remove, and require a name as confirmation.
 use super::{
     super::input::{AddressParts, Fields},
-    see,
+    redirect_to,
 };
 use crate::{
     domain::{Admin, Staff},
@@ -18,7 +18,11 @@ pub(super) struct Confirmation {
 
 impl Confirmation {
     fn ensure_is(&self, what: &str) -> Result<(), Problem> {
-        if self.confirm == what { Ok(()) } else { Err(Problem::invalid("this form belongs to something else")) }
+        if self.confirm == what {
+            Ok(())
+        } else {
+            Err(Problem::invalid("the form is for something else; reload the page"))
+        }
     }
 }
 

@@ -1,38 +1,37 @@
-//! A report as a part of its submission's page. What a stranger's program printed is text in it; and should it ever be
-//! more, no script runs but this server's own, and nothing that could send something is taken in.
+//! A report as a part of its submission's page. Output of untrusted programs is escaped in it. Even if escaping failed,
+//! only this server's script could run, and elements that send or load something are rejected.
 use crate::{domain::Member, problem::Problem, task::OutputFile};
 
-/// The size of the largest report that is part of a page; a grader's have at most three megabytes.
-const LARGEST: u64 = 4 << 20;
+/// The maximum size of a report that is part of a page, in bytes; the grader's reports have at most three megabytes.
+const MAX_REPORT_BYTES: u64 = 4 << 20;
 
-/// Elements that no report has: by them a page sends something, or takes something in.
-const FOREIGN: [&str; 7] = ["form", "iframe", "base", "meta", "link", "object", "embed"];
+/// The elements that a report never has, because they send or load something.
+const FORBIDDEN_ELEMENTS: [&str; 7] = ["form", "iframe", "base", "meta", "link", "object", "embed"];
 
-/// Returns a report without its head, which the page has; `None` for one of another version's grader, or a report that
-/// is too large.
+/// Returns a report without its head; `None` for one of another version's grader, or a report that is too large.
 pub(super) async fn read(member: &Member, file: &OutputFile) -> Result<Option<String>, Problem> {
-    if file.artifact.size > LARGEST {
+    if file.artifact.size > MAX_REPORT_BYTES {
         return Ok(None);
     }
-    let bytes = member.beginning(&file.artifact, LARGEST as usize).await?;
-    Ok(inner(&String::from_utf8_lossy(&bytes)).map(str::to_owned))
+    let bytes = member.beginning(&file.artifact, MAX_REPORT_BYTES as usize).await?;
+    Ok(strip_head(&String::from_utf8_lossy(&bytes)).map(str::to_owned))
 }
 
-fn inner(report: &str) -> Option<&str> {
+fn strip_head(report: &str) -> Option<&str> {
     let (_, rest) = report.split_once("<main id=\"content\">\n")?;
     let (body, foot) = rest.rsplit_once("</main>\n<footer>")?;
     let (_, body) = body.split_once("</h1>\n")?;
     let is_own = foot.contains(concat!("Written by fosssim-oracle ", env!("CARGO_PKG_VERSION"), ". "));
     let is_foreign = |tag: &str| {
         let begins = |name: &&str| tag.get(..name.len()).is_some_and(|start| start.eq_ignore_ascii_case(name));
-        FOREIGN.iter().any(begins)
+        FORBIDDEN_ELEMENTS.iter().any(begins)
     };
     (is_own && !body.split('<').any(is_foreign)).then_some(body)
 }
 
 #[cfg(test)]
 mod tests {
-    use super::inner;
+    use super::strip_head;
 
     #[test]
     fn a_report_of_this_version_is_part_of_a_page() {
@@ -43,9 +42,9 @@ mod tests {
             )
         };
         let own = env!("CARGO_PKG_VERSION");
-        assert_eq!(inner(&report("<p>Likely</p>\n", own)), Some("<p>Likely</p>\n"));
-        assert_eq!(inner(&report("<p>Likely</p>\n", "0.0.1")), None);
-        assert_eq!(inner(&report("<FORM action=\"/account\">", own)), None);
-        assert_eq!(inner("everything"), None);
+        assert_eq!(strip_head(&report("<p>Likely</p>\n", own)), Some("<p>Likely</p>\n"));
+        assert_eq!(strip_head(&report("<p>Likely</p>\n", "0.0.1")), None);
+        assert_eq!(strip_head(&report("<FORM action=\"/account\">", own)), None);
+        assert_eq!(strip_head("everything"), None);
     }
 }

@@ -1,11 +1,11 @@
-//! The scenes that submissions do not have right, in tables and sentences.
+//! The scenes that submissions have wrong, in tables and sentences.
 use crate::domain::{AttemptChange, KeptResult, Standing};
 use std::{cmp::Reverse, collections::BTreeMap};
 
-/// The greatest number of scenes that are named in a sentence.
-const NAMED: usize = 3;
+/// The maximum number of scenes that a sentence names.
+const MAX_NAMED: usize = 3;
 
-/// Returns the scenes that students have wrong by the results that count, and these students; the most frequent scenes
+/// Returns the scenes that students have wrong in the results that count, with the students; the most frequent scenes
 /// come first.
 pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
@@ -20,10 +20,10 @@ pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResu
     scenes
 }
 
-/// Returns the change that an attempt has made, in a sentence.
-pub(super) fn change(change: &AttemptChange) -> String {
+/// Returns a sentence about the change in an attempt.
+pub(super) fn describe_change(change: &AttemptChange) -> String {
     let list = |scenes: &[String]| {
-        let more = scenes.len().saturating_sub(NAMED);
+        let more = scenes.len().saturating_sub(MAX_NAMED);
         let named = scenes[..scenes.len() - more].join(", ");
         if more > 0 { format!("{named} and {more} more") } else { named }
     };
@@ -43,7 +43,7 @@ mod tests {
     #[test]
     fn a_change_names_few_scenes() {
         let names = |count: usize| (0..count).map(|number| format!("s{number}")).collect::<Vec<_>>();
-        let of = |right, wrong| change(&AttemptChange { since: 2, right: names(right), wrong: names(wrong) });
+        let of = |right, wrong| describe_change(&AttemptChange { since: 2, right: names(right), wrong: names(wrong) });
         assert_eq!(of(0, 0), "Since submission 2 no scene became right, and none wrong.");
         assert_eq!(of(1, 1), "Since submission 2 became right: s0. No longer right: s0.");
         assert_eq!(of(0, 8), "Since submission 2 no longer right: s0, s1, s2 and 5 more.");

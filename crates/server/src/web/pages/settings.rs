@@ -1,10 +1,10 @@
-//! Settings of an assignment as a form.
+//! The settings of an assignment as a form.
 use super::{
     super::{
         api::{self, Revision},
         input::{AddressParts, Fields, QueryInput},
     },
-    Page, PageFrame, see, show, text,
+    Page, PageFrame, redirect_to, show, text,
 };
 use crate::{
     calendar,
@@ -15,8 +15,8 @@ use askama::Template;
 use axum::{extract::Request, response::Redirect};
 use serde::Deserialize;
 
-/// The beginning of the value of an uploaded suite in the list of suites; its digest follows.
-const UPLOADED: &str = "(uploaded)";
+/// The prefix of an uploaded suite's value in the list of suites, followed by its digest.
+const UPLOADED_PREFIX: &str = "(uploaded)";
 
 const MIB: f64 = 1_048_576.0;
 
@@ -30,17 +30,17 @@ struct SettingsPage {
     megabytes: f64,
 }
 
-/// A suite in a form: value, words, and whether it is selected.
+/// A suite in a form: its value, its text, and whether it is selected.
 pub(super) type SuiteOption = (String, String, bool);
 
-/// Returns the suites to choose from: those that were uploaded to the course, and those that come with the grader.
+/// Returns the suites to choose from: those that were uploaded to the course, and the grader's.
 pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<SuiteOption>, Problem> {
     let mut suites = Vec::new();
     for UploadedSuite { digest, name, uploaded_at } in staff.suites().await? {
         let name = if name.is_empty() { text::short(&digest) } else { &name };
         let at = uploaded_at.map(|at| format!(" of {} UTC", calendar::format_minute(at))).unwrap_or_default();
         let is_this = settings.suite_archive.as_ref() == Some(&digest);
-        suites.push((format!("{UPLOADED}{digest}"), format!("{name} (yours{at})"), is_this));
+        suites.push((format!("{UPLOADED_PREFIX}{digest}"), format!("{name} (yours{at})"), is_this));
     }
     let is_named = settings.suite_archive.is_none();
     let known = &staff.app.suites;
@@ -57,7 +57,7 @@ pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<Sui
     Ok(suites)
 }
 
-/// The part of a form about grading.
+/// The part of the form about grading.
 #[derive(Deserialize)]
 pub(super) struct Grading {
     suite: String,
@@ -75,7 +75,7 @@ impl Grading {
     /// Returns the settings with the form's values.
     pub(super) fn over(&self, before: &Settings) -> Result<Settings, Problem> {
         let chosen = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
-        let (suite, suite_archive) = match self.suite.strip_prefix(UPLOADED) {
+        let (suite, suite_archive) = match self.suite.strip_prefix(UPLOADED_PREFIX) {
             Some(digest) => (before.suite.clone(), Some(digest.to_owned())),
             None => (self.suite.trim().to_owned(), None),
         };
@@ -91,7 +91,7 @@ impl Grading {
     }
 }
 
-/// The part about handing in.
+/// The part of the form about submitting.
 #[derive(Deserialize)]
 pub(super) struct NewSettings {
     title: String,
@@ -123,7 +123,7 @@ impl NewSettings {
         let forms = [("program", &self.form_program), ("sources", &self.form_sources), ("traces", &self.form_traces)];
         Ok(Settings {
             forms: forms.iter().filter(|(_, ticked)| ticked.is_some()).map(|(name, _)| (*name).to_owned()).collect(),
-            // At most a gigabyte, so that nothing is lost.
+            // The limit is a gigabyte, so the conversion is exact.
             max_bytes: (megabytes * MIB).round() as u64,
             attempts: parse("attempts", &self.attempts)?,
             per_hour: parse("submissions in an hour", &self.per_hour)?,
@@ -139,7 +139,7 @@ impl NewSettings {
     }
 }
 
-/// Returns the moment of a field with a date; the former moment if it is in the same minute.
+/// Returns the time of a date field; the earlier time if it is in the same minute.
 pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
     if field.trim().is_empty() {
         return Ok(None);
@@ -165,14 +165,14 @@ pub(super) async fn set(
     AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewSettings>,
 ) -> Result<Redirect, Problem> {
-    // An assignment is made on the course's page: a typing error in an address makes none.
+    // New assignments are created on the course's page, so that a typing error in an address creates none.
     let assignment = staff.assignment(&assignment).await?;
     let (title, visible) = (Some(form.title.trim()), Some(form.visible.is_some()));
-    // A page of an earlier version has no revision, and may be any.
+    // A page of an earlier version has no revision, and is accepted.
     let revision = Some(form.revision.parse().unwrap_or(-1));
     let change = AssignmentChange { title, visible, revision, suite: None };
     staff.set_assignment(&assignment.slug, change, |before| form.over(before)).await?;
-    Ok(see(&format!("/c/{slug}/a/{}", assignment.slug)))
+    Ok(redirect_to(&format!("/c/{slug}/a/{}", assignment.slug)))
 }
 
 pub(super) async fn set_suite(
@@ -182,5 +182,5 @@ pub(super) async fn set_suite(
     request: Request,
 ) -> Result<Redirect, Problem> {
     let assignment = api::receive_suite(&staff, &assignment, &asked, request).await?;
-    Ok(see(&format!("/c/{slug}/a/{}/settings", assignment.slug)))
+    Ok(redirect_to(&format!("/c/{slug}/a/{}/settings", assignment.slug)))
 }

@@ -1,10 +1,10 @@
-//! Signing in and out.
+//! The pages for signing in and out.
 use super::{
     super::{
-        guard::{SESSION, session_cookie},
+        guard::{SESSION_SECONDS, session_cookie},
         input::{AddressParts, Fields, QueryInput},
     },
-    Page, PageFrame, see, show,
+    Page, PageFrame, redirect_to, show,
 };
 use crate::{
     domain::{App, NewSecret, Visitor},
@@ -22,11 +22,11 @@ use url::form_urlencoded::byte_serialize;
 #[template(path = "sign_in.html")]
 struct SignIn {
     frame: PageFrame,
-    /// The provider's name, and where a sign-in there begins.
+    /// The provider's name, and the address at which a sign-in begins.
     provider: Option<(String, String)>,
-    /// The reason why the provider signs nobody in now.
+    /// The reason why the provider cannot be used at present.
     fault: String,
-    /// The page to go on to.
+    /// The path of the next page.
     to: String,
 }
 
@@ -51,20 +51,19 @@ pub(super) struct NextPage {
     pub(super) to: String,
 }
 
-/// Returns a page of this server; the first one where the words name none. Browsers take `//` and `/\` for another
-/// host.
-pub(super) fn local(to: &str) -> &str {
+/// Returns a path on this server; the home page if the text is not one. Browsers read `//` and `/\` as another host.
+pub(super) fn local_path(to: &str) -> &str {
     let is_local =
         to.starts_with('/') && !to.starts_with("//") && to.bytes().all(|c| c.is_ascii_graphic() && c != b'\\');
     if is_local { to } else { "/" }
 }
 
-/// Returns a new session's cookie, and the way on.
-pub(super) fn enter(app: &App, session: &NewSecret, to: &str) -> Response {
-    with_cookie(&session_cookie(app, session.reveal(), SESSION), to)
+/// Returns an answer with a new session's cookie and a redirection.
+pub(super) fn start_session(app: &App, session: &NewSecret, to: &str) -> Response {
+    with_cookie(&session_cookie(app, session.reveal(), SESSION_SECONDS), to)
 }
 
-/// Returns the fault that another service names in its answer to a sign-in, as one short line.
+/// Returns the error in another service's answer to a sign-in, as one short line.
 pub(super) fn fault_of(words: [Option<String>; 2]) -> Option<String> {
     let fault = words.into_iter().flatten().collect::<Vec<_>>().join(": ");
     let fault: String = fault.chars().filter(|c| !c.is_control()).take(300).collect();
@@ -72,15 +71,15 @@ pub(super) fn fault_of(words: [Option<String>; 2]) -> Option<String> {
 }
 
 pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
-    let mut response = see(to).into_response();
+    let mut response = redirect_to(to).into_response();
     if let Ok(value) = HeaderValue::from_str(cookie) {
         response.headers_mut().append(header::SET_COOKIE, value);
     }
     response
 }
 
-/// Shows the ways in.
-pub(super) fn ways(visitor: &Visitor, to: String, fault: String) -> Page {
+/// Returns the page with the ways to sign in.
+pub(super) fn render_ways(visitor: &Visitor, to: String, fault: String) -> Page {
     let query = byte_serialize(to.as_bytes()).collect::<String>();
     let known = visitor.app.provider.as_ref();
     let provider = known.map(|known| (known.label.clone(), format!("/sign-in/provider?to={query}")));
@@ -88,22 +87,22 @@ pub(super) fn ways(visitor: &Visitor, to: String, fault: String) -> Page {
 }
 
 pub(super) async fn page(visitor: Visitor, QueryInput(NextPage { to }): QueryInput<NextPage>) -> Page {
-    ways(&visitor, to, String::new())
+    render_ways(&visitor, to, String::new())
 }
 
 pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_token(form.token.trim()).await?;
-    Ok(enter(&visitor.app, &session, local(&form.to)))
+    Ok(start_session(&visitor.app, &session, local_path(&form.to)))
 }
 
-/// Shows the page of a sign-in link. Opening the link does nothing yet: mail programs open links, too.
+/// Shows the page of a sign-in link. Opening the link does not sign in, because mail programs open links, too.
 pub(super) async fn welcome(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Page {
     show(&Welcome { frame: PageFrame::default(), is_good: visitor.is_link(&secret).await? })
 }
 
 pub(super) async fn by_link(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Result<Response, Problem> {
     let session = visitor.sign_in_by_link(&secret).await?;
-    Ok(enter(&visitor.app, &session, "/"))
+    Ok(start_session(&visitor.app, &session, "/"))
 }
 
 pub(super) async fn sign_out(visitor: Visitor) -> Result<Response, Problem> {
@@ -113,15 +112,15 @@ pub(super) async fn sign_out(visitor: Visitor) -> Result<Response, Problem> {
 
 #[cfg(test)]
 mod tests {
-    use super::local;
+    use super::local_path;
 
     #[test]
     fn the_way_on_leads_to_this_server_only() {
-        assert_eq!(local("/c/physics/a/m1?q=x"), "/c/physics/a/m1?q=x");
+        assert_eq!(local_path("/c/physics/a/m1?q=x"), "/c/physics/a/m1?q=x");
         for other in
             ["", "c", "//evil.example", "/\\evil.example", "https://evil.example/", "/\r\nX: y", "/\t/evil.example"]
         {
-            assert_eq!(local(other), "/", "{other:?}");
+            assert_eq!(local_path(other), "/", "{other:?}");
         }
     }
 }

@@ -1,18 +1,18 @@
-//! The results of a class in numbers, and the students in each part of it.
+//! Statistics of a class's results, and the students in each part of the class.
 use crate::{
     domain::{CountedSubmission, ShortStanding},
     task::round_points,
 };
 use std::{cmp::Reverse, collections::BTreeMap};
 
-/// The bars of the class page that `grade` writes.
+/// The histogram, with the code of the page that `grade` writes.
 #[path = "../../../../report/src/page/histogram.rs"]
 mod histogram;
 
-/// Verdicts in short of work of which nothing ran: unusable, or not built.
+/// The codes of verdicts without any run: unusable, or not built.
 const NEVER_RAN: [&str; 2] = ["US", "CE"];
 
-/// The parts of a class to choose from: names, and words.
+/// The parts of a class to choose from, each with its name and its text.
 pub(super) const PARTS: [(&str, &str); 6] = [
     ("accepted", "accepted"),
     ("wrong", "not accepted"),
@@ -22,7 +22,7 @@ pub(super) const PARTS: [(&str, &str); 6] = [
     ("missing", "nothing handed in"),
 ];
 
-/// Returns whether a student is in a part of the class; a part without a name has all.
+/// Returns whether a student is in a part of the class; the empty name stands for the whole class.
 pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
     let counts = standing.counts.as_ref();
     let code = counts.and_then(|counts| counts.code.as_deref());
@@ -37,26 +37,26 @@ pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
     }
 }
 
-/// Returns the likely mistake in the line about a submission.
+/// Returns the likely mistake in the one-line summary of a submission.
 pub(super) fn mistake(counts: &CountedSubmission) -> Option<&str> {
     counts.summary.split_once("; ").map(|(_, mistake)| mistake)
 }
 
-/// Students with something in common: what that is, their logins, and a submission that shows it.
+/// Students with something in common: its name, their logins, and a submission that shows it.
 pub(super) type SharedBy = (String, Vec<String>, i64);
 
-/// The results of a class.
+/// The statistics of a class's results.
 pub(super) struct Statistics {
     pub(super) students: usize,
-    /// The number of students in each of the [`PARTS`]: names, words, numbers.
+    /// The number of students in each of the [`PARTS`], with the part's name and text.
     pub(super) parts: Vec<(&'static str, &'static str, usize)>,
-    /// Mean and median of the points of all students whose work ran, in percent; `None` without such work.
+    /// The mean and the median of the points of all students whose work was run, in percent; `None` without such work.
     pub(super) points: Option<(String, String)>,
-    /// These points as bars.
+    /// The histogram of these points.
     pub(super) bars: String,
-    /// Mistakes that students are likely to have made, the most frequent first.
+    /// The likely mistakes of students, the most frequent first.
     pub(super) mistakes: Vec<SharedBy>,
-    /// Programs that several students handed in, byte for byte.
+    /// The programs that several students submitted, byte for byte.
     pub(super) same: Vec<SharedBy>,
 }
 
@@ -64,7 +64,7 @@ impl Statistics {
     pub(super) fn from_standings(standings: &[ShortStanding]) -> Self {
         let count = |part: &str| standings.iter().filter(|one| is_in(one, part)).count();
         let ran = standings.iter().filter(|one| !is_in(one, "never-ran"));
-        let mut shares: Vec<f64> = ran.filter_map(|one| share(one.counts.as_ref()?)).collect();
+        let mut shares: Vec<f64> = ran.filter_map(|one| points_share(one.counts.as_ref()?)).collect();
         shares.sort_by(f64::total_cmp);
         let middle = |count: usize| (shares[(count - 1) / 2] + shares[count / 2]) / 2.0;
         let mean = |count: usize| shares.iter().sum::<f64>() / count as f64;
@@ -88,14 +88,14 @@ impl Statistics {
     }
 }
 
-/// Returns the share of the points that a submission has, in percent.
-fn share(counts: &CountedSubmission) -> Option<f64> {
+/// Returns a submission's share of the points, in percent.
+fn points_share(counts: &CountedSubmission) -> Option<f64> {
     let number = |text: &Option<String>| text.as_ref()?.parse::<f64>().ok();
     let (points, most) = (number(&counts.points)?, number(&counts.max_points)?);
     (most > 0.0).then(|| (100.0 * points / most).clamp(0.0, 100.0))
 }
 
-/// Returns the mistakes that students share, the most frequent first.
+/// Returns what students share by the function `of`, the most frequent first.
 fn find_shared(standings: &[ShortStanding], of: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<SharedBy> {
     let mut found: BTreeMap<&str, (Vec<String>, i64)> = BTreeMap::new();
     for standing in standings {

@@ -1,11 +1,11 @@
-//! One student's work, as staff sees it; and the table by which a class is imported.
+//! The page of one student's work for staff, and the table by which a class is imported.
 use super::{
     super::{
         api::{RequestWish, cell},
         input::{AddressParts, Fields},
         upload,
     },
-    Page, PageFrame, grades, scenes, see,
+    Page, PageFrame, grades, redirect_to, scenes,
     settings::moment,
     show, text,
 };
@@ -26,7 +26,7 @@ struct StudentPage {
     slug: String,
     assignment: Assignment,
     work: StudentHistory,
-    /// The changes that attempts have made, by the numbers of their submissions.
+    /// The changes between attempts, by the number of the later submission.
     changes: BTreeMap<i64, String>,
     /// The last event of the course that the page shows.
     seen: i64,
@@ -39,21 +39,21 @@ struct ImportPage {
     slug: String,
     table: String,
     lines: Vec<ImportRow>,
-    /// The columns of which nothing is kept.
+    /// The columns whose values are not stored.
     left_out: BTreeSet<String>,
     is_wrong: bool,
     is_done: bool,
-    /// All links as a table, as an address.
+    /// All links as a table, in the form of a data address.
     download: String,
     /// The last event of the course that the page shows.
     seen: i64,
 }
 
-/// A row of the imported table, with the link to hand on.
+/// A row of the imported table, with the sign-in link.
 struct ImportRow {
     member: MemberLine,
     link: String,
-    /// A letter with the link, as an address.
+    /// A letter with the link, in the form of a mail address.
     letter: String,
 }
 
@@ -84,19 +84,19 @@ pub(super) struct ImportedTable {
 
 pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, login, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    // Read before the work: later changes are not seen.
+    // Read the event before the work, so that later changes are detected.
     let seen = staff.last_event().await?;
     let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
-    let frame = grades::frame(&staff, &assignment).then(address, &work.name);
+    let frame = grades::class_frame(&staff, &assignment).then(address, &work.name);
     let changes = staff.changes(&work.submissions).await?;
-    let changes = changes.iter().map(|(id, change)| (*id, scenes::change(change))).collect();
+    let changes = changes.iter().map(|(id, change)| (*id, scenes::describe_change(change))).collect();
     show(&StudentPage { frame, slug, assignment, work, changes, seen })
 }
 
-/// Reads points; a number with a decimal comma, `7,5`, with a point. Three digits behind a comma may be thousands.
-/// Nothing if the field is empty.
-fn points(field: &str) -> Option<String> {
+/// Reads points; a number with a decimal comma such as `7,5` gets a point. Three digits after a comma may be thousands,
+/// so they are not converted. `None` if the field is empty.
+fn read_points(field: &str) -> Option<String> {
     match field.split_once(',') {
         Some((whole, part)) if (1..=2).contains(&part.len()) => Some(format!("{whole}.{part}")),
         _ => Some(field.to_owned()).filter(|field| !field.is_empty()),
@@ -122,12 +122,12 @@ async fn import_page(staff: &Staff, table: String, lines: Vec<ImportRow>, is_don
     show(&ImportPage { frame, slug, table, lines, left_out, is_wrong, is_done: is_done && !is_wrong, download, seen })
 }
 
-/// Bytes as part of an address.
+/// Returns bytes, encoded for an address.
 fn percent(bytes: &[u8]) -> String {
     byte_serialize(bytes).collect::<String>().replace('+', "%20")
 }
 
-fn line(course: &str, of: MemberLine) -> ImportRow {
+fn import_row(course: &str, of: MemberLine) -> ImportRow {
     let link = of.link.clone().unwrap_or_default();
     let (subject, body) = (percent(course.as_bytes()), percent(format!("{}:\n{link}\n", of.name).as_bytes()));
     let letter = format!("mailto:{}?subject={subject}&body={body}", percent(of.email.as_bytes()));
@@ -138,19 +138,19 @@ pub(super) async fn import(staff: Staff) -> Page {
     import_page(&staff, String::new(), Vec::new(), false).await
 }
 
-/// The largest file with a table of members.
-const TABLE: u64 = 1 << 20;
+/// The maximum size of a file with a table of members, in bytes.
+const MAX_TABLE_BYTES: u64 = 1 << 20;
 
-/// Reads a file with a table of members, and shows what it would do.
+/// Reads a file with a table of members, and shows the changes that it would make.
 pub(super) async fn import_file(staff: Staff, request: Request) -> Page {
-    let received = upload::receive(&staff.app, request, TABLE).await?;
+    let received = upload::receive(&staff.app, request, MAX_TABLE_BYTES).await?;
     let table = String::from_utf8_lossy(&tokio::fs::read(&received.file).await?).into_owned();
     preview(&staff, table, None, false).await
 }
 
 async fn preview(staff: &Staff, table: String, seen: Option<i64>, is_meant: bool) -> Page {
     let lines = staff.import(&table, !is_meant, seen).await?;
-    let lines = lines.into_iter().map(|one| line(&staff.title, one)).collect();
+    let lines = lines.into_iter().map(|one| import_row(&staff.title, one)).collect();
     import_page(staff, table, lines, is_meant).await
 }
 
@@ -166,7 +166,7 @@ deeds! {
     mark(staff: Staff, { course, id }, form: NewMark):
         async {
             let seen = form.marked_at.as_ref().map(|moment| moment.parse().ok());
-            let points = points(form.points.trim());
+            let points = read_points(form.points.trim());
             staff.mark(id, points.as_deref(), form.comment.trim(), seen).await
         } => "/c/{course}/s/{id}";
     request(member: Member, { course, id }, form: RequestWish):

@@ -1,9 +1,9 @@
-//! The page for handing in, and for its result.
+//! The page for submitting, and for the result.
 use super::{
     super::{api, input::AddressParts},
     Page, PageFrame,
     course::OwnWork,
-    report, scenes, see, show, text,
+    redirect_to, report, scenes, show, text,
 };
 use crate::{
     domain::{Assignment, History, Member, Staff, Submission},
@@ -31,15 +31,15 @@ struct SubmissionPage {
     member: Member,
     is_own: bool,
     submission: Submission,
-    /// The attempts that the owner has made and may still make; `None` for other readers.
+    /// The attempts that the owner has made and has left; `None` for other readers.
     work: Option<OwnWork>,
     is_moving: bool,
     history: Vec<History>,
-    /// The change since the submission before.
+    /// The change since the preceding submission.
     change: Option<String>,
-    /// All submissions of its owner, oldest first.
+    /// All submissions of the owner, oldest first.
     attempts: Vec<Submission>,
-    /// The name of the report that is shown: staff's own, if there is one.
+    /// The name of the report on the page: the one for staff, if there is one.
     page: Option<&'static str>,
     /// The report, if it can be part of the page.
     report: Option<String>,
@@ -59,10 +59,10 @@ pub(super) async fn submit(
     request: Request,
 ) -> Result<Redirect, Problem> {
     let accepted = api::receive(&member, &assignment, request, None, None, None).await?;
-    Ok(see(&format!("/c/{slug}/s/{}", accepted.submission.id)))
+    Ok(redirect_to(&format!("/c/{slug}/s/{}", accepted.submission.id)))
 }
 
-/// Finds the assignment of a submission, where the member sees it.
+/// Finds the assignment of a submission, if the member may see it.
 async fn find_assignment(member: &Member, submission: &Submission) -> Result<Option<Assignment>, Problem> {
     Ok(member.assignments().await?.into_iter().find(|assignment| assignment.slug == submission.assignment))
 }
@@ -105,7 +105,7 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
         work,
         is_moving: matches!(submission.state.as_str(), "waiting" | "running"),
         history: member.history(id).await?,
-        change: changes.get(&id).map(scenes::change),
+        change: changes.get(&id).map(scenes::describe_change),
         page,
         report,
         submission,
@@ -113,7 +113,7 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
     })
 }
 
-/// Returns the page of a submission that is shown: staff's own, if there is one that the reader may see.
+/// Returns the name of the report on a submission's page: the one for staff, if the reader may see it.
 fn page_of(submission: &Submission) -> Option<&'static str> {
     let files = submission.grade.iter().flat_map(|grade| &grade.files);
     let names: Vec<&str> = files.map(|file| file.name.as_str()).collect();

@@ -1,4 +1,4 @@
-//! Values as people read them.
+//! Values as text for people.
 pub(super) use crate::shown::verdict;
 use crate::{
     calendar,
@@ -7,18 +7,18 @@ use crate::{
     task::round_points,
 };
 
-/// Returns a moment, as markup: in UTC, which a script makes the reader's own time.
+/// Returns a time as HTML, in UTC; a script converts it to the reader's time zone.
 pub(super) fn time(milliseconds: &i64) -> String {
-    let (exact, minute) = (calendar::exact(*milliseconds), calendar::format_minute(*milliseconds));
+    let (exact, minute) = (calendar::format_iso(*milliseconds), calendar::format_minute(*milliseconds));
     format!("<time datetime=\"{exact}\">{minute} UTC</time>")
 }
 
-/// Returns a moment for a field of a form, in UTC: `2026-11-22T08:45`.
+/// Returns a time for a field of a form in UTC, such as `2026-11-22T08:45`.
 pub(super) fn field(milliseconds: &Option<i64>) -> String {
     milliseconds.map(|at| calendar::format_minute(at).replace(' ', "T")).unwrap_or_default()
 }
 
-/// Returns the points of the most that could be had, to two digits as in reports; a dash where there are none.
+/// Returns the points and their maximum, with at most two decimals as in reports; a dash without points.
 pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     match (points, most) {
         (Some(points), Some(most)) => format!("{} of {}", round_points(points), round_points(most)),
@@ -27,14 +27,14 @@ pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     }
 }
 
-/// Returns the likely mistake in the line about a submission, or why it did not run: its beginning, if it is long.
+/// Returns the likely mistake in the summary of a submission, or the reason why it was not run, cut if it is long.
 pub(super) fn short_mistake(summary: &str) -> String {
     let mistake = summary.split_once("; ").map_or("", |(_, mistake)| mistake);
     let beginning: String = mistake.chars().take(110).collect();
     if beginning.len() < mistake.len() { beginning + "..." } else { beginning }
 }
 
-/// Returns a verdict and its points in words.
+/// Returns a verdict and its points as text.
 pub(super) fn result(code: &str, points: &Option<String>) -> String {
     let verdict = verdict(code);
     points.as_deref().map_or_else(|| verdict.to_owned(), |points| format!("{verdict}, {} points", round_points(points)))
@@ -54,7 +54,7 @@ pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => format!("{} / {}", round_points(points), round_points(most)),
         _ if score["gradingProgress"] == "PendingLaunch" => "being graded".to_owned(),
-        _ => "staff must look at it".to_owned(),
+        _ => "staff must check it".to_owned(),
     }
 }
 
@@ -63,7 +63,7 @@ pub(super) fn short(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
 }
 
-/// Returns the class of the chip for a submission's state.
+/// Returns the CSS class of the chip for a submission's state.
 pub(super) fn chip_class(submission: &Submission) -> &'static str {
     match (submission.state.as_str(), &submission.grade) {
         ("waiting" | "running", _) => "warn",
@@ -72,7 +72,7 @@ pub(super) fn chip_class(submission: &Submission) -> &'static str {
     }
 }
 
-/// Returns the words of the chip: the verdict, or what becomes of the submission while there is none.
+/// Returns the text of the chip: the verdict, or the state of the submission before there is one.
 pub(super) fn outcome(submission: &Submission) -> &str {
     match (submission.state.as_str(), &submission.grade) {
         ("waiting" | "running", _) | (_, None) => state(&submission.state),
@@ -85,13 +85,13 @@ pub(super) fn is_accepted(submission: &Option<Submission>) -> bool {
     submission.as_ref().is_some_and(|submission| chip_class(submission) == "good")
 }
 
-/// Returns a size in bytes, in the unit that leaves few digits.
+/// Returns a size in bytes, in a unit with few digits.
 pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
     problem::size((*bytes).try_into().unwrap_or(0))
 }
 
-/// Returns the grade's points; a dash while there are none. Points by hand are of the whole grade: they have no maximum
-/// of the groups that are shown.
+/// Returns the grade's points; a dash if there are none. Points from staff are those of the whole grade, so the maximum
+/// of the shown groups is left out.
 pub(super) fn grade_points(submission: &Submission) -> String {
     let by_hand = submission.mark.as_ref().and_then(|mark| mark.points.as_ref());
     if let (true, Some(by_hand)) = (submission.is_withheld, by_hand) {
@@ -100,13 +100,13 @@ pub(super) fn grade_points(submission: &Submission) -> String {
     submission.grade.as_ref().map_or_else(|| points(&None, &None), |grade| points(&grade.points, &grade.max_points))
 }
 
-/// Returns the state of a submission, in words.
+/// Returns the state of a submission, as text.
 pub(super) fn state(state: &str) -> &'static str {
     match state {
         "waiting" => "waiting",
         "running" => "being graded",
         "done" => "graded",
-        "buried" => "the grader failed: not your fault, and staff is informed",
+        "buried" => "the grader failed; this is not your fault, and staff is informed",
         _ => "taken out of the queue",
     }
 }

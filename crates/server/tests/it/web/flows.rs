@@ -96,7 +96,7 @@ async fn an_upload_sent_twice_is_one_submission(fresh: Fresh) {
     assert_eq!(id(send(&program("AC", 1)).expect(200)), first);
     let problem = send(&program("AC", 2)).expect(409);
     assert_eq!(problem.header("content-type"), Some("application/problem+json"));
-    assert_eq!(problem.json()["detail"], "this key was used for another upload");
+    assert_eq!(problem.json()["detail"], "this key was already used for another upload");
     // At the same moment, too.
     let clients: Vec<_> = (0..8)
         .map(|_| {

@@ -28,7 +28,7 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     let table = "name,login,email,role\nAda,ada,ada@example.org,\nCarol,carol,,staff\nBoss,admin,,staff\n";
     let form = "table=name,login,email,role%0AAda,ada,ada@example.org,%0ACarol,carol,,staff%0ABoss,admin,,staff%0A";
     let page = teacher.post_form("/c/physics/members/import", form).expect(200).text();
-    assert!(page.contains("What would be done") && page.contains("Make these members"), "{page}");
+    assert!(page.contains("Preview of the changes") && page.contains("Make these members"), "{page}");
     teacher.send("POST", &format!("{path}?preview=true"), &csv, table.as_bytes()).expect(200);
     assert_eq!(members(), 1);
     let page = teacher.post_form("/c/physics/members/import", &format!("{form}&import=yes")).expect(200).text();
@@ -179,7 +179,7 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     set(366).expect(400);
     set(3).expect(200);
     let place = ada.get("/c/physics/a/m1").expect(200).text();
-    assert!(place.contains("taken for 3 more days; each day that has begun takes 10 %"), "{place}");
+    assert!(place.contains("taken for 3 more days; each started day costs 10 %"), "{place}");
     let id = ada.submit("physics", &program("AC", 95));
     ada.wait_for_grade("physics", id);
     let seen = || ada.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();

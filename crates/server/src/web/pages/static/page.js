@@ -1,10 +1,10 @@
 "use strict";
-// Follows a submission until it is graded.
+// Updates the state of a submission until it is graded.
 const state = document.getElementById("state");
 if (state && state.dataset.follow) {
   const look = async () => {
     const answer = await fetch(state.dataset.follow).catch(() => null);
-    // A server that is away may come back.
+    // An unavailable server may return.
     if (!answer || !answer.ok) return;
     const submission = await answer.json();
     if (submission.state !== "waiting" && submission.state !== "running") {
@@ -19,7 +19,7 @@ if (state && state.dataset.follow) {
   };
   setInterval(look, 2000);
 }
-// What needs a script is there with one.
+// Show elements that need a script.
 for (const hidden of document.querySelectorAll("[data-script], [data-copy]")) hidden.hidden = false;
 for (const button of document.querySelectorAll("[data-copy]")) {
   button.addEventListener("click", () => {
@@ -32,7 +32,7 @@ for (const button of document.querySelectorAll("[data-copy]")) {
     button.textContent = "Copied";
   });
 }
-// Files can be dropped on the form, which says how much has gone.
+// Accept dropped files on the form, and show the progress of the upload.
 const form = document.querySelector("form[data-drop]");
 if (form) {
   const field = form.querySelector("input[type=file]");
@@ -50,7 +50,7 @@ if (form) {
   });
   form.addEventListener("submit", (event) => {
     event.preventDefault();
-    // A double click hands in once.
+    // Prevent a second upload by a double click.
     button.disabled = true;
     sent.hidden = false;
     sent.removeAttribute("class");
@@ -65,32 +65,32 @@ if (form) {
     request.upload.addEventListener("progress", ({ loaded, total }) => {
       bar.max = total;
       bar.value = loaded;
-      say(loaded < total ? `${Math.floor((100 * loaded) / total)} % sent` : "All is sent. The server looks at it.");
+      say(loaded < total ? `${Math.floor((100 * loaded) / total)} % sent` : "Upload complete. The server is checking the file.");
     });
     request.addEventListener("load", () => {
       if (request.status < 400) {
         location.href = request.responseURL;
         return;
       }
-      // A refusal is a page that says why, and what to do.
+      // A rejection is a page with the reason and the remedy.
       const page = new DOMParser().parseFromString(request.responseText, "text/html");
       const [title, ...words] = [...page.querySelectorAll("main h1, main p")].map((part) => part.textContent.trim());
       stop(title ? `${title}: ${words.join(". ")}` : `The server answered ${request.status}.`);
     });
     request.addEventListener("error", () =>
-      stop("The connection broke off. Hand in again: the same upload counts once."),
+      stop("The connection was interrupted. Submit again; the same upload counts only once."),
     );
     request.open("POST", form.action);
     request.send(new FormData(form));
     say("0 % sent");
   });
 }
-// Times in the reader's own zone.
+// Show times in the reader's time zone.
 for (const time of document.querySelectorAll("time[datetime]")) {
   time.title = time.textContent;
   time.textContent = new Date(time.dateTime).toLocaleString(undefined, { dateStyle: "medium", timeStyle: "short" });
 }
-// Fields, too: they come in UTC, and say in which zone they go.
+// Convert fields, too: they arrive in UTC, and are sent with their time zone.
 for (const field of document.querySelectorAll("input[type=datetime-local]")) {
   const zone = document.getElementById(`${field.id}-zone`);
   const name = document.getElementById(`${field.id}-zone-name`);
