@@ -168,7 +168,7 @@ fn attacks_are_never_run_without_walls() {
     let backend = Backend::fake(|_| unreachable!("nothing is started"));
     let folder = tempfile::tempdir().unwrap();
     let refusal = selftest::run(&backend, Path::new("cc"), folder.path(), |_| {});
-    assert!(refusal.unwrap_err().to_string().contains("inside the sandbox only"));
+    assert!(refusal.unwrap_err().to_string().contains("only inside the sandbox"));
     assert_eq!(std::fs::read_dir(folder.path()).unwrap().count(), 0, "nothing is built");
 }
 

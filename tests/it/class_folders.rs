@@ -444,8 +444,8 @@ fn pipes_are_waited_for_nowhere() {
         ("shards/shard-1-of-1/shard.json", &merge, "a pipe"),
         ("shards/shard-1-of-1/journal.jsonl", &merge, "no shard that is done"),
         ("scenes/pipe.xml", &traces, "a pipe"),
-        ("suite.toml", &["suite", "check", "suite.toml"], "nobody has written to"),
-        ("scene.xml", &["simulate", "scene.xml"], "nobody has written to"),
+        ("suite.toml", &["suite", "check", "suite.toml"], "a pipe without a writer"),
+        ("scene.xml", &["simulate", "scene.xml"], "a pipe without a writer"),
     ];
     for (place, arguments, says) in everywhere {
         if arguments == class && !with_programs {

@@ -76,5 +76,5 @@ fn cut_traces_have_no_verdict_and_cut_recordings_are_a_fault() {
     let kinds: Vec<FindingKind> = outcome.parity.findings.examples.iter().map(Finding::kind).collect();
     assert!(kinds.contains(&FindingKind::SuperfluousCollision) && kinds.is_sorted(), "{kinds:?}");
     let error = recorded::judge(&scene, &right[..], half, &mut ()).expect_err("half a recording").to_string();
-    assert!(error.starts_with("the recording can't be used: frame ") && error.ends_with("record it again"), "{error}");
+    assert!(error.starts_with("the recording is damaged: frame ") && error.ends_with("record it again"), "{error}");
 }

@@ -86,11 +86,8 @@ fn a_damaged_trace_is_drawn_as_far_as_it_goes() {
 fn nonsense_is_refused_before_anything_is_written() {
     let workspace = Workspace::with_trace(BEAM);
     for (words, says) in [
-        (
-            "scene.xml --output x.gif --size 0x480",
-            "0x480 is no sensible size; width and height may be 16 to 7680 pixels",
-        ),
-        ("scene.xml --output x.gif --size 640x99999999999", "is no size; write WIDTHxHEIGHT"),
+        ("scene.xml --output x.gif --size 0x480", "0x480 is out of range; width and height must be 16 to 7680 pixels"),
+        ("scene.xml --output x.gif --size 640x99999999999", "is not a size; write WIDTHxHEIGHT"),
         ("scene.xml --output x.gif --fps 0", "--fps may be 1 to 240"),
         ("scene.xml --output x.gif --every 0", "--every"),
         ("scene.xml --output x.gif --every 4 --format png", "no step is drawn: the scene has 3 steps, and every 4th"),

@@ -126,7 +126,7 @@ impl Folder {
     /// If it does not exist, or is a link.
     pub fn folder(&self, name: &OsStr) -> io::Result<Self> {
         let inner = step(self.as_fd(), single(name)?).map_err(|error| match error.raw_os_error() {
-            Some(libc::ELOOP) => io::Error::other("it is a link, and links are not followed; replace it by the file"),
+            Some(libc::ELOOP) => io::Error::other("it is a link, which is not followed; remove it"),
             _ => error,
         });
         Ok(self.inner(inner?, name))

@@ -81,9 +81,9 @@ mod tests {
     fn nonsense_is_refused_in_words() {
         assert_eq!("640x480".parse(), Size::new(640, 480));
         let refused = |text: &str| text.parse::<Size>().unwrap_err().to_string();
-        assert_eq!(refused("640"), "`640` is no size; write WIDTHxHEIGHT as in 640x480");
-        assert_eq!(refused("-640x480"), "`-640x480` is no size; write WIDTHxHEIGHT as in 640x480");
-        let range = "is no sensible size; width and height may be 16 to 7680 pixels";
+        assert_eq!(refused("640"), "`640` is not a size; write WIDTHxHEIGHT, for example 640x480");
+        assert_eq!(refused("-640x480"), "`-640x480` is not a size; write WIDTHxHEIGHT, for example 640x480");
+        let range = "is out of range; width and height must be 16 to 7680 pixels";
         assert_eq!(refused("0x480"), format!("0x480 {range}"));
         assert_eq!(refused("640x4294967295"), format!("640x4294967295 {range}"));
     }

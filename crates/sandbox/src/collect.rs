@@ -81,7 +81,7 @@ mod tests {
             ("sparse", "the limit is 1000"),
             ("socket", "a socket"),
             ("fifo", "a pipe"),
-            ("none", "no file none"),
+            ("none", "none does not exist"),
             ("new\nline", "no file new\\nline"),
             ("../reference.bin", "outside the folder"),
             (&secret.display().to_string(), "outside the folder"),

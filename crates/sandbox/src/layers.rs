@@ -122,7 +122,7 @@ fn process_layers(probe: &Probe) -> [LayerReport; 4] {
             Layer::Execution,
             probe.execution.clone(),
             if probe.from_memory {
-                "programs run from memory, because the temporary folder is mounted noexec; build steps cannot run programs built there"
+                "in memory, because the temporary folder is mounted noexec; build steps cannot run their products"
             } else {
                 "programs run from copies in the temporary folder"
             },

@@ -88,7 +88,7 @@ pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<
 }
 
 /// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth. Entries deeper
-/// than [`MAX_DEPTH`] are moved up into `folder`, because the process that later removes it would run out of descriptors.
+/// than [`MAX_DEPTH`] are moved up into `folder`, because the process that removes it would run out of descriptors.
 /// Returns whether no entry was that deep. Must be called only when no process of the program is alive.
 pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
     let mut moved: Vec<CString> = Vec::new();
