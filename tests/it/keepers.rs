@@ -166,7 +166,7 @@ fn who_loses_a_keeper_or_a_supervisor_says_so_and_the_next_run_has_others() {
         let running = bench.start(&backend, small());
         kill(bench.family()[victim]);
         let error = running.wait().expect_err("a loss").to_string();
-        assert!(error.contains("lost"), "{error}");
+        assert!(error.contains("ended unexpectedly"), "{error}");
         eventually(|| bench.process().is_none().then_some(()));
         assert_eq!(finish(bench.start(&backend, small())), RunEnd::Exited(0));
     }

@@ -258,7 +258,7 @@ fn with_article(kind: &str) -> String {
 /// Returns the message for a word that is not in a list.
 fn describe_choices(name: &str, word: &str, words: &[&str]) -> String {
     let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
-    format!("{name} \"{word}\" is unknown; choose {}{}", list_words(words, "and"), hint.unwrap_or_default())
+    format!("{name} \"{word}\" is unknown; choose {}{}", list_words(words, "or"), hint.unwrap_or_default())
 }
 
 /// Returns a list as text, such as `"a", "b" and "c"`.

@@ -44,7 +44,7 @@ fn a_program_dies_with_its_supervisor_and_the_loss_is_our_fault() {
     let (_, supervisor) = eventually(|| process(&words));
     kill(supervisor);
     let error = running.wait().unwrap_err();
-    assert!(error.to_string().contains("lost"), "{error}");
+    assert!(error.to_string().contains("ended unexpectedly"), "{error}");
     eventually(|| process(&words).is_none().then_some(()));
 }
 
