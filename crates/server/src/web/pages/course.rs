@@ -31,6 +31,11 @@ pub(super) struct Row {
 }
 
 impl Row {
+    /// Returns whether nothing is graded now, as staff sees it.
+    pub(super) fn lacks_worker(&self) -> bool {
+        self.overview.as_ref().is_some_and(|overview| overview.slots == 0)
+    }
+
     /// Returns whether something can still be handed in.
     pub(super) fn is_open(&self) -> bool {
         if self.overview.is_some() { !self.work.is_over } else { self.work.is_open() }
