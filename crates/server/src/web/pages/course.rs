@@ -48,6 +48,8 @@ pub(super) struct OwnWork {
     pub(super) due: Option<i64>,
     /// Whether that has passed.
     pub(super) is_late: bool,
+    /// The time until which late uploads are taken.
+    pub(super) closes_at: Option<i64>,
     /// Whether nothing is taken any more, not even late.
     pub(super) is_over: bool,
     /// The number of submissions that are left, if it is limited.
@@ -72,6 +74,7 @@ impl OwnWork {
         Ok(Self {
             due,
             is_late: passed(due),
+            closes_at,
             is_over: passed(closes_at),
             left: (attempts > 0).then(|| attempts.saturating_sub(submissions.len())),
             submissions,
