@@ -128,7 +128,9 @@ after(async () => {
 async function person() {
   const context = await browser.newContext();
   const complaints = [];
-  context.on("console", (message) => message.type() === "error" && complaints.push(message.text()));
+  // Of the server's pages; the platform's have no icon.
+  const isOurs = (message) => message.type() === "error" && message.location().url.startsWith(address);
+  context.on("console", (message) => isOurs(message) && complaints.push(message.text()));
   const page = await context.newPage();
   page.setDefaultTimeout(120_000);
   return { page, context, complaints };
