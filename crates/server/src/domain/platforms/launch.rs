@@ -143,10 +143,7 @@ impl Visitor {
         let message = self.app.lti.receive(&platform, token, &nonce).await?;
         let Some(role) = message.person.role else {
             let detail = "the platform says that you neither learn nor teach in this course";
-            return Err(Problem::refused_until(
-                detail,
-                "ask the course's teacher there for the role of a student or teacher",
-            ));
+            return Err(Problem::refused_until(detail, "ask the course's teacher there to make you a student"));
         };
         let mut transaction = self.app.0.database.begin().await?;
         ensure(pending.use_up(&mut transaction).await?, Problem::refused_launch(UNKNOWN))?;
@@ -226,7 +223,7 @@ async fn arrive(
         None if staff => choose(transaction, platform, arrival, account).await,
         None => Err(Problem::refused_until(
             "no assignment was chosen for this link yet",
-            "ask your teacher to open this link once, and then open it again",
+            "ask your teacher to open this link once, then open it again",
         )),
     }
 }
