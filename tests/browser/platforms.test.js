@@ -127,9 +127,13 @@ after(async () => {
 
 async function person() {
   const context = await browser.newContext();
+  const complaints = [];
+  // Of the server's pages; the platform's have no icon.
+  const isOurs = (message) => message.type() === "error" && message.location().url.startsWith(address);
+  context.on("console", (message) => isOurs(message) && complaints.push(message.text()));
   const page = await context.newPage();
   page.setDefaultTimeout(120_000);
-  return { page, context };
+  return { page, context, complaints };
 }
 
 // Everybody can use the page, in light and dark.
@@ -199,6 +203,7 @@ test("a course of a platform, from its registration to a link in it", async () =
   await accessible(page);
   await page.getByRole("button", { name: "Choose it" }).click();
   await page.getByRole("heading", { name: "Milestone one" }).waitFor();
+  await page.getByText("The platform's link now opens this assignment.").waitFor();
 
   // A student comes straight to it, in a window of the platform.
   visit = { subject: "student-1", name: "Stu Dent", role: "Learner" };
@@ -238,5 +243,6 @@ test("a course of a platform, from its registration to a link in it", async () =
   assert.ok(verify("sha256", Buffer.from(`${header}.${claims}`), key, Buffer.from(signature, "base64url")));
   const said = JSON.parse(Buffer.from(claims, "base64url"));
   assert.equal(said[`${LINKING}/data`], "kept");
+  assert.deepEqual(teacher.complaints, []);
   assert.deepEqual(said[`${LINKING}/content_items`][0].custom, { assignment: "m1" });
 });

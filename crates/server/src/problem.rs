@@ -68,6 +68,10 @@ problems! {
     refused_launch(detail: impl Into<String>): 403, "launch-refused", "This sign-in is not possible",
         detail,
         "go back to the platform and open it there again; if it happens again, tell the server's administrator";
+    /// A sign-in from a learning platform is not possible until a person does something.
+    refused_until(detail: impl Into<String>, remedy: &str): 403, "launch-refused", "This sign-in is not possible",
+        detail,
+        remedy;
     /// A sign-in at a provider is rejected.
     refused_sign_in(detail: impl Into<String>): 403, "sign-in-refused", "This sign-in is not possible",
         detail,

@@ -41,8 +41,9 @@ const HUNDREDS: [(&str, usize); 22] = [
     // instead. Classes have filters and equal programs, submissions a comparison, CSV points of groups, suites names;
     // the text of reports in pages, and the statement for changes between attempts went. Sign-in at a provider is new;
     // passwords went, with their digests and limits. Verdicts have words everywhere, and the home page and the log have
-    // links; the list of verdicts in a template and the search for members in SQL went.
-    ("server", 152),
+    // links; the list of verdicts in a template and the search for members in SQL went. A worker on the server's
+    // machine gets its token by itself, and waiting has a reason; nothing went instead.
+    ("server", 153),
     ("shrink", 5),
     // The table of `--timings`.
     // The command `shrink`.

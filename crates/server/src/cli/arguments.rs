@@ -28,6 +28,7 @@ pub(super) enum Command {
     Serve(ServiceArguments),
     Worker(WorkerArguments),
     AdminLink(AdminLinkArguments),
+    WorkerToken(WorkerTokenArguments),
     Backup(BackupArguments),
     Restore(RestoreArguments),
     Health(HealthArguments),
@@ -166,10 +167,19 @@ pub(super) struct AdminLinkArguments {
     /// The administrator's login.
     #[arg(default_value = "admin")]
     pub(super) login: String,
-    /// The public address of the server.
-    #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url,
-        default_value = "http://127.0.0.1:8080")]
-    pub(super) public_url: String,
+    /// The address that people know the server by. By default the one with which the server was started last.
+    #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
+    pub(super) public_url: Option<String>,
+}
+
+/// Prints a new token for a worker, like the page "Administration".
+#[derive(Debug, Args)]
+pub(super) struct WorkerTokenArguments {
+    #[command(flatten)]
+    pub(super) place: StorageArguments,
+    /// The name of the worker's machine.
+    #[arg(default_value = "this-machine")]
+    pub(super) name: String,
 }
 
 /// Copies the database and all uploads and reports into a new folder, while the server runs. PostgreSQL is copied by

@@ -39,6 +39,7 @@ fn run(arguments: &Arguments) -> Result<u8> {
             Command::Serve(arguments) => serve::run(arguments).await?,
             Command::Worker(arguments) => worker::run(arguments).await?,
             Command::AdminLink(arguments) => serve::admin_link(arguments).await?,
+            Command::WorkerToken(arguments) => serve::worker_token(arguments).await?,
             Command::Backup(arguments) => backup::backup(arguments).await?,
             Command::Restore(arguments) => backup::restore(arguments).await?,
             Command::Health(arguments) => return Ok(u8::from(!health::run(arguments))),

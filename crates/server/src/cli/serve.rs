@@ -1,6 +1,6 @@
 //! The command `serve`: the server, with its own workers.
 use super::{
-    arguments::{AdminLinkArguments, ProviderArguments, ServiceArguments},
+    arguments::{AdminLinkArguments, ProviderArguments, ServiceArguments, StorageArguments, WorkerTokenArguments},
     folders::ServiceFolders,
     heartbeat, until_signalled,
     worker::{LocalWorkers, find_grader, policy},
@@ -33,6 +33,9 @@ const DAY_SECONDS: u64 = 24 * 3600;
 /// The number of bytes of a mebibyte.
 const MIB: u64 = 1 << 20;
 
+/// The file in the data folder with the server's public address.
+const ADDRESS: &str = "address";
+
 /// The maximum time to wait for the grader's answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
 
@@ -53,6 +56,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     let notifier = Notifier::default();
     let local = format!("http://{}", listener.local_addr()?);
     let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());
+    std::fs::write(folders.data.join(ADDRESS), &public)?;
     let policy = policy(&arguments.work);
     let patience = Duration::from_secs(arguments.patience);
     let provider = provider(&arguments.provider)?;
@@ -226,15 +230,30 @@ async fn back_up(database: &Database, backups: &Path, version: i64) -> Result<Pa
     Ok(copy)
 }
 
+/// Opens the service's data without serving.
+async fn open(place: &StorageArguments, public: String) -> Result<(App, Database)> {
+    let folders = ServiceFolders::find(place)?;
+    let (database, _) = folders.open_database(place).await?;
+    let store = folders.store(place)?;
+    let options = Options { public, incoming: folders.incoming, ..Options::default() };
+    let (notifier, policy) = (Notifier::default(), QueuePolicy::default());
+    Ok((App::new(database.clone(), store, notifier, policy, Instruments::new()?, options), database))
+}
+
 pub(super) async fn admin_link(arguments: &AdminLinkArguments) -> Result<()> {
-    let folders = ServiceFolders::find(&arguments.place)?;
-    let (database, _) = folders.open_database(&arguments.place).await?;
-    let store = folders.store(&arguments.place)?;
-    let options = Options { public: arguments.public_url.clone(), incoming: folders.incoming, ..Options::default() };
-    let app =
-        App::new(database.clone(), store, Notifier::default(), QueuePolicy::default(), Instruments::new()?, options);
+    let known = || std::fs::read_to_string(arguments.place.data.join(ADDRESS)).ok();
+    let public = arguments.public_url.clone().or_else(known).unwrap_or_else(|| "http://127.0.0.1:8080".to_owned());
+    let (app, database) = open(&arguments.place, public).await?;
     let link = app.admin_link(&arguments.login).await.map_err(|problem| anyhow!("{}", problem.detail))?;
-    println!("{}/welcome/{}", arguments.public_url, link.reveal());
+    println!("{}", app.welcome_address(&link));
+    database.close().await;
+    Ok(())
+}
+
+pub(super) async fn worker_token(arguments: &WorkerTokenArguments) -> Result<()> {
+    let (app, database) = open(&arguments.place, String::new()).await?;
+    let token = app.worker_token(&arguments.name).await.map_err(|problem| anyhow!("{}", problem.detail))?;
+    println!("{}", token.token);
     database.close().await;
     Ok(())
 }

@@ -93,6 +93,9 @@ pub struct Submission {
     /// The expected number of seconds until the grade, while the submission waits and there are workers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_seconds: Option<u64>,
+    /// Whether it waits and no worker is connected that could grade it.
+    #[serde(default, skip_serializing_if = "std::ops::Not::not")]
+    pub lacks_worker: bool,
     /// The progress of the grading, while it runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<Progress>,
@@ -332,6 +335,7 @@ impl FromRow for Submission {
             state: row.maybe_text("state")?.unwrap_or_else(|| "cancelled".to_owned()),
             ahead: None,
             expected_seconds: None,
+            lacks_worker: false,
             progress: read_progress(row)?,
             grade: row.maybe_int("result")?.map(|result| read_grade(row, result)).transpose()?,
             is_withheld: false,
@@ -405,6 +409,7 @@ pub(super) async fn submission(
         && let Some(place) = queue::place(transaction, &app.0.policy, Lane::Grading, job).await?
     {
         submission.ahead = Some(place.ahead);
+        submission.lacks_worker = !place.is_served;
         submission.expected_seconds = place.expected.map(|expected| expected.as_secs().max(1));
     }
     if let Some(grade) = &mut submission.grade {

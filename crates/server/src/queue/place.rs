@@ -17,6 +17,8 @@ pub struct Place {
     /// The expected time until its result, from the recent jobs and the slots of the workers that are alive; `None`
     /// without jobs or workers.
     pub expected: Option<Duration>,
+    /// Whether a worker is alive.
+    pub is_served: bool,
 }
 
 /// Returns a waiting job's position; `None` if it does not wait.
@@ -49,5 +51,5 @@ pub async fn place(
         let rounds = ahead / slots + 1;
         Duration::from_millis(u64::try_from(rounds.saturating_mul(usual.max(1))).unwrap_or(0))
     });
-    Ok(Some(Place { ahead, expected }))
+    Ok(Some(Place { ahead, expected, is_served: slots > 0 }))
 }

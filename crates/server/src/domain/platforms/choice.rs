@@ -158,7 +158,7 @@ impl Person {
             let link = launch::make_link(&mut transaction, place.id, &resource.id, assignment.id).await?;
             launch::columns(&mut transaction, link, arrival).await?;
             transaction.commit().await?;
-            return Ok(LinkStep::Assignment(format!("/c/{}/a/{}", place.slug, assignment.slug)));
+            return Ok(LinkStep::Assignment(format!("/c/{}/a/{}#done", place.slug, assignment.slug)));
         };
         transaction.commit().await?;
         let over_http = self.app.lti.over_http();

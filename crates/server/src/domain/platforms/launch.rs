@@ -58,7 +58,12 @@ pub struct LaunchTarget {
 
 impl From<Rejection> for Problem {
     fn from(refused: Rejection) -> Self {
-        Self::refused_launch(refused.to_string())
+        match &refused {
+            Rejection::Deployment(_) => {
+                Self::refused_until(refused.to_string(), "tell the server's administrator this deployment")
+            }
+            _ => Self::refused_launch(refused.to_string()),
+        }
     }
 }
 
@@ -140,7 +145,8 @@ impl Visitor {
         let nonce = identity::digest(&self.app.word_of("nonce", state).await?);
         let message = self.app.lti.receive(&platform, token, &nonce).await?;
         let Some(role) = message.person.role else {
-            return Err(Problem::refused_launch("the platform says that you have no role in this course"));
+            let detail = "the platform says that you neither learn nor teach in this course";
+            return Err(Problem::refused_until(detail, "ask the course's teacher there to make you a student"));
         };
         let mut transaction = self.app.0.database.begin().await?;
         ensure(pending.use_up(&mut transaction).await?, Problem::refused_launch(UNKNOWN_SIGN_IN))?;
@@ -182,7 +188,11 @@ async fn arrive(
     let arrival = &message.arrival;
     let staff = role == LtiRole::Staff;
     let Some(Place { id, course, slug, .. }) = place(transaction, platform.id, arrival).await? else {
-        ensure(staff, Problem::refused_launch("this course is not connected with the grading server yet"))?;
+        let detail = "this course is not connected with the grading server yet";
+        ensure(
+            staff,
+            Problem::refused_until(detail, "ask your teacher to open this link once, and then open it again"),
+        )?;
         let account = account(transaction, platform, &message.person).await?;
         return choose(transaction, platform, arrival, account).await;
     };
@@ -214,7 +224,10 @@ async fn arrive(
             Ok(LaunchTarget { session, to: format!("/c/{slug}/a/{assignment}") })
         }
         None if staff => choose(transaction, platform, arrival, account).await,
-        None => Err(Problem::refused_launch("no assignment was chosen for this link yet")),
+        None => Err(Problem::refused_until(
+            "no assignment was chosen for this link yet",
+            "ask your teacher to open this link once, then open it again",
+        )),
     }
 }
 

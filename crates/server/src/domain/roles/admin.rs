@@ -173,12 +173,7 @@ impl Admin {
     ///
     /// When its name is invalid.
     pub async fn new_worker_token(&self, name: &str) -> Result<NewToken, Problem> {
-        identity::check_slug("a worker's name", name)?;
-        let mut transaction = self.app.0.database.begin().await?;
-        let token = identity::new_token(&mut transaction, None, name, self.account.id, Way::Own).await?;
-        self.note(&mut transaction, "worker token", &format!("{name} ({})", token.info.id)).await?;
-        transaction.commit().await?;
-        Ok(token)
+        self.app.new_worker_token(name, self.account.id).await
     }
 
     /// Revokes a token of workers.
@@ -216,6 +211,26 @@ impl Admin {
 }
 
 impl App {
+    async fn new_worker_token(&self, name: &str, by: i64) -> Result<NewToken, Problem> {
+        identity::check_slug("a worker's name", name)?;
+        let mut transaction = self.0.database.begin().await?;
+        let token = identity::new_token(&mut transaction, None, name, by, Way::Own).await?;
+        let text = format!("{name} ({})", token.info.id);
+        view::note(&mut transaction, &Entry::new("worker token", by, &text)).await?;
+        transaction.commit().await?;
+        Ok(token)
+    }
+
+    /// Makes a token for workers, in the name of the first administrator.
+    ///
+    /// # Errors
+    /// When its name is none, or the server was never started.
+    pub async fn worker_token(&self, name: &str) -> Result<NewToken, Problem> {
+        let statement = "SELECT id FROM account WHERE is_admin = 1 ORDER BY id LIMIT 1";
+        let first = self.0.database.read().await?.row(statement, values![]).await?;
+        self.new_worker_token(name, first.ok_or_else(|| Problem::not_found("administrator"))?.int("id")?).await
+    }
+
     /// Returns the link of a new server, which signs its first administrator in; `None` after an administrator has
     /// signed in.
     ///

@@ -7,6 +7,7 @@ use crate::domain::{
 use crate::{
     calendar,
     db::{DbError, Row, Transaction, from_row},
+    health,
     lti::score,
     problem::{Problem, ensure},
     values,
@@ -50,9 +51,13 @@ pub struct Overview {
     pub submissions: i64,
     /// The number of unanswered requests of students.
     pub requests: i64,
+    /// The number of regrades that are neither applied nor discarded.
+    pub regrades: i64,
+    /// The number of gradings that all workers of the server can do at one time.
+    pub slots: i64,
 }
 
-from_row! { Overview { students, handed_in, submissions, requests } }
+from_row! { Overview { students, handed_in, submissions, requests, regrades, slots } }
 from_row! { Request { submission, login, text = "request" } }
 
 fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
@@ -247,11 +252,15 @@ impl Member {
         let statement = "SELECT count(DISTINCT member.account) AS handed_in, count(*) AS submissions,
             (SELECT count(*) FROM member WHERE member.course = ? AND member.role = 'student') AS students,
             (SELECT count(*) FROM mark JOIN submission AS asked ON asked.id = mark.submission
-                WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests
+                WHERE asked.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)) AS requests,
+            (SELECT count(*) FROM campaign WHERE campaign.assignment = ? AND state = 'open') AS regrades,
+            (SELECT CAST(coalesce(sum(slots), 0) AS {int}) FROM worker
+                WHERE seen_at > {now} - ? AND seen_at <= {now} + ?) AS slots
             FROM submission LEFT JOIN member ON member.account = submission.account AND member.course = ?
                AND member.role = 'student'
             WHERE submission.assignment = ?";
-        Ok(transaction.find(statement, values![self.course, assignment.id, self.course, assignment.id]).await?)
+        let (recent, id) = (health::recent(&self.app.0.policy), assignment.id);
+        Ok(transaction.find(statement, values![self.course, id, id, recent, recent, self.course, id]).await?)
     }
 
     /// Returns the member's due date.

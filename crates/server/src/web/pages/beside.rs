@@ -66,7 +66,11 @@ pub(super) async fn page(
         Ok(number) => Some(staff.submission(number).await?),
         Err(_) => staff.student_history(&assignment.slug, asked.with.trim()).await?.submissions.into_iter().next(),
     };
-    let missing = || Problem::not_found("graded submission of this student");
+    let missing = || {
+        let detail = format!("nothing graded of {:?} is here", asked.with.trim());
+        let remedy = "go back, and name the login of a member, or the number of a submission".to_owned();
+        Problem { detail, remedy, ..Problem::not_found("") }
+    };
     let other = other.ok_or_else(missing)?;
     let result = |of: &Submission| of.grade.as_ref().map(|grade| grade.result).ok_or_else(missing);
     let results = [result(&one)?, result(&other)?];

@@ -31,6 +31,11 @@ pub(super) struct Row {
 }
 
 impl Row {
+    /// Returns whether nothing is graded now, as staff sees it.
+    pub(super) fn lacks_worker(&self) -> bool {
+        self.overview.as_ref().is_some_and(|overview| overview.slots == 0)
+    }
+
     /// Returns whether the assignment still accepts submissions.
     pub(super) fn is_open(&self) -> bool {
         if self.overview.is_some() { !self.work.is_over } else { self.work.is_open() }
@@ -43,6 +48,8 @@ pub(super) struct OwnWork {
     pub(super) due: Option<i64>,
     /// Whether the due date has passed.
     pub(super) is_late: bool,
+    /// The time until which late uploads are taken.
+    pub(super) closes_at: Option<i64>,
     /// Whether no submissions are accepted, not even late ones.
     pub(super) is_over: bool,
     /// The number of remaining submissions, if it is limited.
@@ -67,6 +74,7 @@ impl OwnWork {
         Ok(Self {
             due,
             is_late: passed(due),
+            closes_at,
             is_over: passed(closes_at),
             left: (attempts > 0).then(|| attempts.saturating_sub(submissions.len())),
             submissions,

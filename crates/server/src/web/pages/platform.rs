@@ -138,7 +138,8 @@ pub(super) async fn login(
         let page = show(&WindowPage { frame: PageFrame::default(), address })?.into_response();
         let origins = platform.origins(app.lti.over_http());
         let policy = format!(
-            "default-src 'none'; style-src 'self'; form-action 'self'; base-uri 'none'; frame-ancestors {origins}"
+            "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self'; base-uri 'none'; \
+            frame-ancestors {origins}"
         );
         return Ok(with_policy(page, &policy));
     }
@@ -207,8 +208,8 @@ pub(super) async fn choose_assignment(
             let page =
                 show(&AnswerPage { frame: PageFrame::for_account(&person.account), address, token })?.into_response();
             let policy = format!(
-                "default-src 'none'; style-src 'self'; form-action 'self' {origins}; base-uri 'none'; frame-ancestors \
-                'none'"
+                "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self' {origins}; \
+                base-uri 'none'; frame-ancestors 'none'"
             );
             Ok(with_policy(page, &policy))
         }

@@ -172,7 +172,7 @@ pub(super) async fn set(
     let revision = Some(form.revision.parse().unwrap_or(-1));
     let change = AssignmentChange { title, visible, revision, suite: None };
     staff.set_assignment(&assignment.slug, change, |before| form.over(before)).await?;
-    Ok(redirect_to(&format!("/c/{slug}/a/{}", assignment.slug)))
+    Ok(redirect_to(&format!("/c/{slug}/a/{}/settings#done", assignment.slug)))
 }
 
 pub(super) async fn set_suite(
@@ -182,5 +182,5 @@ pub(super) async fn set_suite(
     request: Request,
 ) -> Result<Redirect, Problem> {
     let assignment = api::receive_suite(&staff, &assignment, &asked, request).await?;
-    Ok(redirect_to(&format!("/c/{slug}/a/{}/settings", assignment.slug)))
+    Ok(redirect_to(&format!("/c/{slug}/a/{}/settings#done", assignment.slug)))
 }

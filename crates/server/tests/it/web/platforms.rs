@@ -40,7 +40,7 @@ pub(super) fn connect(server: &Server, platform: &Platform) -> Client {
     teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
     // The form of before does as well as a new one.
     let chosen = teacher.post_form(&format!("{place}/assignment"), "assignment=m1").expect(303);
-    assert_eq!(chosen.header("location"), Some("/c/physics/a/m1"));
+    assert_eq!(chosen.header("location"), Some("/c/physics/a/m1#done"));
     teacher
 }
 
@@ -51,6 +51,7 @@ async fn a_course_of_a_platform(fresh: Fresh) {
     let token = KEYS[0].sign(&platform.claims(&begun.nonce, "ada", LEARNER));
     let early = come(&server, &begun, &token).expect(403).text();
     assert!(early.contains("not connected with the grading server yet"), "{early}");
+    assert!(early.contains("ask your teacher to open this link once"), "{early}");
     let teacher = connect(&server, &platform);
     assert!(!admin.get("/api/v1/accounts").expect(200).text().contains("ada"));
     let (_, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), |_| {});
@@ -253,7 +254,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
         "{refused}"
     );
     let page = teacher.post_form("/c/physics/members/roster", "").expect(200).text();
-    assert!(page.contains("<dt>Leave: 2</dt>") && page.contains("Change the members"), "{page}");
+    assert!(page.contains("<dt>Leave: 2</dt>") && page.contains("remove 2"), "{page}");
     let preview = teacher.post_json("/api/v1/courses/physics/roster?preview=true", "").expect(200).json();
     assert_eq!(preview["goes"].as_array().map(Vec::len), Some(2), "{preview}");
     platform.inside().members = whole;

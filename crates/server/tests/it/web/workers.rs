@@ -14,6 +14,7 @@ on_sqlite!(
     kills_of_workers_and_server_lose_nothing,
     a_worker_reaches_the_jobs_that_it_holds_and_nothing_else,
     a_worker_whose_token_is_revoked_says_so_and_ends,
+    units_of_systemd_need_no_further_step,
 );
 
 /// A worker as a process with a data folder of its own, killed at the end.
@@ -299,4 +300,41 @@ fn a_report_waits_for_whoever_takes_the_job_away() {
         storing.join().expect("an answer").expect(404);
         admin.send("DELETE", "/api/v1/courses/physics/assignments/m1", &[], b"").expect(204);
     });
+}
+
+/// The command of the server's unit that makes the token of its own machine's worker, at other places.
+async fn units_of_systemd_need_no_further_step(fresh: Fresh) {
+    let mut server = Server::start(&fresh, &["--workers", "0"]);
+    let unit = include_str!("../../../../../examples/deploy/systemd/fosssim-server.service");
+    let line = unit.lines().find_map(|line| line.strip_prefix("ExecStartPost=-+/bin/sh -c ")).expect("a command");
+    let file = server.folder.with_file_name("worker.token");
+    let script = line
+        .trim_matches('\'')
+        .replace("/opt/fosssim/fosssim-server", env!("CARGO_BIN_EXE_fosssim-server"))
+        .replace("/var/lib/fosssim", server.folder.to_str().expect("UTF-8"))
+        .replace("/etc/fosssim-worker.token", file.to_str().expect("UTF-8"));
+    let make = || {
+        let mut command = Command::new("/bin/sh");
+        command.args(["-c", &script]).env("FOSSSIM_DATABASE", server.database());
+        assert!(command.status().expect("a shell").success());
+        fs::read_to_string(&file).expect("a token")
+    };
+    let token = make();
+    assert_eq!(make(), token, "a second start keeps the token");
+    let admin = server.admin();
+    let mut command = Command::new(env!("CARGO_BIN_EXE_fosssim-server"));
+    command.args(["admin-link", "--data"]).arg(&server.folder).env("FOSSSIM_DATABASE", server.database());
+    let link = String::from_utf8(command.output().expect("a link").stdout).expect("text");
+    assert!(link.starts_with(&format!("{}/welcome/", server.url)), "{link}");
+    server.course(&admin, "physics");
+    let (ada, prof) =
+        (server.member(&admin, "physics", "ada", "student"), server.member(&admin, "physics", "prof", "staff"));
+    let id = ada.submit("physics", &program("WA", 70));
+    // Until it runs, everybody who waits reads why.
+    let page = format!("/c/physics/s/{id}");
+    let says = |client: &Client, page: &str| client.get(page).expect(200).text().contains("No worker is connected");
+    assert!(says(&ada, &page) && says(&prof, "/") && !says(&ada, "/"));
+    let _machine = Machine::start(&server, token.trim());
+    assert_eq!(ada.wait_for_grade("physics", id)["grade"]["points"], "70");
+    assert!(!says(&ada, &page) && !says(&prof, "/"));
 }

@@ -13,8 +13,9 @@ if (state && state.dataset.follow) {
     }
     let text = submission.state === "running" ? "being graded" : "waiting";
     if (submission.progress) text += `, ${submission.progress.done} of ${submission.progress.all} scenes done`;
-    if (submission.ahead !== undefined) text += `, ${submission.ahead} before it`;
+    if (submission.ahead !== undefined) text += submission.ahead ? `, ${submission.ahead} before it` : ", next";
     if (submission.expected_seconds !== undefined) text += `, about ${submission.expected_seconds} s`;
+    if (submission.lacks_worker) text += ". No worker is connected now, so it has to wait; staff sees this, too.";
     state.textContent = text;
   };
   setInterval(look, 2000);
