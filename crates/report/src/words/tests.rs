@@ -21,7 +21,7 @@ fn what_is_there_instead_of_the_program_is_one_sentence() {
     assert_eq!(
         says(FolderContents::Others { names: names(&["a", "work/"]), more: 6, elsewhere }),
         "the upload has no program called FOSSSim; it holds a, work/ and 6 more; \
-         work/build/FOSSSim is not in the place that is searched"
+         work/build/FOSSSim is not in the expected folder"
     );
 }
 
