@@ -264,7 +264,7 @@ fn a_second_name_of_a_file_takes_nobodys_points() {
     let run = verdicts(&[("alice", fine), ("bob", fine), ("carol", fine), ("thief", fine)]);
     assert!(run.err().contains("one file with several names (hard links): carol, thief"), "{}", run.shown());
     let json = String::from_utf8(workspace.read("grades/grades.jsonl")).expect("text");
-    assert_eq!(json.matches("one file with another submission").count(), 2, "{json}");
+    assert_eq!(json.matches("the same file as another submission").count(), 2, "{json}");
     // Where owners tell, the thief has nothing of his own, and the owner loses nothing.
     fs::create_dir(workspace.path("class/mallory")).expect("a folder");
     link("class/bob/FOSSSim", "class/mallory/FOSSSim");

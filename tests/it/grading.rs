@@ -356,7 +356,7 @@ fn a_part_of_a_suite_is_graded_looked_at_closer_and_the_failed_again() {
     assert_eq!(missing.code, Some(2), "{}", missing.shown());
     // A kept trace is one that `check` takes; tables are of whole suites only.
     let kept = grade(&["--scene", &wrong[0], "--keep-traces", "--output", "out"]);
-    assert!(!workspace.exists("out/grades.csv") && kept.err().contains("not a grade"), "{}", kept.shown());
+    assert!(!workspace.exists("out/grades.csv") && kept.err().contains("only a part was graded"), "{}", kept.shown());
     let shown = kept.out();
     let command = shown.lines().find_map(|line| line.trim().strip_prefix("$ fosssim-oracle check "));
     let words = command.unwrap_or_else(|| panic!("{}", kept.shown())).split(' ');

@@ -108,7 +108,7 @@ fn nonsense_is_refused_before_anything_is_written() {
     let long = BEAM.replace(r#"time="0.3""#, r#"time="1000000""#);
     workspace.write("long.xml", long);
     let run = render(&workspace, "long.xml --output pictures --format png");
-    assert!(run.err().contains("more than 100000 are not drawn, add --every 101"), "{}", run.err());
+    assert!(run.err().contains("more than the limit of 100000; add --every 101"), "{}", run.err());
     assert_eq!(workspace.list(), ["long.xml", "scene.xml", "trace.bin"]);
 }
 
