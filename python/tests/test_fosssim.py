@@ -116,7 +116,7 @@ def test_a_cut_trace_holds_what_can_be_read():
 def test_what_is_refused_says_so_in_the_programs_words(tmp_path):
     with pytest.raises(fosssim.Error, match="there is no scene .*; the nearest are asset:ContinuousTimeTests/head-on"):
         fosssim.Scene("asset:ContinuousTimeTests/hed-on")
-    with pytest.raises(fosssim.Error, match="asset:.*/flawed is there"):
+    with pytest.raises(fosssim.Error, match="has no built-in wrong trace; use asset:.*/flawed"):
         fosssim.Trace(fosssim.scenes()[0] + "/flawed")
     with pytest.raises(fosssim.Error, match="rules must be both, fair or parity, not 'strict'"):
         fosssim.check(FLAWED, rules="strict")

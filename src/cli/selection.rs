@@ -77,7 +77,8 @@ mod tests {
         let error = |word: &str| Selection::new(&[word.to_owned()], &NAMES).expect_err("none").to_string();
         assert_eq!(
             error("Impulses/rope"),
-            "Impulses/rope names no scene; there are Impulses/rope-bridge, Impulses/ball, Geometric/ball-on-edge and 1 \
+            "Impulses/rope matches no scene; there are \
+             Impulses/rope-bridge, Impulses/ball, Geometric/ball-on-edge and 1 \
              more"
         );
         assert!(error("[").contains("pattern"), "{}", error("["));

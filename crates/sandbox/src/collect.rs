@@ -82,7 +82,7 @@ mod tests {
             ("socket", "a socket"),
             ("fifo", "a pipe"),
             ("none", "none does not exist"),
-            ("new\nline", "no file new\\nline"),
+            ("new\nline", "the file new\\nline does not exist"),
             ("../reference.bin", "outside the folder"),
             (&secret.display().to_string(), "outside the folder"),
         ] {

@@ -195,7 +195,7 @@ mod tests {
         for (pair, radii, says) in [
             ("pe:3,1:5,9", "1,1", "pe takes 3 points (the particle's center and the ends of the edge), not 2"),
             ("pq:3,1:5,9", "1,1", "`pq` is not a kind of pair"),
-            ("pp:3,1:5,9", "1", "`1` are not two radii"),
+            ("pp:3,1:5,9", "1", "`1` is not a pair of radii"),
             ("pp:3,1:5,9", "1,-1", "a radius is negative"),
             ("ph:3,1:0,0:0,0", "1", "the half-plane's normal is zero"),
         ] {

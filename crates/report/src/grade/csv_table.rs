@@ -7,7 +7,8 @@ use fosssim_mistakes::together::worth;
 
 /// Returns one row per scene.
 pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
-    let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,rules_differ,likely_mistake_key";
+    let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,\
+                rules_differ,likely_mistake_key";
     let rows = grades.iter().flat_map(|grade| {
         grade.groups.iter().flat_map(move |group| {
             group.scenes.iter().map(move |scene| {

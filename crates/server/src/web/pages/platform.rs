@@ -138,8 +138,8 @@ pub(super) async fn login(
         let page = show(&WindowPage { frame: PageFrame::default(), address })?.into_response();
         let origins = platform.origins(app.lti.over_http());
         let policy = format!(
-            "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self'; base-uri 'none'; \
-            frame-ancestors {origins}"
+            "default-src 'none'; style-src 'self'; script-src 'self'; img-src data:; form-action 'self'; \
+             base-uri 'none'; frame-ancestors {origins}"
         );
         return Ok(with_policy(page, &policy));
     }
