@@ -209,8 +209,8 @@ fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(us
     let rows =
         members().map(|index| [index.to_string(), short(mass(index)), vector(s(index)), vector(shift(index) - motion)]);
     format!(
-        "  x_cm = {}, dx_cm = {}\n{}  L = sum of m s x (dx - dx_cm) = {}, I = sum of m |s|^2 = {}, omega = L / I = {}\n  \
-         x = x_cm + dx_cm + cos(omega) s + sin(omega) (-s_y, s_x), v = (x - xs) / h\n",
+        "  x_cm = {}, dx_cm = {}\n{}  L = sum of m s x (dx - dx_cm) = {}, I = sum of m |s|^2 = {}, \
+         omega = L / I = {}\n  x = x_cm + dx_cm + cos(omega) s + sin(omega) (-s_y, s_x), v = (x - xs) / h\n",
         vector(center),
         vector(motion),
         table(["particle", "m", "s = xs - x_cm", "dx - dx_cm"], rows),
