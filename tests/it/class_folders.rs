@@ -142,7 +142,7 @@ fn every_entry_of_a_class_has_one_row_and_a_name_of_its_own() {
     assert!(annotations.lines().all(|line| line.starts_with("::error title=") || line.starts_with("::warning title=")));
     // A second time everything is found again under the same names.
     let again = grade(&workspace, &["class", "--output", "grades"]);
-    assert!(again.err().contains(&format!("{0} of {0} results taken over", names.len())), "{}", again.shown());
+    assert!(again.err().contains(&format!("reused {0} of {0} results", names.len())), "{}", again.shown());
     // No name widens or breaks the table.
     let widest = again.out().lines().map(|line| line.chars().count()).max();
     assert!(widest < Some(160), "{widest:?}\n{}", again.out());
@@ -235,7 +235,7 @@ fn a_class_as_platforms_export_it_is_graded() {
     assert!(run.err().contains("notes.pdf: it is neither a program nor an archive"), "{}", run.shown());
     // A second time nothing is run again.
     let again = grade(&workspace, &["class", "--output", "grades"]);
-    assert!(again.err().contains("4 of 5 results taken over"), "{}", again.shown());
+    assert!(again.err().contains("reused 4 of 5 results"), "{}", again.shown());
 }
 
 #[test]
@@ -262,9 +262,9 @@ fn a_second_name_of_a_file_takes_nobodys_points() {
     // Within the class: nobody can tell whose it is, so nobody loses, and staff is told.
     link("class/carol", "class/thief");
     let run = verdicts(&[("alice", fine), ("bob", fine), ("carol", fine), ("thief", fine)]);
-    assert!(run.err().contains("one file under several names (hard links): carol, thief"), "{}", run.shown());
+    assert!(run.err().contains("one file with several names (hard links): carol, thief"), "{}", run.shown());
     let json = String::from_utf8(workspace.read("grades/grades.jsonl")).expect("text");
-    assert_eq!(json.matches("one file with another submission").count(), 2, "{json}");
+    assert_eq!(json.matches("the same file as another submission").count(), 2, "{json}");
     // Where owners tell, the thief has nothing of his own, and the owner loses nothing.
     fs::create_dir(workspace.path("class/mallory")).expect("a folder");
     link("class/bob/FOSSSim", "class/mallory/FOSSSim");
@@ -442,7 +442,7 @@ fn pipes_are_waited_for_nowhere() {
         ("grades/grades.csv", &traces, ""),
         ("grades/index.html", &traces, ""),
         ("shards/shard-1-of-1/shard.json", &merge, "a pipe"),
-        ("shards/shard-1-of-1/journal.jsonl", &merge, "no shard that is done"),
+        ("shards/shard-1-of-1/journal.jsonl", &merge, "no complete shard"),
         ("scenes/pipe.xml", &traces, "a pipe"),
         ("suite.toml", &["suite", "check", "suite.toml"], "nobody has written to"),
         ("scene.xml", &["simulate", "scene.xml"], "nobody has written to"),

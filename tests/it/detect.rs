@@ -197,7 +197,7 @@ fn what_can_not_be_looked_at_is_said() {
     let endless = detect(&workspace, "pe:1e200,0+4,1:5,9+2,6:5,3+5,8 --radii 1,1");
     assert_eq!(endless.code, Some(2));
     assert!(
-        endless.err().contains("the original hangs here: the root search of the overlap polynomial"),
+        endless.err().contains("the original never ends: the root search of the overlap polynomial"),
         "{}",
         endless.err()
     );

@@ -233,7 +233,7 @@ fn hostile_programs_get_their_verdicts_and_an_interrupted_batch_ends_the_same() 
     }
     let resumed = workspace.run(words("parts"));
     assert_eq!(resumed.code, Some(1), "{}", resumed.shown());
-    assert!(resumed.err().contains(" taken over from parts"), "{}", resumed.shown());
+    assert!(resumed.err().contains(" results from parts"), "{}", resumed.shown());
     let mut resumed = rows(&workspace.read("parts/grades.csv"));
     let mut whole = rows(&workspace.read("whole/grades.csv"));
     // How far a program that is killed came with its first scene may differ; verdicts may not, nor whole points.
@@ -329,7 +329,7 @@ fn a_part_of_a_suite_is_graded_looked_at_closer_and_the_failed_again() {
     };
     let none = grade(&["--failed"]);
     assert_eq!(none.code, Some(2), "{}", none.shown());
-    assert!(none.err().contains("no earlier run of this is known"), "{}", none.shown());
+    assert!(none.err().contains("no earlier run of this grading"), "{}", none.shown());
     let whole = grade(&["--format", "csv"]);
     let failing = |run: &crate::workspace::Run| {
         let rows = csv::Reader::from_reader(&run.stdout[..]).into_records();
@@ -372,7 +372,7 @@ fn reports_do_not_overwrite_each_other_nor_the_summary_of_a_step() {
     std::fs::set_permissions(workspace.path("FOSSSim"), mode).expect("a mode");
     let twice = workspace.run(["grade", "FOSSSim", "--format=json=x", "--format=csv=./x"]);
     assert_eq!(twice.code, Some(2), "{}", twice.shown());
-    assert!(twice.err().contains("two formats go to one file") && !workspace.exists("x"), "{}", twice.shown());
+    assert!(twice.err().contains("two formats have the same file") && !workspace.exists("x"), "{}", twice.shown());
     workspace.write("summary.md", "what a step wrote before\n");
     let mut command = workspace.command();
     command
@@ -393,7 +393,7 @@ fn two_graders_do_not_share_a_folder() {
     let _held = fosssim_oracle::suite::results::FolderResults::open(&workspace.path("out"), false).expect("a journal");
     let run = workspace.run(["grade", "submissions/fosssim-sample", "--suite", "suite.toml", "--output", "out"]);
     assert_eq!(run.code, Some(2), "{}", run.shown());
-    assert!(run.err().contains("another grader works in out"), "{}", run.shown());
+    assert!(run.err().contains("another grader is using out"), "{}", run.shown());
 }
 
 #[test]

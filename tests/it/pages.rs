@@ -41,7 +41,7 @@ fn a_class_has_a_page_each_and_an_index_and_nothing_is_run_for_them_again() {
     assert!(!body(&right).contains("class=\"stage\"") && body(&right).contains("scenes accepted</summary>"));
     // All is there: nothing is run again, and the pages are the same, byte for byte.
     let again = workspace.run(&words);
-    let taken = again.err().lines().find(|line| line.contains("taken over")).expect("a line").to_owned();
+    let taken = again.err().lines().find(|line| line.contains("reused")).expect("a line").to_owned();
     let numbers: Vec<&str> = taken.split(' ').filter(|word| word.parse::<u32>().is_ok()).collect();
     assert_eq!(numbers.first(), numbers.get(1), "{taken}");
     assert_eq!(text(&workspace, "class/reports/fosssim-sample.pe-square-no-eh.html"), wrong);
@@ -182,7 +182,7 @@ fn pages_to_hand_out_hold_no_hidden_group() {
             "what programs print may tell of hidden scenes"
         );
     }
-    assert_eq!(reports().filter(|report| report.contains("he grade has others, too")).count(), 7, "all but CSV");
+    assert_eq!(reports().filter(|report| report.contains("other groups are hidden")).count(), 7, "all but CSV");
     workspace.run([&student[..], &formats, &["--platform-hides"]].concat());
     assert_eq!(
         reports().filter(|report| report.contains("Veiled")).count(),

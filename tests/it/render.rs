@@ -93,7 +93,7 @@ fn nonsense_is_refused_before_anything_is_written() {
         ("scene.xml --output x.gif --size 640x99999999999", "is no size; write WIDTHxHEIGHT"),
         ("scene.xml --output x.gif --fps 0", "--fps may be 1 to 240"),
         ("scene.xml --output x.gif --every 0", "--every"),
-        ("scene.xml --output x.gif --every 4 --format png", "no step is drawn: the scene has 3 steps, and every 4th"),
+        ("scene.xml --output x.gif --every 4 --format png", "no step is drawn: the scene has 3 steps, and --every 4"),
         ("scene.xml --output x.png", "x.png can hold one picture: add --step N"),
         ("scene.xml --output x", "say what to make of x: --format svg or --format png"),
         ("scene.xml --output x.gif --step 1", "--step is for one picture"),
@@ -111,7 +111,7 @@ fn nonsense_is_refused_before_anything_is_written() {
     let long = BEAM.replace(r#"time="0.3""#, r#"time="1000000""#);
     workspace.write("long.xml", long);
     let run = render(&workspace, "long.xml --output pictures --format png");
-    assert!(run.err().contains("more than 100000 are not drawn, add --every 101"), "{}", run.err());
+    assert!(run.err().contains("more than the limit of 100000; add --every 101"), "{}", run.err());
     assert_eq!(workspace.list(), ["long.xml", "scene.xml", "trace.bin"]);
 }
 
@@ -162,7 +162,7 @@ fn an_mp4_is_made_by_ffmpeg_from_raw_pictures() {
     let missing = run("/nonexistent");
     assert_eq!(missing.code, Some(2));
     assert!(
-        missing.err().contains("needs ffmpeg, which is not installed") && missing.err().contains("the output .gif"),
+        missing.err().contains("needs ffmpeg, which is not installed") && missing.err().contains("an output .gif"),
         "{}",
         missing.err()
     );

@@ -107,7 +107,7 @@ fn shards_put_together_are_a_grading_in_one_go() {
     }
     // A grading in one go finds every result in the merged folder.
     let again = workspace.run(["grade", "class", "--suite", "suite.toml", "--output", "parts", "--quiet"]);
-    assert!(again.err().contains("18 of 18 results taken over from parts"), "{}", again.shown());
+    assert!(again.err().contains("reused 18 of 18 results from parts"), "{}", again.shown());
 }
 
 #[test]
@@ -136,15 +136,15 @@ fn shards_that_are_missing_doubled_or_foreign_are_told() {
     assert_eq!(grade("1/8", "other", &[]).code, Some(1));
     refused(
         &["merge", "parts", "other", "--output", "merged"],
-        "shard 1 of 8 is there more than once: parts/shard-1-of-8 and other/",
+        "shard 1 of 8 exists more than once: parts/shard-1-of-8 and other/",
     );
-    refused(&["merge", "parts", "other"], "shard 1 of 8 is there more than once");
+    refused(&["merge", "parts", "other"], "shard 1 of 8 exists more than once");
     assert_eq!(grade("3/8", "strict", &["--rules", "parity"]).code, Some(1));
     refused(
         &["merge", "parts", "strict", "--output", "merged"],
         "belong to different gradings: the suite, or an option that",
     );
-    refused(&["merge", "class"], "class holds no shard that is done");
+    refused(&["merge", "class"], "class has no complete shard");
     refused(&["merge", "parts/shard-1-of-8"], "7 shards of 8 are missing");
     assert_eq!(grade("3/8", "third", &[]).code, Some(1));
     refused(&["merge", "parts", "third"], "choose a folder for the results with --output DIR");

@@ -56,7 +56,7 @@ mod tests {
         assert!(!is_anothers(&file, Some(&noted("one", false))).expect("known"));
         assert!(is_anothers(&file, Some(&noted("one", true))).expect("known"));
         for noted in [None, Some(noted("other", false))] {
-            assert!(is_anothers(&file, noted.as_ref()).expect_err("exchanged").to_string().contains("exchanged"));
+            assert!(is_anothers(&file, noted.as_ref()).expect_err("exchanged").to_string().contains("replaced"));
         }
     }
 }

@@ -150,7 +150,7 @@ mod tests {
         let layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 4 };
         other.digests = Digests::from_stream(&other.trace[..], layout).to_string();
         let shown = recording.difference(Some(&other.pack().unwrap()), Some(other.digests.as_bytes())).unwrap();
-        assert!(shown.contains("differ from byte 97 on\n"), "{shown}");
+        assert!(shown.contains("differ, beginning at byte 97\n"), "{shown}");
         assert!(shown.contains("\n-3 ") && shown.contains("\n+3 ") && !shown.contains("\n-2 "), "{shown}");
     }
 

@@ -60,7 +60,7 @@ fn the_gradescope_zip_works_in_its_layout() {
     let (run, results) = run_autograder();
     assert_eq!(run.code, Some(0), "{}", run.shown());
     assert_eq!(results["score"], 0.0, "no program was submitted: {results}");
-    assert_eq!(results.to_string().matches("no program called FOSSSim in the upload").count(), 1, "{results}");
+    assert_eq!(results.to_string().matches("the upload has no program called FOSSSim").count(), 1, "{results}");
     fs::copy(env!("CARGO_BIN_EXE_fosssim-sample"), layout.join("submission/FOSSSim")).expect("a submission");
     let (run, results) = run_autograder();
     assert_eq!(run.code, Some(0), "{}", run.shown());

@@ -78,7 +78,7 @@ fn links_that_leave_a_submission_are_not_followed() {
     assert_eq!(told, [("none", "unusable submission", "0"), ("thief", "unusable submission", "0")], "{}", run.shown());
     assert!(
         run.out().contains("the program can't be used: ")
-            && run.out().contains("no program called FOSSSim in the upload; it is empty"),
+            && run.out().contains("the upload has no program called FOSSSim; it is empty"),
         "{}",
         run.shown()
     );

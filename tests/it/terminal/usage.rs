@@ -60,7 +60,7 @@ fn what_comes_with_the_program_is_found_under_its_full_name() {
     for name in ["SimpleTests/one-ball-into-two", "SimpleTests/one-ball-into-two.xml"] {
         let run = workspace.run(["check", name, "trace.bin"]);
         assert_eq!(run.code, Some(2), "{}", run.shown());
-        assert!(run.err().contains("comes with the program is asset:SimpleTests/one-ball-into-two\n"), "{}", run.err());
+        assert!(run.err().contains("the built-in scene is asset:SimpleTests/one-ball-into-two\n"), "{}", run.err());
     }
 }
 
@@ -197,6 +197,6 @@ fn whoever_writes_into_a_file_is_told_where() {
     // A suite that a teacher has changed is not replaced.
     std::fs::write(workspace.path("course.toml"), "# mine\n").expect("ours");
     let again = workspace.run(["suite", "init", "-o", "course.toml"]);
-    assert!(again.code == Some(2) && again.err().contains("may hold your changes"), "{}", again.shown());
+    assert!(again.code == Some(2) && again.err().contains("may contain your changes"), "{}", again.shown());
     assert_eq!(workspace.read("course.toml"), b"# mine\n");
 }

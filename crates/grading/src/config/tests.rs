@@ -27,7 +27,7 @@ fn every_problem_is_told_with_its_position() {
     insta::assert_snapshot!(read(text).expect_err("wrong"), @r#"
     1:10: schema 2 is not known: this version reads schema 1
     2:8: the suite's name is empty
-    3:9: rules "kind" is not known: there are "parity", "fair" and "both"
+    3:9: rules "kind" is unknown; choose "parity", "fair" and "both"
     4:7: run has no {program}: the program would not get it
     4:7: run has no {trace}: the program would not get it
     4:7: run must begin with {program}
@@ -69,8 +69,8 @@ fn unknown_keys_and_bad_values_are_told_all_at_once_with_what_follows_from_the_r
     let told = error.to_string();
     for line in [
         "1:10: schema must be a whole number that is not negative, not a string",
-        "3:9: rules \"Fair!\" is not known: there are \"parity\", \"fair\" and \"both\"; did you mean \"fair\"?",
-        "4:9: hints \"half\" is not known: there are \"none\", \"where\", \"what\" and \"full\"",
+        "3:9: rules \"Fair!\" is unknown; choose \"parity\", \"fair\" and \"both\"; did you mean \"fair\"?",
+        "4:9: hints \"half\" is unknown; choose \"none\", \"where\", \"what\" and \"full\"",
         "5:15: show_output must be true or false, not an integer",
         "6:1: unknown key `cpu_seconds` in the suite: it belongs in [limits]",
         "7:7: run must be a list of texts, [\"...\"], not a string",
@@ -81,7 +81,7 @@ fn unknown_keys_and_bad_values_are_told_all_at_once_with_what_follows_from_the_r
         "build.program \"../x\" must be a path inside the submission's folder",
         "16:1: unknown key `nam` in this [[group]]: did you mean `name`?",
         "17:25: each of scenes must be a text in quotes, not an integer",
-        "18:10: credit \"step\" is not known: there are \"scenes\", \"steps\" and \"all\"; did you mean \"steps\"?",
+        "18:10: credit \"step\" is unknown; choose \"scenes\", \"steps\" and \"all\"; did you mean \"steps\"?",
         "21:10: group \"b\" has no scenes",
         "22:10: points is -1: it must be between 0 and 1000000",
         "23:1: unknown key `weight` in this [[group]]: there are name, scenes, points, extra, credit",

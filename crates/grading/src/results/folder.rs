@@ -206,7 +206,7 @@ mod tests {
         let folder = tempfile::tempdir().expect("folder");
         let _first = FolderResults::open(folder.path(), false).expect("journal");
         let refused = FolderResults::open(folder.path(), false).expect_err("it is locked").to_string();
-        assert!(refused.starts_with("another grader works in "), "{refused}");
+        assert!(refused.starts_with("another grader is using "), "{refused}");
     }
 
     #[test]

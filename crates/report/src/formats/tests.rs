@@ -138,13 +138,13 @@ fn prairielearn_says_that_groups_which_are_not_shown_count() {
     (grade.verdict, grade.groups) = (Verdict::WrongAnswer, [grade.groups, vec![hidden]].concat());
     let document = Format::Prairielearn.render(&[grade]);
     assert!(document.contains("\"message\": \"accepted on the tests shown here (") && !document.contains("Veiled"));
-    assert!(document.contains("the grade has others, too") && !document.contains("points points"), "{document}");
+    assert!(document.contains("other tests are hidden") && !document.contains("points points"), "{document}");
 }
 
 /// A fact about the upload is said once, at the top, and not of each scene.
 #[test]
 fn what_is_wrong_with_a_submission_itself_is_said_once() {
-    let sentence = "no program called FOSSSim in the upload; it holds main.cpp, fosssim-sample";
+    let sentence = "the upload has no program called FOSSSim; it holds main.cpp, fosssim-sample";
     for format in
         [Format::Text, Format::Junit, Format::Gradescope, Format::Prairielearn, Format::Github, Format::Markdown]
     {

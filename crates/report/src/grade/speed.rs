@@ -56,7 +56,7 @@ mod tests {
         let failed = SpeedSource::Failed { scene: "a/b".to_owned(), verdict: Verdict::WrongAnswer };
         assert_eq!(
             said(Some(0.0), failed),
-            "0 of 40 points for speed: a timed run of a/b had another verdict than the graded one (wrong answer)"
+            "0 of 40 points for speed: a timed run of a/b had a different verdict (wrong answer) than the graded run"
         );
         assert!(said(None, SpeedSource::Unmeasured).starts_with("none yet of 40 points"));
         assert_eq!(said(Some(7.5), SpeedSource::Withheld), "7.5 of 40 points for speed");

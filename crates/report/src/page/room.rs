@@ -66,10 +66,10 @@ pub(super) fn describe_left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>
     let scenes = |count: usize| if count == 1 { "one scene is".to_owned() } else { format!("{count} scenes are") };
     let mut says = Vec::new();
     if without > 0 {
-        says.push(format!("{} without the motion on this page", scenes(without)));
+        says.push(format!("{} shown without the motion on this page", scenes(without)));
     }
     if rounded > 0 {
-        says.push(format!("{} with a rounded motion on this page", scenes(rounded)));
+        says.push(format!("{} shown with a rounded motion on this page", scenes(rounded)));
     }
     if says.is_empty() {
         return String::new();
@@ -108,10 +108,16 @@ mod tests {
         let count = |room| all.iter().filter(|one| **one == room).count();
         assert!(count(Room::Exact) > 0 && count(Room::Rounded) > 0 && count(Room::Pictures) == 0, "{all:?}");
         assert_eq!(all[0], Room::Exact);
-        assert!(says.contains("scenes are here with a motion that is rounded") && !says.contains("without"), "{says}");
+        assert!(
+            says.contains("scenes are shown with a rounded motion on this page") && !says.contains("without"),
+            "{says}"
+        );
         let (all, says) = rooms(&vec![card(50_000, 500_000, 200_000); 30]);
         assert!(all.contains(&Room::Rounded) && all.contains(&Room::Pictures), "{all:?}");
-        assert!(says.contains("scenes are without the motion here") && says.contains("rounded"), "{says}");
+        assert!(
+            says.contains("scenes are shown without the motion on this page") && says.contains("rounded"),
+            "{says}"
+        );
         let (all, _) = rooms(&vec![card(500_000, 10, 0); 30]);
         assert_eq!(all.iter().filter(|room| **room == Room::Words).count(), 27);
     }

@@ -429,7 +429,7 @@ fn a_student_s_page_has_no_hidden_group() {
         assert!(staff.contains(hidden), "{hidden} is not even on the page for staff");
         assert!(!student.contains(hidden), "{hidden}");
     }
-    for shown in ["Shown", "of 7", "wrong answer", "The grade has others, too", "id=\"submission-"] {
+    for shown in ["Shown", "of 7", "wrong answer", "Other groups are hidden", "id=\"submission-"] {
         assert!(student.contains(shown), "{shown}");
     }
 }

@@ -63,7 +63,7 @@ mod tests {
         assert_eq!(
             describe_located(&found),
             "All 24 scenes in which the failsafe moves a zone crash, and none of the 61 others. In the first of them, \
-             GeometricTests/chain, the last complete record is that of step 14. Just as likely: those with a step of \
+             GeometricTests/chain, the last complete record is that of step 14. Equally likely: those with a step of \
              hybrid (zones: one)."
         );
         let some = LocatedFailure {

@@ -12,16 +12,16 @@ fn says(reason: Reason) -> String {
 fn what_is_there_instead_of_the_program_is_one_sentence() {
     let says = |found| says(Reason::Unusable(UnusableReason::NoProgram { sought: "FOSSSim".to_owned(), found }));
     let names = |names: &[&str]| names.iter().map(|&name| name.to_owned()).collect::<Vec<_>>();
-    assert_eq!(says(FolderContents::Nothing), "no program called FOSSSim in the upload; it is empty");
+    assert_eq!(says(FolderContents::Nothing), "the upload has no program called FOSSSim; it is empty");
     let closed = FolderContents::Unreadable("permission denied".to_owned());
-    assert_eq!(says(closed), "no program called FOSSSim in the upload: it can't be read: permission denied");
+    assert_eq!(says(closed), "the upload has no program called FOSSSim: it can't be read: permission denied");
     let found = FolderContents::Others { names: names(&["fosssim-sample", "main.cpp"]), more: 0, elsewhere: None };
-    assert_eq!(says(found), "no program called FOSSSim in the upload; it holds fosssim-sample, main.cpp");
+    assert_eq!(says(found), "the upload has no program called FOSSSim; it holds fosssim-sample, main.cpp");
     let elsewhere = Some("work/build/FOSSSim".to_owned());
     assert_eq!(
         says(FolderContents::Others { names: names(&["a", "work/"]), more: 6, elsewhere }),
-        "no program called FOSSSim in the upload; it holds a, work/ and 6 more; \
-         work/build/FOSSSim is not in the place that is searched"
+        "the upload has no program called FOSSSim; it holds a, work/ and 6 more; \
+         work/build/FOSSSim is not in the expected folder"
     );
 }
 
