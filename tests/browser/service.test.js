@@ -202,7 +202,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
     .locator("#file")
     .setInputFiles({ name: "a.txt", mimeType: "text/plain", buffer: Buffer.from("?") });
   await student.page.getByRole("button", { name: "Hand in" }).click();
-  await student.page.getByText(/looked for a program for Linux/).waitFor();
+  await student.page.getByText(/expected a program for Linux/).waitFor();
   assert.ok(await student.page.getByRole("button", { name: "Hand in" }).isEnabled());
   student.complaints.splice(0);
 

@@ -51,7 +51,7 @@ async fn what_was_accepted_is_in_a_backup_that_is_made_meanwhile(fresh: Fresh) {
     assert_eq!(fs::metadata(&copy).expect("a folder").permissions_mode(), 0o700);
     // A second one is a folder of its own.
     let (code, said) = command(&["backup", copy.to_str().expect("UTF-8")], &server.folder, Some(&server.database()));
-    assert!(code == Some(2) && said.contains("exists already"), "{said}");
+    assert!(code == Some(2) && said.contains("already exists"), "{said}");
 
     // Elsewhere, on a database of its own.
     let data = folder.path().join("restored");

@@ -156,7 +156,7 @@ async fn limits_are_kept_and_say_so(fresh: Fresh) {
     set(r#"{"attempts": 1, "max_bytes": 100}"#).expect(200);
     assert_eq!(send(&[b'#'; 101]).expect(413).json()["type"], "urn:fosssim:too-large");
     let remedy = send(b"MZ\x90").expect(422).json();
-    assert!(remedy["detail"].as_str().expect("text").contains("looked for a program for Linux"), "{remedy}");
+    assert!(remedy["detail"].as_str().expect("text").contains("expected a program for Linux"), "{remedy}");
     send(b"").expect(422);
     send(&program("AC", 1)).expect(201);
     assert!(send(&program("AC", 2)).expect(409).text().contains("used up"));

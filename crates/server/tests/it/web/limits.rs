@@ -58,7 +58,7 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
         reader.read_exact(&mut [0; 15]).expect("the status");
     }
     let refused = ada.get(&path).expect(429).json();
-    assert!(refused["detail"].as_str().is_some_and(|detail| detail.contains("12 uploads and downloads")), "{refused}");
+    assert!(refused["detail"].as_str().is_some_and(|detail| detail.contains("12 simultaneous transfers")), "{refused}");
     ada.get(&format!("/c/physics/s/{id}")).expect(200);
     assert!(admin.get(&path).expect(200).body == bytes, "another account has its own");
     let held = server.peak_memory() - before;

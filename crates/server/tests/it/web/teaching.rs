@@ -179,7 +179,7 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     set(366).expect(400);
     set(3).expect(200);
     let place = ada.get("/c/physics/a/m1").expect(200).text();
-    assert!(place.contains("taken for 3 more days; each started day costs 10 %"), "{place}");
+    assert!(place.contains("accepted for 3 more days; each started day costs 10 %"), "{place}");
     let id = ada.submit("physics", &program("AC", 95));
     ada.wait_for_grade("physics", id);
     let seen = || ada.get(&format!("/api/v1/courses/physics/submissions/{id}")).expect(200).json();
