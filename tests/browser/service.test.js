@@ -202,7 +202,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
     .locator("#file")
     .setInputFiles({ name: "a.txt", mimeType: "text/plain", buffer: Buffer.from("?") });
   await student.page.getByRole("button", { name: "Hand in" }).click();
-  await student.page.getByText(/looked for a program for Linux/).waitFor();
+  await student.page.getByText(/expected a program for Linux/).waitFor();
   assert.ok(await student.page.getByRole("button", { name: "Hand in" }).isEnabled());
   student.complaints.splice(0);
 
@@ -236,11 +236,11 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.goto(`${address}/c/physics/s/1`);
   await page.getByLabel("Compare with").fill("ada");
   await page.getByRole("button", { name: "Compare" }).click();
-  await page.getByText("Both have the same scenes right").waitFor();
+  await page.getByText("Both are right on the same scenes").waitFor();
   await accessible(page);
   await page.goto(`${address}/c/physics/a/m1/class`);
   await page.getByLabel("Reason").fill("Nobody should fail this");
-  await page.getByRole("button", { name: "Grade all again" }).click();
+  await page.getByRole("button", { name: "Regrade all without" }).click();
   await page.waitForURL(/regrades\/\d+$/);
   // It can be applied when all are graded, and not before.
   const [said, applies] = await page.evaluate(() => [

@@ -169,7 +169,7 @@ impl Provider {
         let metadata = asked.map_err(|error| {
             let why = format!("{:#}", anyhow!(error));
             tracing::warn!(issuer = %*self.issuer, why, "the provider's configuration can't be read");
-            ProviderFault::Away(format!("{} returned an unexpected answer", self.label))
+            ProviderFault::Away(format!("{} does not answer correctly", self.label))
         });
         *published = Some(KnownConfiguration { asked_at: Instant::now(), metadata: metadata.clone() });
         metadata

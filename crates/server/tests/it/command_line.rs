@@ -54,6 +54,6 @@ fn a_server_that_can_t_begin_says_what_to_do() {
     }
     let (code, said) = say(&["serve", "--listen", &taken], &data);
     drop(listener);
-    assert!(code == Some(2) && said.contains("name another address by --listen"), "{said}");
+    assert!(code == Some(2) && said.contains("choose another address with --listen"), "{said}");
     assert!(!data.exists(), "a server that can't listen makes nothing");
 }

@@ -49,16 +49,13 @@ async fn a_refusal_names_what_is_taken(fresh: Fresh) {
     };
     assert!(detail(b"text").contains("or an archive of sources or traces ("), "{}", detail(b"text"));
     set(&admin, true, r#"{"forms": ["program"]}"#);
-    assert_eq!(
-        detail(b"text"),
-        "looked for a program for Linux (ELF, or a script that begins with #!), and found text"
-    );
+    assert_eq!(detail(b"text"), "expected a program for Linux (ELF, or a script that begins with #!), but found text");
     assert_eq!(
         detail(&archive("main.cpp")),
         "this assignment takes a program for Linux; the file is an archive of sources"
     );
     set(&admin, true, r#"{"forms": ["traces"]}"#);
-    assert!(detail(b"text").starts_with("looked for an archive of traces (.zip"), "{}", detail(b"text"));
+    assert!(detail(b"text").starts_with("expected an archive of traces (.zip"), "{}", detail(b"text"));
     let page = post_file(&ada, "/c/physics/a/m1", "", b"").expect(400).text();
     assert!(page.contains("no file was chosen"), "{page}");
     // A suite is no submission.

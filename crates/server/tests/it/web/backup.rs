@@ -51,7 +51,7 @@ async fn what_was_accepted_is_in_a_backup_that_is_made_meanwhile(fresh: Fresh) {
     assert_eq!(fs::metadata(&copy).expect("a folder").permissions_mode(), 0o700);
     // A second one is a folder of its own.
     let (code, said) = command(&["backup", copy.to_str().expect("UTF-8")], &server.folder, Some(&server.database()));
-    assert!(code == Some(2) && said.contains("exists already"), "{said}");
+    assert!(code == Some(2) && said.contains("already exists"), "{said}");
 
     // Elsewhere, on a database of its own.
     let data = folder.path().join("restored");
@@ -143,7 +143,7 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         let manifest = copy.join("backup.json");
         let said = fs::read_to_string(&manifest).expect("a manifest");
         fs::write(&manifest, said.replace("\"schema\": 1", "\"schema\": 2")).expect("written");
-        refused(4, "the backup has form 2, this program knows forms up to 1");
+        refused(4, "the backup has format 2, this program reads up to 1");
         let tables = format!("\"tables\": {}", db::LATEST);
         assert!(said.contains(&tables), "{said}");
         fs::write(&manifest, said.replace(&tables, "\"tables\": 9999")).expect("written");
@@ -153,7 +153,7 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         fs::write(&manifest, &said).expect("written");
         // The copy of the database is changed.
         fs::write(copy.join("fosssim.db"), b"SQLite format 3").expect("written");
-        refused(7, "is damaged: it is not the copy that was made");
+        refused(7, "is damaged: it differs from the copy in the manifest");
         // Nothing to copy.
         let (code, said) = command(&["backup", text], &folder.path().join("none"), None);
         assert!(code == Some(2) && said.contains("there is no data folder"), "{said}");

@@ -24,7 +24,7 @@ async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
     // Looking at the link, as mail programs do, does not use it up; using it does.
     visitor.get(&format!("/welcome/{link}")).expect(200);
     let session = visitor.welcome(&link);
-    assert!(session.get("/").expect(200).text().contains("you are in no course yet"));
+    assert!(session.get("/").expect(200).text().contains("you are not a member of any course yet"));
     visitor.post_form(&format!("/welcome/{link}"), "").expect(401);
     let token = session.post_json("/api/v1/tokens", r#"{"name": "a token"}"#).expect(201).json();
     let admin = server.with_token(token["token"].as_str().expect("a token"));
@@ -156,14 +156,14 @@ async fn limits_are_kept_and_say_so(fresh: Fresh) {
     set(r#"{"attempts": 1, "max_bytes": 100}"#).expect(200);
     assert_eq!(send(&[b'#'; 101]).expect(413).json()["type"], "urn:fosssim:too-large");
     let remedy = send(b"MZ\x90").expect(422).json();
-    assert!(remedy["detail"].as_str().expect("text").contains("looked for a program for Linux"), "{remedy}");
+    assert!(remedy["detail"].as_str().expect("text").contains("expected a program for Linux"), "{remedy}");
     send(b"").expect(422);
     send(&program("AC", 1)).expect(201);
     assert!(send(&program("AC", 2)).expect(409).text().contains("used up"));
     set(r#"{"attempts": 0, "per_hour": 1}"#).expect(200);
     send(&program("AC", 2)).expect(429);
     set(r#"{"due_at": 1}"#).expect(200);
-    assert!(send(&program("AC", 2)).expect(409).text().contains("due date is over"));
+    assert!(send(&program("AC", 2)).expect(409).text().contains("due date has passed"));
     set(r#"{"forms": ["sources"], "due_at": null, "per_hour": 0}"#).expect(200);
     send(&program("AC", 2)).expect(422);
     // Settings that make no sense, and hidden assignments.

@@ -58,7 +58,7 @@ async fn files_are_sent_in_pieces(fresh: Fresh) {
         reader.read_exact(&mut [0; 15]).expect("the status");
     }
     let refused = ada.get(&path).expect(429).json();
-    assert!(refused["detail"].as_str().is_some_and(|detail| detail.contains("12 uploads and downloads")), "{refused}");
+    assert!(refused["detail"].as_str().is_some_and(|detail| detail.contains("12 simultaneous transfers")), "{refused}");
     ada.get(&format!("/c/physics/s/{id}")).expect(200);
     assert!(admin.get(&path).expect(200).body == bytes, "another account has its own");
     let held = server.peak_memory() - before;
@@ -109,9 +109,9 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     let before = stored(&server);
     // It is told before it is too late: to staff of the course always, to others from four fifths on.
     let words = |by: &Client| by.get("/c/physics").expect(200).text();
-    assert!(words(&ada).contains("kept of you: 4 MiB of 5 MiB. When all are taken"), "{}", words(&ada));
-    assert!(!words(&eve).contains("kept of"), "{}", words(&eve));
-    assert!(words(&admin).contains("kept of this course: 4 MiB of 8 MiB."), "{}", words(&admin));
+    assert!(words(&ada).contains("reports of you: 4 MiB of 5 MiB. When the space is used up"), "{}", words(&ada));
+    assert!(!words(&eve).contains("Stored uploads"), "{}", words(&eve));
+    assert!(words(&admin).contains("reports of this course: 4 MiB of 8 MiB."), "{}", words(&admin));
     let metrics = server.visitor().get("/metrics").expect(200).text();
     assert!(metrics.contains("fosssim_kept_bytes{of=\"largest course\"} 4"), "{metrics}");
     let answer = ada.send("POST", SUBMISSIONS, &[], &large(2, 3)).expect(507).json();

@@ -46,7 +46,10 @@ async fn being_in_two_courses_takes_nothing_away(fresh: Fresh) {
     // Her account is one of physics, whose staff may sign in as her: the other course does not let it in by that.
     let wish = br#"{"name": "Ada", "role": "student"}"#;
     let refused = colleague.send("PUT", "/api/v1/courses/other/members/ada", JSON, wish).expect(403).json();
-    assert!(refused["detail"].as_str().is_some_and(|said| said.contains("an administrator adds it")), "{refused}");
+    assert!(
+        refused["detail"].as_str().is_some_and(|said| said.contains("ask an administrator to add it")),
+        "{refused}"
+    );
     ada.get("/api/v1/me").expect(200);
     assert_eq!(courses(&ada), 1);
     new_link(&colleague, "other", "ada").expect(404);

@@ -158,7 +158,7 @@ async fn a_platform_with_troubles(fresh: Fresh) {
             inside.scores.iter().filter(|(_, score)| score["scoreGiven"] == 40.0).map(|(_, score)| score).collect();
         assert!(of_forty.iter().all(|score| score["timestamp"] == of_forty[0]["timestamp"]), "{of_forty:?}");
     }
-    // A column on a host that no administrator named is never asked, and staff reads why.
+    // A column on a host that is not configured is never asked, and staff reads why.
     let elsewhere = |claims: &mut Value| {
         claims[RESOURCE]["id"] = json!("other");
         claims[CUSTOM] = json!({"assignment": "m1"});
@@ -361,7 +361,7 @@ fn links_are_chosen_in_the_platform() {
         };
         let (teacher, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), elsewhere);
         let refused = teacher.post_form(&format!("{place}/assignment"), "assignment=m1").expect(403).text();
-        assert!(refused.contains("no administrator named"), "{refused}");
+        assert!(refused.contains("is not configured"), "{refused}");
 
         // A new key is told of beside the one that signs.
         admin.post_json("/api/v1/platform-keys", "").expect(204);

@@ -42,7 +42,7 @@ async fn what_is_removed_is_gone(fresh: Fresh) {
     teacher.post_json(&format!("{regrade}/{id}/apply"), "").expect(200);
     // A submission, by its page, whose form names what is meant.
     let page = |by: &Client| by.get(&format!("/c/physics/s/{}", ids[0])).expect(200).text();
-    assert!(page(&teacher).contains("removed for ever") && !page(&ada).contains("removed for ever"));
+    assert!(page(&teacher).contains("permanently deleted") && !page(&ada).contains("permanently deleted"));
     teacher.post_form(&format!("/c/physics/s/{}/remove", ids[0]), "confirm=999").expect(400);
     teacher.post_form(&format!("/c/physics/s/{}/remove", ids[0]), &format!("confirm={}", ids[0])).expect(303);
     ada.get(&format!("/api/v1/courses/physics/submissions/{}", ids[0])).expect(404);

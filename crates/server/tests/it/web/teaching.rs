@@ -155,7 +155,7 @@ fn check_parts(server: &Server, admin: &Client, teacher: &Client) {
 fn check_beside(teacher: &Client, [one, other, mended]: [i64; 3]) {
     for with in [other.to_string(), "ada".to_owned()] {
         let page = teacher.get(&format!("/c/physics/s/{one}/beside?with={with}")).expect(200).text();
-        assert!(page.contains("Both have the same scenes right") && page.contains("of 100"), "{page}");
+        assert!(page.contains("Both are right on the same scenes") && page.contains("of 100"), "{page}");
     }
     teacher.get(&format!("/c/physics/s/{one}/beside?with=carl")).expect(404);
     teacher.get("/c/physics/a/m1/students/nobody").expect(404);
