@@ -410,7 +410,7 @@ fn bombs_are_refused_and_counted_and_keep_nobody_waiting() {
             ada.submit("physics", &program("AC", 1));
             for one in sending {
                 let text = one.join().expect("an answer").expect(422).text();
-                assert!(text.contains("holds more than 52428800 bytes"), "{text}");
+                assert!(text.contains("has more than 52428800 bytes"), "{text}");
             }
         });
         let damaged = zip(&[("x", &[7; 5000], 0o644)])[..60].to_vec();

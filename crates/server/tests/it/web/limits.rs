@@ -129,7 +129,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     let of_eve = eve.submit("physics", &large(2, 4));
     eve.wait_for_grade("physics", of_eve);
     let answer = eve.send("POST", SUBMISSIONS, &[], &large(2, 5)).expect(507).json();
-    assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("in this course")), "{answer}");
+    assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("of this course")), "{answer}");
     // An upload that is given up makes room.
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     let given_up = "UPDATE submission SET removed_at = {now} WHERE id IN (?, ?)";

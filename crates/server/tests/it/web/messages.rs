@@ -116,12 +116,12 @@ fn what_a_platform_did_not_say_is_refused() {
             ("no subject", &drop_claim("sub"), &sign, "sub"),
             ("no course", &drop_claim(CONTEXT), &sign, "context is missing"),
             ("no link", &drop_claim(RESOURCE), &sign, "resource_link is missing"),
-            ("no role", &|claims| claims[format!("{CLAIM}/roles")] = json!([]), &sign, "have no role"),
+            ("no role", &|claims| claims[format!("{CLAIM}/roles")] = json!([]), &sign, "neither learn nor teach"),
             (
                 "a role of elsewhere",
                 &|claims| claims[format!("{CLAIM}/roles")] = json!(["https://evil.example/membership#Instructor"]),
                 &sign,
-                "have no role",
+                "neither learn nor teach",
             ),
         ];
         assert_refused(&server, &platform, attacks);
