@@ -143,8 +143,7 @@ function showMarks(suite, grade, rows, strange) {
         `Since the last drop ${words}: ${scenes.join(", ")}`,
       ),
     );
-  if (known && !since.length)
-    since.push(el("p", { class: "hint" }, "Since the last drop nothing changed."));
+  if (known && !since.length) since.push(el("p", { class: "hint" }, "Since the last drop nothing changed."));
   const names = strange.slice(0, 12).join(", ") + (strange.length > 12 ? ` and ${strange.length - 12} more` : "");
   const other = strange.length
     ? [

@@ -425,11 +425,7 @@ class Words extends Drawing {
           )
         : "",
       data.full && rest
-        ? el(
-            "p",
-            { class: "hint" },
-            `${rest} ${other.length ? "more " : ""}numbers of it are the same bit for bit.`,
-          )
+        ? el("p", { class: "hint" }, `${rest} ${other.length ? "more " : ""}numbers of it are the same bit for bit.`)
         : "",
       bits,
       el(

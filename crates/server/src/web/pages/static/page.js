@@ -66,7 +66,11 @@ if (form) {
     request.upload.addEventListener("progress", ({ loaded, total }) => {
       bar.max = total;
       bar.value = loaded;
-      say(loaded < total ? `${Math.floor((100 * loaded) / total)} % sent` : "Upload complete. The server is checking the file.");
+      say(
+        loaded < total
+          ? `${Math.floor((100 * loaded) / total)} % sent`
+          : "Upload complete. The server is checking the file.",
+      );
     });
     request.addEventListener("load", () => {
       if (request.status < 400) {
