@@ -83,7 +83,7 @@ test("a wrong failsafe is found by keyboard", async () => {
   const said = () => page.locator(".say").innerText();
   const first = await step();
   assert.match(await said(), /is wrong by itself/);
-  assert.match(await said(), /with the named mistake is here to the last bit/);
+  assert.match(await said(), /with the named mistake is in the same state, bit for bit/);
   await page.locator(".viewer canvas.picture").focus();
   await page.keyboard.press("n");
   assert.ok((await step()) > first || /no later wrong step/.test(await said()));
@@ -201,7 +201,7 @@ test("a step whose impulses are wrong opens after its impulses, where its end wo
   assert.ok(await after.isChecked());
   assert.match(
     await page.locator(".say").innerText(),
-    /wrong by itself, and shown after its impulses\. The furthest particle is 0\.\d+ from where it should be/,
+    /wrong by itself, and shown after its impulses\. The furthest particle is 0\.\d+ from the right position/,
   );
   await after.uncheck();
   assert.match(
@@ -307,12 +307,12 @@ test("a motion that is too large is rounded, and the page says so", async (t) =>
   const { page, complaints, close } = await open(html);
   assert.match(
     await page.locator(".viewer .hint").first().innerText(),
-    /too large to be here to the last bit: positions are rounded to .* The records around these steps are exact: 0, 1/,
+    /too large for this page: positions are rounded to .* The records around these steps are exact: 0, 1/,
   );
   // What is looked at is exact, and what is far from it near enough.
   assert.match(
     await page.locator(".say").innerText(),
-    /Step 1 of 800 is wrong by itself\. The furthest particle is 1e-7 from where it should be/,
+    /Step 1 of 800 is wrong by itself\. The furthest particle is 1e-7 from the right position/,
   );
   await page.locator(".stepbox").fill("800");
   await page.locator(".stepbox").press("Enter");
