@@ -27,8 +27,8 @@ const MAX_COUNT: usize = Student::MAX_MISTAKES;
     after_help = "The environment variable FOSSSIM_SAMPLE_MISTAKE can name the mistake, too, and so can a copy or \
                   link of this program that is called fosssim-sample.ID. --mistake has precedence over the name, and \
                   the name over the variable. `fosssim-oracle demo --program FILE` writes a copy that makes \
-                  its mistake in any case.\n\nExit status: 0 done, 1 failed, 2 wrong usage, 3 the course's program would never \
-                  have ended"
+                  its mistake in any case.\n\nExit status: 0 done, 1 failed, 2 wrong usage, \
+                  3 the course's program would never have ended"
 )]
 pub struct Options {
     /// The scene, an XML file.

@@ -14,8 +14,10 @@ use std::{
     time::Duration,
 };
 
-pub(crate) const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n[limits]\ncpu_seconds = 1\nwall_seconds = 3\nmemory_mib = 256\n\
-                     [[group]]\nname = \"Impulses\"\nscenes = [\"asset:ImpulsesTests/o*\"]\npoints = 10\ncredit = \"steps\"\n\
+pub(crate) const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n\
+                     [limits]\ncpu_seconds = 1\nwall_seconds = 3\nmemory_mib = 256\n\
+                     [[group]]\nname = \"Impulses\"\nscenes = [\"asset:ImpulsesTests/o*\"]\n\
+                     points = 10\ncredit = \"steps\"\n\
                      [[group]]\nname = \"Zones\"\nscenes = [\"asset:GeometricTests/ball-*\"]\npoints = 10\n";
 
 /// A workspace with a suite, or nothing if programs can't be run safely.

@@ -288,7 +288,8 @@ fn a_course_s_page_for_browsers_holds_nothing_that_its_suite_hides_from_its_read
         workspace.write(format!("{name}.xml"), scene(words));
     }
     let suite = "schema = 1\nname = \"A \\\"course\\\"\"\n# the secret is a sum\n\
-        [[group]]\nname = \"Open\"\npoints = 3\nscenes = [\"seen/*.xml\", \"asset:GeometricTests/pair-becomes-rigid\"]\n\
+        [[group]]\nname = \"Open\"\npoints = 3\nscenes = [\"seen/*.xml\", \
+        \"asset:GeometricTests/pair-becomes-rigid\"]\n\
         [[group]]\nname = \"Curtain\"\nvisibility = \"hidden\"\nscenes = [\"kept/*.xml\"]\n\
         [[group]]\nname = \"Later\"\nvisibility = \"after_due_date\"\nscenes = [\"late/*.xml\"]\n";
     workspace.write("suite.toml", suite);

@@ -19,7 +19,8 @@ use std::{
     time::Duration,
 };
 
-const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n[[group]]\nname = \"first\"\npoints = 10\n\
+const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n\
+                     [[group]]\nname = \"first\"\npoints = 10\n\
                      scenes = [\"asset:SimpleTests/*\"]\n[[group]]\nname = \"second\"\npoints = 5\ncredit = \"all\"\n\
                      scenes = [\"asset:PenaltyTests/*\"]\n";
 

@@ -125,7 +125,8 @@ fn render_single(case: &Case, style: Style) -> String {
     if explanations.is_empty() && first.is_none() {
         text += "No known mistake explains it.\n";
     } else if explanations.is_empty() {
-        text += "No known mistake explains it. The first difference is where to look: the step starts from the trace's own\n\
+        text += "No known mistake explains it. The first difference is where to look: the step starts from the \
+         trace's own\n\
                  state, so nothing before it is to blame.\n";
     } else {
         text.push('\n');

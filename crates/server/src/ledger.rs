@@ -103,9 +103,9 @@ async fn find_job(transaction: &mut Transaction, job: i64) -> Result<JobFacts, D
         WHERE job.id = ?";
     let row = &transaction.one(statement, values![job]).await?;
     let seconds = row.int("took")? / 1000;
-    Ok(
-        read_row!(row => JobFacts { submission, campaign, assignment, course, worker, asked_by, task = "payload"; job, seconds }),
-    )
+    Ok(read_row!(row => JobFacts {
+        submission, campaign, assignment, course, worker, asked_by, task = "payload"; job, seconds
+    }))
 }
 
 /// Writes an event about a job.

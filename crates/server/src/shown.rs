@@ -229,7 +229,8 @@ mod tests {
     #[test]
     fn what_is_hidden_changes_nothing_of_what_is_shown() {
         let seen = r#"{"visibility": "visible", "points": 7.5, "max_points": 10, "scenes": [
-            {"scene": "a", "code": "AC", "verdict": "accepted"}, {"scene": "b", "code": "WA", "verdict": "wrong answer"}]}"#;
+            {"scene": "a", "code": "AC", "verdict": "accepted"},
+            {"scene": "b", "code": "WA", "verdict": "wrong answer"}]}"#;
         let hidden = |code: &str, points: u32| {
             format!(
                 r#"{{"visibility": "after_published", "points": {points}, "max_points": 90,

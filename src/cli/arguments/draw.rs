@@ -107,7 +107,8 @@ pub(in crate::cli) struct DetectArguments {
     #[arg(long, value_name = "KIND:I,J", requires = "scene")]
     pub(in crate::cli) pair: Option<String>,
     /// The detection pass of the step, from 1.
-    #[arg(long, value_name = "N", requires = "scene", default_value_t = 1, value_parser = clap::value_parser!(u32).range(1..))]
+    #[arg(long, value_name = "N", requires = "scene", default_value_t = 1,
+        value_parser = clap::value_parser!(u32).range(1..))]
     pub(in crate::cli) pass: u32,
     /// The format of the report.
     #[arg(long, value_enum, default_value_t = DetectFormat::Text)]

@@ -138,7 +138,8 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) timings: bool,
     /// Judge existing traces, and run no program. Every path is a folder with Group/name.bin, or name.bin, for each
     /// scene.
-    #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single", "smallest"])]
+    #[arg(long, conflicts_with_all = ["watch", "failed", "shard", "recorded", "keep_traces", "fail_fast", "single",
+        "smallest"])]
     pub(in crate::cli) traces: bool,
     /// Run programs even if required layers of the sandbox are missing. The other layers remain, and every report names
     /// the missing ones.

@@ -120,7 +120,9 @@ impl<'a> Search<'a> {
 
     /// Returns whether a folder is the one for results, or contains those of an earlier grading.
     fn is_results(&self, path: &Path) -> bool {
-        let same = |one: &Path, other: &Path| matches!((one.canonicalize(), other.canonicalize()), (Ok(one), Ok(other)) if one == other);
+        let same = |one: &Path, other: &Path| {
+            one.canonicalize().ok().zip(other.canonicalize().ok()).is_some_and(|(one, other)| one == other)
+        };
         same(path, self.output) || RESULT_FILES.iter().all(|name| path.join(name).is_file())
     }
 

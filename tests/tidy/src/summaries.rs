@@ -51,7 +51,8 @@ fn failing(fails: impl Fn(&str, &str) -> bool) -> Vec<String> {
 
 #[test]
 fn summaries_are_told_apart() {
-    let text = "/// Returns one.\n/// More.\n#[must_use]\npub fn one() {}\n\n    /// The same in short.\n    two: u8,\n/// A test.\n#[test]\nfn a()";
+    let text = "/// Returns one.\n/// More.\n#[must_use]\npub fn one() {}\n\n    /// The same in short.\n    two: u8,\n\
+                /// A test.\n#[test]\nfn a()";
     let found = [("Returns one.", "pub fn one() {}"), ("The same in short.", "two: u8,")];
     assert_eq!(summaries(text), found);
     assert_eq!(["Returns one.", "As one.", "The one.", "`one`."].map(begins_with_verb), [true, false, false, false]);

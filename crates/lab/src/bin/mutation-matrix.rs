@@ -123,7 +123,8 @@ fn is_rejected(cell: &MatrixCell, book: usize) -> bool {
 
 fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[WatchedScene], matrix: &[Vec<MatrixCell>]) {
     println!(
-        "rules: {name}\n  . the correct trace   - another trace, accepted   X rejected   l lost coefficients change a decision\n"
+        "rules: {name}\n  . the correct trace   - another trace, accepted   X rejected   \
+         l lost coefficients change a decision\n"
     );
     for (index, case) in cases.iter().enumerate() {
         println!("  {index:3} {}", case.name);

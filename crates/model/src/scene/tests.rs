@@ -331,8 +331,8 @@ fn things_in_one_place() {
     );
     says(
         "<particle px='0' py='0' vx='0' vy='0' m='1' fixed='1'/><gravitationalforce i='0' j='2' G='1'/>",
-        "4:56: `gravitationalforce` between particles 0 and 2, which start at one position (at distance zero it is not a \
-         number)",
+        "4:56: `gravitationalforce` between particles 0 and 2, which start at one position \
+         (at distance zero it is not a number)",
     );
 }
 

@@ -84,7 +84,8 @@ fn case_data(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounding>) -
         "follows": follows::count(case.check.outcome) > 0,
         "closeUps": inspected.iter().map(|up| inspected_step(up, evidence)).collect::<Vec<_>>(),
         "calls": calls.collect::<Vec<_>>(),
-        "whatIf": case.what_if.filter(|_| is_full).map(|what| json!({"id": what.id, "text": what.sentence, "equal": what.equal})),
+        "whatIf": case.what_if.filter(|_| is_full)
+            .map(|what| json!({"id": what.id, "text": what.sentence, "equal": what.equal})),
     })
 }
 

@@ -112,7 +112,8 @@ fn document(title: &str, body: &str, script: &str) -> String {
          <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
          <meta name=\"robots\" content=\"noindex\">\n<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n\
          <a class=\"skip\" href=\"#content\">To the content</a>\n<main id=\"content\">\n{body}</main>\n\
-         <footer><p>Written by fosssim-oracle {}. Lengths, times and velocities are in the scene's units.</p></footer>\n\
+         <footer><p>Written by fosssim-oracle {}. Lengths, times and velocities are in the scene's \
+         units.</p></footer>\n\
          {script}</body>\n</html>\n",
         env!("CARGO_PKG_VERSION"),
     )

@@ -84,7 +84,8 @@ async fn fill(database: &Database, count: i64) -> Result<()> {
     for statement in [
         "INSERT INTO job (lane, submission, fair_key, payload, state, rank, run_after, enqueued_at, finished_at)
             SELECT 'grading', id, 'account', '', 'done', id, created_at, created_at, created_at FROM submission",
-        "INSERT INTO result (job, submission, attempt, worker, verdict, code, points, max_points, summary, version, task,
+        "INSERT INTO result (job, submission, attempt, worker, verdict, code, points, max_points, summary, version,
+                task,
                 seconds, created_at)
             SELECT id, submission, 1, 'worker', 'wrong', 'WA', '50', '100', 'wrong', '1.0',
                 '{}', '1', enqueued_at FROM job",

@@ -293,7 +293,8 @@ macro_rules! submissions {
     ($rest:literal) => {
         concat!(
             "SELECT submission.id, submission.number, submission.form, submission.file_name, submission.digest,
-                submission.size, submission.created_at, submission.removed_at, submission.account, assignment.slug AS assignment,
+                submission.size, submission.created_at, submission.removed_at, submission.account,
+                assignment.slug AS assignment,
                 assignment.title, assignment.published_at, account.login, account.name, job.id AS job, job.state,
                 job.scenes_done, job.scenes,
                 job.last_fault, grade.result, result.verdict,

@@ -101,11 +101,13 @@ mod tests {
 
     #[test]
     fn names_are_those_of_the_graders_list() {
-        let json = br#"{"schema": 1, "suites": [{"name": "new", "title": "New", "default": false}, {"name": "old", "title": "Old", "default": true}]}"#;
+        let json = br#"{"schema": 1, "suites": [{"name": "new", "title": "New", "default": false},
+            {"name": "old", "title": "Old", "default": true}]}"#;
         let suites = Suites::read(json).expect("a list");
         assert_eq!(suites.describe(), "new or old");
         assert_eq!((suites.or_default("").as_str(), suites.or_default("new").as_str()), ("old", "new"));
-        let json = br#"{"schema": 2, "suites": [{"name": "m@2", "suite": "m", "default": true}, {"name": "m@1", "suite": "m", "default": false}]}"#;
+        let json = br#"{"schema": 2, "suites": [{"name": "m@2", "suite": "m", "default": true},
+            {"name": "m@1", "suite": "m", "default": false}]}"#;
         let versions = Suites::read(json).expect("a list");
         let filled = ["", "m", "m@1", "m@2"].map(|name| versions.or_default(name));
         assert_eq!(filled, ["m@2", "m@2", "m@1", "m@2"], "what is kept names its version");

@@ -160,7 +160,8 @@ impl Platform {
             "https://purl.imsglobal.org/spec/lti/claim/deployment_id": DEPLOYMENT,
             "https://purl.imsglobal.org/spec/lti/claim/target_link_uri": "https://grades.example.org/lti/launch",
             "https://purl.imsglobal.org/spec/lti/claim/roles": [role],
-            "https://purl.imsglobal.org/spec/lti/claim/context": {"id": "c-1", "label": "Phys 1", "title": "Physics <1>"},
+            "https://purl.imsglobal.org/spec/lti/claim/context":
+                {"id": "c-1", "label": "Phys 1", "title": "Physics <1>"},
             "https://purl.imsglobal.org/spec/lti/claim/resource_link": {"id": "link", "title": "First milestone"},
             "https://purl.imsglobal.org/spec/lti-ags/claim/endpoint": {
                 "scope": [SCORE, LINE_ITEM], "lineitems": format!("{}/lineitems", self.url)},
