@@ -77,7 +77,10 @@ async function recognized(file) {
   const found =
     scenes.find((scene) => scene === name || scene.endsWith(`/${name}`)) ?? (scenes.length === 1 ? scenes[0] : null);
   if (found) return sceneOf(found);
-  if (looks_like) throw new Error(`${file.name} is not a trace: it ${looks_like}.`);
+  if (looks_like)
+    throw new Error(
+      `${file.name} is not a trace: it ${looks_like}. Run ./FOSSSim -s scene.xml -d 0 -o trace.bin, and drop trace.bin.`,
+    );
   throw new Error(
     scenes.length
       ? `The trace begins like those of ${scenes.join(" and ")}: choose its scene, or drop its XML.`

@@ -105,7 +105,7 @@ fn render_head(check: &Check<'_>, style: Style) -> String {
 pub(crate) fn headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
     if let (Some(kind), true) = (check.looks_like, check.is_not_a_trace()) {
-        return format!("is not a trace: it {kind}");
+        return format!("is not a trace: it {kind}; a program writes one with -s scene.xml -d 0 -o trace.bin");
     }
     if let Some(question) = check.explanations.iter().find(|one| one.is_other_scene()) {
         return words::explanation::what(question);
