@@ -295,6 +295,6 @@ fn describe_error(text: &str, error: &NumberError) -> (String, String) {
         NotFinite => (format!("is `{text}`"), "only finite numbers are allowed".to_owned()),
         Overflow => (format!("is `{text}`, too large"), "the largest 64-bit number is 1.8e308".to_owned()),
         NotWhole => (format!("is `{text}`"), "write a whole number".to_owned()),
-        TooLarge => (format!("is `{text}`, beyond 32 bits"), "allowed is -2147483648 to 2147483647".to_owned()),
+        TooLarge => (format!("is `{text}`, beyond 32 bits"), "write -2147483648 to 2147483647".to_owned()),
     }
 }

@@ -81,7 +81,7 @@ fn truth_values_and_whole_numbers() {
     says("<edge i='0.0' j='1'/>", "4:10: `i` of edge 0 is `0.0` (write a whole number)");
     says(
         "<edge i='0' j='4294967296'/>",
-        "4:16: `j` of edge 0 is `4294967296`, beyond 32 bits (allowed is -2147483648 to 2147483647)",
+        "4:16: `j` of edge 0 is `4294967296`, beyond 32 bits (write -2147483648 to 2147483647)",
     );
 }
 
