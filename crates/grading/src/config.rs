@@ -6,10 +6,11 @@ use super::{
     near::closest,
     shape::{self, Problem, RawBuild, RawGroup, RawLimits, RawMistake, RawSpeed, RawSuite},
 };
+use fosssim_findings::explanation::Explanation;
 pub use fosssim_findings::{CourseNote, Hints, Visibility, speed::SpeedMarking};
 use fosssim_judge::Rules;
 use fosssim_model::assignments::Assignment;
-use fosssim_student::CATALOGUE;
+use fosssim_student::{all_rows, assignments::t2m2::find_edit, find};
 use serde::Deserialize;
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -361,14 +362,17 @@ fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw
     Group { name, scenes: scenes.map(pattern).collect(), marking, note }
 }
 
-/// Reads the course's note on a mistake. A key that is similar to a known one is rejected as a slip; other keys are
-/// those of general findings.
+/// Reads the course's note on a mistake of the catalogue, or on what an explanation says without naming one.
 fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String, CourseNote)> {
     let key = raw.key?;
-    let known = CATALOGUE.iter().map(|row| row.id);
-    if let Some(meant) = closest(key.get_ref(), known).filter(|meant| meant != key.get_ref()) {
-        let text = format!("no mistake has the key \"{}\"; did you mean \"{meant}\"?", key.get_ref());
-        problems.push((key.span(), text));
+    let word = key.get_ref().as_str();
+    let is_known = find(word).is_some() || find_edit(word).is_some() || Explanation::is_general_key(word);
+    if !is_known {
+        let remedy = closest(word, all_rows().map(|row| row.id)).map_or_else(
+            || "; `fosssim-oracle sample --list` shows all".to_owned(),
+            |meant| format!("; did you mean \"{meant}\"?"),
+        );
+        problems.push((key.span(), format!("no mistake has the key \"{word}\"{remedy}")));
     }
     let note = read_note(problems, raw.text, raw.link, raw.points)?;
     Some((key.into_inner(), note))

@@ -3,7 +3,7 @@
 pub use fosssim_model::scene::closest;
 use strsim::jaro_winkler;
 
-/// Returns the end of a message about an unknown word, which suggests a similar known word, if there is one.
+/// The number of letters and digits that are compared.
 const MAX_COMPARED_LETTERS: usize = 60;
 
 /// Returns the end of a message about an unknown word: a known word that was probably meant, if one is similar.

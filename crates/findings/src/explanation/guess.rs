@@ -40,8 +40,7 @@ impl Guess {
         match self {
             Self::List(guess) => guess.name(),
             Self::Named(key) => key,
-            Self::Quantity(QuantityGuess::Other) => "letter",
-            Self::Quantity(_) => "letter-factor",
+            Self::Quantity(guess) => guess.name(),
             Self::Coefficients { wrong, .. } => wrong.name(),
         }
     }
@@ -104,14 +103,16 @@ fosssim_num::closed_set! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum QuantityGuess {
         /// The sign of the quantity is wrong.
-        Sign = "A dot product of the formula has the wrong sign",
+        Sign = "letter-factor", "A dot product of the formula has the wrong sign";
         /// The quantity is zero.
-        Zero = "A quantity of the formula is zero",
+        Zero = "letter-factor", "A quantity of the formula is zero";
         /// The quantity is multiplied by a factor.
-        Factor = "A quantity of the formula has a wrong factor",
+        Factor = "letter-factor", "A quantity of the formula has a wrong factor";
         /// Another quantity is used.
-        Other = "Another quantity is used instead of a dot product of the formula",
+        Other = "letter", "Another quantity is used instead of a dot product of the formula";
     }
+    /// Returns the text of the guess.
+    words
 }
 
 fosssim_num::closed_set! {

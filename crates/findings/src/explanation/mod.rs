@@ -78,6 +78,28 @@ impl Explanation {
     /// The key of polynomials that are right except for too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
+    /// The key of polynomials that no detection logs.
+    pub const MISSING_POLYNOMIALS: &'static str = "missing-polynomials";
+
+    /// Returns whether an explanation that names no mistake of the catalogue may have this key.
+    #[must_use]
+    pub fn is_general_key(key: &str) -> bool {
+        let constants = [
+            Self::OTHER_SCENE,
+            Self::UNFINISHED,
+            Self::PAIRS,
+            Self::NOT_FINITE,
+            Self::UNEXPLAINED,
+            Self::NEARLY_RIGHT,
+            Self::MISSING_POLYNOMIALS,
+        ];
+        constants.contains(&key)
+            || key.starts_with("stage-")
+            || QuantityGuess::ALL.iter().any(|guess| guess.name() == key)
+            || ListGuess::ALL.iter().any(|guess| guess.name() == key)
+            || CoefficientGuess::ALL.iter().any(|guess| guess.name() == key)
+    }
+
     /// Creates an explanation without evidence.
     #[must_use]
     pub fn about(key: impl Into<String>, about: About) -> Self {

@@ -50,6 +50,11 @@ fn a_course_s_own_words_have_a_known_key_and_an_address() {
     assert_eq!(suite.groups[0].note.as_ref().expect("a note").to_string(), "Section 3");
     let error = read(&text("pp-no-tow", "javascript:alert(1)")).unwrap_err().to_string();
     assert!(error.contains("4:7: no mistake has the key \"pp-no-tow\"; did you mean \"pp-no-two\"?"), "{error}");
+    for key in ["term-missing", "letter", "stage-order", "all-zero"] {
+        assert!(read(&text(key, "https://example.edu")).is_ok(), "{key}");
+    }
+    let unknown = read(&text("no-such-slip", "https://example.edu")).unwrap_err().to_string();
+    assert!(unknown.contains("no mistake has the key \"no-such-slip\"; `fosssim-oracle sample --list`"), "{unknown}");
     assert!(error.contains("5:8: link must be an address that begins with https:// or http://"), "{error}");
 }
 

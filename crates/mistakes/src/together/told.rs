@@ -19,7 +19,7 @@ pub fn cut_result(hints: Hints, result: &mut SceneResult) {
     }
     result.disclosure = result.disclosure.take().and_then(|all| hints.disclose(all));
     result.explanations = cut(hints, std::mem::take(&mut result.explanations));
-    result.card = result.card_for_students.take();
+    result.card.clone_from(&result.card_for_students);
 }
 
 /// Limits a smallest scene to a hint level; `None` at [`Hints::None`].
@@ -99,6 +99,16 @@ mod tests {
             let end = NotFinite { step: Some(3), stage: NanStage::Zones, is_nan: true, ends: false };
             let end = Explanation { about: About::NotFinite(end), ..explanation() };
             assert_eq!(cut(hints, vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");
+        }
+    }
+
+    #[test]
+    fn a_result_that_is_cut_twice_keeps_the_picture_for_students() {
+        let mut result = SceneResult::without_run("a", 1, Verdict::WrongAnswer, Reason::Wrong(WrongTrace::Untold));
+        (result.card, result.card_for_students) = (Some("all".to_owned()), Some("part".to_owned()));
+        for _ in 0..2 {
+            cut_result(Hints::What, &mut result);
+            assert_eq!(result.card.as_deref(), Some("part"));
         }
     }
 

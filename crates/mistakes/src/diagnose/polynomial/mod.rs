@@ -93,7 +93,10 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
         details: distinct(details, MAX_OTHER_KEYS),
         reproduced: count,
         samples: count,
-        ..Explanation::about("missing-polynomials", About::Polynomials { subjects, found: OfPolynomials::Missing })
+        ..Explanation::about(
+            Explanation::MISSING_POLYNOMIALS,
+            About::Polynomials { subjects, found: OfPolynomials::Missing },
+        )
     })
 }
 

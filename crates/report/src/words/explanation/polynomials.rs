@@ -25,7 +25,7 @@ fn describe_guess(guess: &Guess) -> String {
     match guess {
         Guess::List(guess) => guess.words().to_owned(),
         Guess::Named(key) => find_edit(key).map_or(key.as_ref(), |edit| edit.sentence).to_owned(),
-        Guess::Quantity(guess) => guess.name().to_owned(),
+        Guess::Quantity(guess) => guess.words().to_owned(),
         Guess::Coefficients { powers, wrong } => {
             let names: Vec<&str> = powers.iter().map(|power| power_name(*power)).collect();
             wrong.words().replace("{}", &names.join(", "))
