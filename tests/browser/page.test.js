@@ -415,7 +415,7 @@ test("who has no traces sees some, and gets a script that makes them", async () 
   await page.locator("#marks-list h2").first().waitFor();
   assert.match(await page.locator("#marks-list").innerText(), /A product is missing .*\(1 scene\)/);
   await page.getByText("The folder and its suite").click();
-  const { bytes } = await saved(page, "Save a script", page.locator("#save-script"));
+  const { bytes } = await saved(page, "Save the script", page.locator("#save-script"));
   const made = join(folder, "made");
   mkdirSync(made);
   writeFileSync(join(made, "make-traces.sh"), bytes);
@@ -499,7 +499,7 @@ test("a scene is written: messages in place, its motion, and files that are the 
     const { value } = document.getElementById("source");
     return value !== before && document.documentElement.dataset.tried === String(value.length);
   }, before);
-  const { bytes } = await saved(page, "reference trace");
+  const { bytes } = await saved(page, "trace", page.locator("#save-trace"));
   const own = oracle("simulate", "asset:ContinuousTimeTests/head-on-equal-masses", "--output", "own.bin");
   assert.equal(own.status, 0, own.stderr);
   assert.ok(bytes.equals(readFileSync(join(folder, "own.bin"))));

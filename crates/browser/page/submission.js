@@ -223,7 +223,9 @@ function showMarks(suite, grade, rows, strange) {
         el(
           "h2",
           {},
-          `${name}: ${good} of ${scenes.length} right, ${grade.groups[number].points} of ${grade.groups[number].of} points`,
+          missing.length === own.length
+            ? `${name}: no traces (${counted(scenes.length, "scene")}, ${grade.groups[number].of} points)`
+            : `${name}: ${good} of ${scenes.length} right, ${grade.groups[number].points} of ${grade.groups[number].of} points`,
         ),
       ),
       wrong.length ? table(wrong) : "",
@@ -239,7 +241,7 @@ function showMarks(suite, grade, rows, strange) {
     ...(grade.unfit ? [el("p", { class: "bad" }, grade.unfit)] : []),
     ...other,
     ...since,
-    ...likely,
+    ...(likely.length ? [el("h2", {}, likely.length === 1 ? "Likely mistake" : "Likely mistakes"), ...likely] : []),
     ...groups,
   );
   $("save-marks").hidden = $("marks-again").hidden = false;
