@@ -137,7 +137,7 @@ mod _native {
                     polynomials.extend(ends.as_flattened());
                     coefficients.extend(numbers.iter().flat_map(|number| number.to_ne_bytes()));
                 }
-                if layout.polynomials && !layout.is_mid(record) {
+                if layout.has_polynomials && !layout.is_mid(record) {
                     before = Some(frame.state.clone());
                 }
                 record += 1;

@@ -12,7 +12,7 @@ mod output;
 mod screen;
 mod selection;
 
-use crate::{report::foreign::plain, sample};
+use crate::{report::foreign::strip_control_characters, sample};
 use anyhow::Result;
 use clap::{CommandFactory, FromArgMatches};
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
@@ -75,6 +75,6 @@ fn command(words: &[OsString]) -> Result<clap::Command> {
 /// Prints an error.
 fn fault(error: &anyhow::Error) -> ExitCode {
     // Names of files are untrusted text, too.
-    console::complain(plain(&format!("error: {error:#}\n")));
+    console::complain(strip_control_characters(&format!("error: {error:#}\n")));
     ExitCode::from(exit::FAULT)
 }

@@ -24,7 +24,7 @@ impl Services for Program {
     }
 
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String> {
-        let png = match Folder::existing(Path::new(PNGS)) {
+        let png = match Folder::open_existing(Path::new(PNGS)) {
             _ if !png => None,
             // The original aborts here.
             None => {
@@ -34,7 +34,7 @@ impl Services for Program {
         };
         let svg = match svg {
             None => None,
-            Some(folder) => Some(Folder::existing(folder).ok_or_else(|| NO_PICTURE_FOLDER.to_owned())?),
+            Some(folder) => Some(Folder::open_existing(folder).ok_or_else(|| NO_PICTURE_FOLDER.to_owned())?),
         };
         let size = Size::new(PICTURE_SIDE, PICTURE_SIDE).map_err(|error| error.to_string())?;
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();

@@ -274,7 +274,7 @@ impl Folder {
     }
 
     /// Opens an existing folder.
-    pub(super) fn existing(name: &Path) -> Option<Self> {
+    pub(super) fn open_existing(name: &Path) -> Option<Self> {
         files::Folder::to_write(name).ok().map(Self)
     }
 

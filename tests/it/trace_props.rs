@@ -21,8 +21,8 @@ fn layout() -> impl Strategy<Value = Layout> {
     let lists = prop_oneof![Just((false, false)), Just((true, false)), Just((true, true))];
     (0_usize..4, lists, 0_u32..4).prop_map(|(particles, (impulses, polynomials), steps)| Layout {
         particles,
-        impulses,
-        polynomials,
+        has_impulses: impulses,
+        has_polynomials: polynomials,
         steps,
     })
 }
@@ -34,8 +34,8 @@ fn impulse() -> impl Strategy<Value = LoggedImpulse> {
 }
 
 fn frame(layout: Layout) -> impl Strategy<Value = Frame> {
-    let impulses = if layout.impulses { 4 } else { 0 };
-    let polynomials = if layout.polynomials { 6 } else { 0 };
+    let impulses = if layout.has_impulses { 4 } else { 0 };
+    let polynomials = if layout.has_polynomials { 6 } else { 0 };
     let numbers = || vec(number(), 2 * layout.particles);
     (numbers(), numbers(), vec(impulse(), 0..=impulses), vec(vec(number(), 0..8), 0..=polynomials)).prop_map(
         |(positions, velocities, impulses, polynomials)| {
@@ -161,7 +161,7 @@ proptest! {
 /// A trace of one particle and one step with an impulse and two polynomials in each later record, and the offset of
 /// each of its records.
 fn small() -> (Layout, Vec<u8>) {
-    let layout = Layout { particles: 1, impulses: true, polynomials: true, steps: 1 };
+    let layout = Layout { particles: 1, has_impulses: true, has_polynomials: true, steps: 1 };
     let state = State { positions: vec![1.0, 2.0], velocities: vec![3.0, 4.0] };
     let initial = Frame { state, ..Frame::default() };
     let mut later = initial.clone();
@@ -312,7 +312,7 @@ fn lenient_reading_stops_where_the_original_stopped() {
         let polynomials = ["continuous-time", "hybrid"].contains(&scene["collision"].as_str().unwrap());
         let number = |key: &str| scene[key].as_u64().unwrap();
         let (particles, steps) = (number("particles") as usize, number("steps") as u32);
-        Layout { particles, impulses: polynomials, polynomials, steps }
+        Layout { particles, has_impulses: polynomials, has_polynomials: polynomials, steps }
     };
     let mut cases = 0;
     for row in text("verdicts.jsonl").lines() {

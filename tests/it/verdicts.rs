@@ -112,7 +112,7 @@ fn check_gives_the_originals_verdict_on_one_thread_and_on_many() {
             let Some(expected) = row["residuals"][key][0].as_str() else { continue };
             let text = match &parity[field] {
                 Value::String(text) => text.clone(),
-                number => fosssim_oracle::report::number::general(number.as_f64().unwrap()),
+                number => fosssim_oracle::report::number::format_g(number.as_f64().unwrap()),
             };
             assert_eq!(text, expected, "{} {key}", name(row));
         }

@@ -2,7 +2,7 @@
 use crate::parts::PageAnswer;
 use fosssim_judge::study::Study;
 use fosssim_model::sim::{PairMotion, PointMotion};
-use fosssim_num::{printed::general, vector::Vec2};
+use fosssim_num::{printed::format_g, vector::Vec2};
 use fosssim_render::{detection, plot::PlotTarget};
 use fosssim_report::{detect::Detect, style::Style};
 use serde::Deserialize;
@@ -59,7 +59,7 @@ pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
         .map_err(|_| "no result: the numbers are too large or too small, and the original would hang")?;
     let report = Detect { study: &study, place: None };
     let picture = |embedding| detection::picture(&study, &report.title(), embedding).into_bytes();
-    let value = json!({ "decision": report.decision(general), "collides": study.answer.decision.collides() });
+    let value = json!({ "decision": report.decision(format_g), "collides": study.answer.decision.collides() });
     let parts = vec![
         report.text(Style::Plain).into_bytes(),
         report.json().into_bytes(),

@@ -124,7 +124,7 @@ impl Film {
                 host.progress(step, scene.steps());
             }
         }
-        let extent = extent.near(&start);
+        let extent = extent.limited_to(&start);
         (Self { scene, positions, steps, extent, painter: None }, stopped)
     }
 

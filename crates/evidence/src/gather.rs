@@ -132,7 +132,7 @@ pub fn gather(
     let (mut before, mut seen_wrong) = (end.state.clone(), false);
     for step in 1..=layout.steps {
         gathering.run_freely(step);
-        if layout.polynomials && reader.next(&mut mid).is_err() || reader.next(&mut end).is_err() {
+        if layout.has_polynomials && reader.next(&mut mid).is_err() || reader.next(&mut end).is_err() {
             break;
         }
         gathering.keep_states(step, &mid, &end);
@@ -196,7 +196,7 @@ impl<'a> Gathering<'a> {
 
     /// Returns whether a record of the step is kept.
     fn holds(&self, step: u32, is_mid: bool) -> bool {
-        (self.evidence.layout.polynomials || !is_mid) && self.evidence.window.holds(step, is_mid)
+        (self.evidence.layout.has_polynomials || !is_mid) && self.evidence.window.holds(step, is_mid)
     }
 
     /// Advances the reference's own run by one step.
@@ -259,8 +259,8 @@ impl<'a> Gathering<'a> {
         let [position, velocity] = distances(self.own.state(), &end.state);
         self.evidence.steps.push(Step {
             class,
-            position: worse(count.apart[0], position),
-            velocity: worse(count.apart[1], velocity),
+            position: max_with_nan(count.apart[0], position),
+            velocity: max_with_nan(count.apart[1], velocity),
             expected_passes: count.passes,
             actual_passes: count.passes_of(end.logged),
         });
@@ -288,11 +288,11 @@ fn distances(one: &State, other: &State) -> [f64; 2] {
 
 /// Returns the largest distance between the numbers of two lists; NaN if one of them is NaN.
 fn largest(one: &[f64], other: &[f64]) -> f64 {
-    one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, worse)
+    one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, max_with_nan)
 }
 
 /// Returns the larger number; NaN counts as larger than any number.
-fn worse(one: f64, other: f64) -> f64 {
+fn max_with_nan(one: f64, other: f64) -> f64 {
     if one.is_nan() || other <= one { one } else { other }
 }
 
@@ -339,7 +339,7 @@ impl Observer for PassCount<'_> {
         self.polynomials += detection.polynomials.len();
     }
 
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
 }

@@ -388,7 +388,7 @@ impl Observer for Inspector<'_> {
         self.step.expected_contacts.push(*impulse);
     }
 
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
 

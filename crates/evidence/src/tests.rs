@@ -81,7 +81,7 @@ fn a_finding_about_a_polynomial_has_its_call() {
 /// A long motion is shown around its first wrong step, and every record that is shown is exact.
 #[test]
 fn a_motion_beyond_the_budget_is_cut_around_the_first_wrong_step() {
-    let layout = Layout { particles: 10, impulses: true, polynomials: true, steps: 1000 };
+    let layout = Layout { particles: 10, has_impulses: true, has_polynomials: true, steps: 1000 };
     let whole = Window::for_focus(500, layout, 80 * 1001);
     assert!(whole.is_whole(1000) && whole.holds(0, false) && !whole.holds(0, true));
     let part = Window::for_focus(500, layout, 80 * 90);

@@ -107,7 +107,7 @@ impl Folder {
     /// # Errors
     /// If it cannot be opened; [`io::ErrorKind::NotFound`] if it was removed.
     pub fn entry(&self, name: &OsStr) -> io::Result<FolderEntry> {
-        let file = match openat(&*self.fd, single(name)?, OFlags::RDONLY | SAFE_FLAGS, Mode::empty()) {
+        let file = match openat(&*self.fd, check_single_component(name)?, OFlags::RDONLY | SAFE_FLAGS, Mode::empty()) {
             Ok(fd) => File::from(fd),
             Err(Errno::LOOP | Errno::NXIO | Errno::NODEV) => return Ok(FolderEntry::Other),
             Err(error) => return Err(error.into()),
@@ -125,7 +125,7 @@ impl Folder {
     /// # Errors
     /// If it does not exist, or is a link.
     pub fn folder(&self, name: &OsStr) -> io::Result<Self> {
-        let inner = step(self.as_fd(), single(name)?).map_err(|error| match error.raw_os_error() {
+        let inner = step(self.as_fd(), check_single_component(name)?).map_err(|error| match error.raw_os_error() {
             Some(libc::ELOOP) => io::Error::other("it is a link, which is not followed; remove it"),
             _ => error,
         });
@@ -137,7 +137,7 @@ impl Folder {
     /// # Errors
     /// If it cannot be created, or another kind of entry has its name.
     pub fn make_folder(&self, name: &OsStr) -> io::Result<Self> {
-        match mkdirat(&*self.fd, single(name)?, Mode::from_raw_mode(FOLDER_MODE)) {
+        match mkdirat(&*self.fd, check_single_component(name)?, Mode::from_raw_mode(FOLDER_MODE)) {
             Ok(()) | Err(Errno::EXIST) => self.folder(name),
             Err(error) => Err(error.into()),
         }
@@ -205,7 +205,7 @@ impl Folder {
     /// # Errors
     /// If it cannot be removed.
     pub fn remove(&self, name: &OsStr) -> io::Result<()> {
-        match unlinkat(&*self.fd, single(name)?, AtFlags::empty()) {
+        match unlinkat(&*self.fd, check_single_component(name)?, AtFlags::empty()) {
             Ok(()) | Err(Errno::NOENT) => Ok(()),
             Err(error) => Err(error.into()),
         }
@@ -220,7 +220,7 @@ impl Folder {
     /// Returns the identity of a file without opening it; `None` for a link, and for anything except a regular file.
     #[must_use]
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
-        let (folder, last) = self.above(Path::new(name)).ok()?;
+        let (folder, last) = self.split_parent(Path::new(name)).ok()?;
         let stat = statat(&*folder, last, AtFlags::SYMLINK_NOFOLLOW).ok();
         let stat = stat.filter(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::RegularFile)?;
         Some((Identity::new(stat.st_dev, stat.st_ino), stat.st_uid))
@@ -247,17 +247,17 @@ impl Folder {
 
     /// Opens the entry at a path of names; each name is looked up in the folder before it.
     fn open_beneath(&self, name: &OsStr) -> io::Result<File> {
-        let (above, last) = self.above(Path::new(name))?;
+        let (above, last) = self.split_parent(Path::new(name))?;
         Ok(openat(&*above, last, OFlags::RDONLY | SAFE_FLAGS, Mode::empty())?.into())
     }
 
     /// Returns the folder of a path's last name, and that name.
-    fn above<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, &'a OsStr)> {
+    fn split_parent<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, &'a OsStr)> {
         let (folder, last) = self.names_of(path)?;
         Ok((folder, last.ok_or_else(|| io::Error::from_raw_os_error(libc::EISDIR))?))
     }
 
-    /// Returns the parts like [`Folder::above`], without a last name if the path has none.
+    /// Returns the parts like [`Folder::split_parent`], without a last name if the path has none.
     fn names_of<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, Option<&'a OsStr>)> {
         let mut names = Vec::new();
         for component in path.components() {
@@ -292,7 +292,7 @@ fn step(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
 }
 
 /// Returns a name that does not leave its folder.
-pub(super) fn single(name: &OsStr) -> io::Result<&OsStr> {
+pub(super) fn check_single_component(name: &OsStr) -> io::Result<&OsStr> {
     let mut components = Path::new(name).components();
     match (components.next(), components.next()) {
         (Some(Component::Normal(only)), None) if only == name => Ok(name),

@@ -112,7 +112,7 @@ pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
 pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<Vec<u8>> {
     // One additional byte shows whether the file ends there.
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit)).unwrap_or_default() + 1);
-    patient(file, metadata)?.take(limit + 1).read_to_end(&mut bytes)?;
+    with_timeout(file, metadata)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
         let text = format!("it is larger than {limit} bytes, the limit of such a file");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, text));
@@ -127,7 +127,7 @@ const PIPE_PATIENCE: Duration = Duration::from_secs(5);
 ///
 /// # Errors
 /// If nothing is written within five seconds, or the pipe cannot be read.
-pub fn patient(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read + Send>> {
+pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read + Send>> {
     if !metadata.file_type().is_fifo() {
         return Ok(Box::new(file));
     }

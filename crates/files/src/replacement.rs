@@ -1,5 +1,5 @@
 //! Files that appear whole: they are written under another name in the same folder, and then renamed.
-use super::folder::{Folder, single};
+use super::folder::{Folder, check_single_component};
 use rustix::{
     fs::{AtFlags, Mode, OFlags, openat, renameat, unlinkat},
     io::Errno,
@@ -100,7 +100,7 @@ impl Folder {
     /// # Errors
     /// If no file can be created here.
     pub fn replacement(&self, name: &OsStr, mode: Option<u32>) -> io::Result<Replacement> {
-        Replacement::new(self.clone(), single(name)?, mode)
+        Replacement::new(self.clone(), check_single_component(name)?, mode)
     }
 
     /// Writes a file atomically by rename. A file with the same name is replaced, and no link is followed.

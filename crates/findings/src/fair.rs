@@ -79,7 +79,7 @@ pub struct Shares {
 
 impl Shares {
     /// Keeps the larger of both shares of each quantity.
-    pub fn widen(&mut self, other: &Self) {
+    pub fn max_with(&mut self, other: &Self) {
         self.coefficient = self.coefficient.max(other.coefficient);
         self.normal = self.normal.max(other.normal);
         self.position = self.position.max(other.position);

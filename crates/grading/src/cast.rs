@@ -63,7 +63,7 @@ impl Observer for ZonesMoved {
 }
 
 /// Runs a program of the cast, whose name says what it does.
-fn act(job: &Job) -> FakeRun {
+fn run_fake(job: &Job) -> FakeRun {
     match job.program.file_name().and_then(|name| name.to_str()) {
         Some("right") => FakeRun::wrote(right_trace(job)),
         Some("wrong") => {
@@ -139,7 +139,7 @@ impl Stage {
             let name = job.program.file_name().unwrap_or_default().to_string_lossy().into_owned();
             let begun = format!("{name} {}", blake3::hash(&scene));
             seen.lock().expect("lock").push(begun);
-            act(job)
+            run_fake(job)
         });
         let folder = tempfile::tempdir().expect("folder");
         Self { faults: Place::new(folder.path(), ""), folder, backend, starts }

@@ -166,7 +166,7 @@ fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     let has_pairs = scene.particles.len() > 1 || !(scene.particles.is_empty() || scene.half_planes.is_empty());
     // A record ends with the counts of its impulses and of its polynomials (trace-format.md 2).
     let record = layout.state_bytes() as u64 + 2 * size_of::<i32>() as u64;
-    (layout.polynomials && layout.steps > 0 && has_pairs).then(|| layout.records() * record)
+    (layout.has_polynomials && layout.steps > 0 && has_pairs).then(|| layout.records() * record)
 }
 
 /// Returns the verdict by the program's end alone. The number of bytes after the last record does not matter: a program

@@ -239,7 +239,7 @@ struct FinishedScene<'s> {
 type FoundResult = FinishedScene<'static>;
 
 impl FinishedScene<'_> {
-    fn unkept(result: SceneResult) -> Self {
+    fn without_claim(result: SceneResult) -> Self {
         Self { result, cached: false, claim: None }
     }
 }
@@ -299,7 +299,7 @@ impl<'a> SubmissionGrading<'a> {
     /// scene, it also reports the grade.
     pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
         let done = catch_panic(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
-            FinishedScene::unkept(scene.failure_result(Failure::Panic {
+            FinishedScene::without_claim(scene.failure_result(Failure::Panic {
                 stage: None,
                 fault: fault.to_string(),
                 trace: None,
@@ -326,9 +326,9 @@ impl<'a> SubmissionGrading<'a> {
     }
 
     fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) -> FinishedScene<'a> {
-        let without_run = |verdict, why| FinishedScene::unkept(scene.without_run(verdict, why));
+        let without_run = |verdict, why| FinishedScene::without_claim(scene.without_run(verdict, why));
         if let Some(why) = self.left_out(number) {
-            return FinishedScene::unkept(patience::left_out(scene, why));
+            return FinishedScene::without_claim(patience::left_out(scene, why));
         }
         tell(SceneNews::Begins);
         let (grader, shared, submission) = (self.grader, self.shared, self.submission);
@@ -342,7 +342,7 @@ impl<'a> SubmissionGrading<'a> {
             Err(done) => return *done,
         };
         match &*self.staged_program() {
-            Err(message) => FinishedScene::unkept(scene.failure_result(Failure::Machine(message.clone()))),
+            Err(message) => FinishedScene::without_claim(scene.failure_result(Failure::Machine(message.clone()))),
             Ok(StagedProgram { refused: Some(why), .. }) => {
                 without_run(Verdict::Unusable, Reason::Unusable(why.clone()))
             }

@@ -15,7 +15,7 @@ const TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_s
 /// fits, or if the program never writes a trace. The program is run six times, on two bodies that do not meet.
 ///
 /// # Errors An error of the grader or the machine, as text.
-pub fn looks_like(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignment>, String> {
+pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignment>, String> {
     let [cpu, wall] = TIME_LIMITS;
     let limits = RunLimits { cpu: runner.limits.cpu.min(cpu), wall: runner.limits.wall.min(wall), ..*runner.limits };
     let runner = Runner { limits: &limits, ..*runner };

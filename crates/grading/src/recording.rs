@@ -147,7 +147,7 @@ mod tests {
         let recording = Recording::for_scene("Group/name", SCENE).unwrap();
         let mut other = recording.clone();
         other.trace[32 * 3 + 1] ^= 1;
-        let layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 4 };
+        let layout = Layout { particles: 1, has_impulses: false, has_polynomials: false, steps: 4 };
         other.digests = Digests::from_stream(&other.trace[..], layout).to_string();
         let shown = recording.difference(Some(&other.pack().unwrap()), Some(other.digests.as_bytes())).unwrap();
         assert!(shown.contains("differ, beginning at byte 97\n"), "{shown}");

@@ -28,7 +28,7 @@ const RUN_TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::fr
 /// Returns limits with no more time than a program needs on a small scene. A trace that is complete at the time limit
 /// is still read.
 #[must_use]
-pub fn impatient(limits: &RunLimits) -> RunLimits {
+pub fn shorten_limits(limits: &RunLimits) -> RunLimits {
     RunLimits { cpu: limits.cpu.min(RUN_TIME_LIMITS[0]), wall: limits.wall.min(RUN_TIME_LIMITS[1]), ..*limits }
 }
 

@@ -126,13 +126,13 @@ fn digest_of(file: File) -> Option<blake3::Hash> {
 
 impl StagedProgram {
     /// Creates a staged submission without a runnable program.
-    fn nothing(path: &Path) -> Self {
+    fn without_program(path: &Path) -> Self {
         let digest = blake3::hash(path.as_os_str().as_encoded_bytes());
         Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
     }
 
     pub(super) fn unusable(path: &Path, why: UnusableReason) -> Self {
-        Self { refused: Some(why), ..Self::nothing(path) }
+        Self { refused: Some(why), ..Self::without_program(path) }
     }
 
     /// Returns the digest of the program's bytes; `None` without a runnable program.
@@ -187,7 +187,7 @@ pub(super) fn build(
     let copy = folder.path().join("submission");
     let failed = |end: BuildEnd, output: String| {
         let build = Some(Build { end, output });
-        StagedProgram { build, ..StagedProgram::nothing(&sources.join(&step.program)) }
+        StagedProgram { build, ..StagedProgram::without_program(&sources.join(&step.program)) }
     };
     match copy_sources(sources, &copy) {
         Err(CopyError::Submission(why)) => return Ok(failed(BuildEnd::Sources(why), String::new())),

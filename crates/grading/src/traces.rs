@@ -9,7 +9,7 @@ use super::{
 };
 use fosssim_evidence::{ExaminedTrace, KeptPart, examine};
 use fosssim_judge::replay::{Options, Progress};
-use fosssim_mistakes::together::settle;
+use fosssim_mistakes::together::reconcile_explanations;
 use std::{
     io::Read,
     sync::atomic::{AtomicU64, Ordering},
@@ -47,6 +47,6 @@ pub fn grade(plan: &Plan, submission: String, results: Vec<SceneResult>, warning
     let results = results.into_iter().map(|result| (result, false)).collect();
     // The time that it took to write the traces is unknown.
     let mut grade = Grade { warnings, ..score::grade(plan, submission, false, results) };
-    settle(&mut grade);
+    reconcile_explanations(&mut grade);
     grade
 }

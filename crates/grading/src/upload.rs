@@ -32,7 +32,7 @@ fn list_contents(program: &str, folder: &OpenFolder) -> FolderContents {
     FolderContents::Others {
         names: names.iter().take(MAX_NAMED).map(|name| format_entry(folder, name)).collect(),
         more: names.len().saturating_sub(MAX_NAMED),
-        elsewhere: deeper(folder, wanted, Path::new(""), MAX_DEPTH, &mut MAX_SCANNED_ENTRIES.clone())
+        elsewhere: find_below(folder, wanted, Path::new(""), MAX_DEPTH, &mut MAX_SCANNED_ENTRIES.clone())
             .map(|path| names::printable(path.as_os_str())),
     }
 }
@@ -43,7 +43,13 @@ fn format_entry(folder: &OpenFolder, name: &OsStr) -> String {
 }
 
 /// Returns the path of a file with a name below a folder; files in a folder come before those in its subfolders.
-fn deeper(folder: &OpenFolder, wanted: &OsStr, at: &Path, depth: u32, budget: &mut u32) -> Option<std::path::PathBuf> {
+fn find_below(
+    folder: &OpenFolder,
+    wanted: &OsStr,
+    at: &Path,
+    depth: u32,
+    budget: &mut u32,
+) -> Option<std::path::PathBuf> {
     let mut names = folder.names().ok()?;
     names.sort();
     let mut folders = Vec::new();
@@ -58,7 +64,7 @@ fn deeper(folder: &OpenFolder, wanted: &OsStr, at: &Path, depth: u32, budget: &m
     if depth == 0 {
         return None;
     }
-    folders.into_iter().find_map(|(name, inner)| deeper(&inner, wanted, &at.join(name), depth - 1, budget))
+    folders.into_iter().find_map(|(name, inner)| find_below(&inner, wanted, &at.join(name), depth - 1, budget))
 }
 
 #[cfg(test)]

@@ -9,7 +9,7 @@ use fosssim_model::{sim::Impulse, trace::LoggedImpulse};
 /// default.
 pub trait Progress {
     /// Observes the start of judging, after the initial record has been read.
-    fn begins(&mut self) {}
+    fn observe_begin(&mut self) {}
     /// Observes that a step is about to be judged; steps count from 1.
     fn step_begins(&mut self, _step: u32) {}
     /// Observes that a step has been judged.
@@ -45,9 +45,9 @@ impl Progress for () {}
 pub struct BothObservers<'a>(pub &'a mut dyn Progress, pub &'a mut dyn Progress);
 
 impl Progress for BothObservers<'_> {
-    fn begins(&mut self) {
-        self.0.begins();
-        self.1.begins();
+    fn observe_begin(&mut self) {
+        self.0.observe_begin();
+        self.1.observe_begin();
     }
 
     fn step_begins(&mut self, step: u32) {

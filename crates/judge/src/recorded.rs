@@ -82,7 +82,7 @@ fn compare(
         for index in 0..expected.polynomials.len() {
             tally.compare_polynomial(expected.polynomials.get(index), || places.at(index));
         }
-        tally.finish(&expected.state, layout.impulses, layout.polynomials);
+        tally.finish(&expected.state, layout.has_impulses, layout.has_polynomials);
         tally::accumulate(&mut outcome.parity.residuals, &result.residuals);
         outcome.parity.findings.counts += result.counts;
         if !damaged {
@@ -97,7 +97,7 @@ fn compare(
             outcome.steps_judged = step;
             progress.step_judged(step, &[]);
         } else if frame == 0 {
-            progress.begins();
+            progress.observe_begin();
         }
     }
     outcome.trailing_bytes = outcome.stop.is_none() && trace.has_more();

@@ -148,7 +148,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             self.outcome.stop = Some(stop);
             return self.conclude();
         }
-        progress.begins();
+        progress.observe_begin();
         let (mut current, mut next) = (Batch::default(), Batch::default());
         let mut stop = self.read_batch(&mut current);
         let mut workers = Workers::new(self.scene, options);
@@ -156,18 +156,19 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             // A trace that fits into one batch is judged before threads have started, unless threads were requested.
             let is_last = stop.is_some() || self.complete();
             let mut stop_after = None;
-            let at_once = !is_last && current.is_waiting() && current.bytes <= LARGE_BATCH_BYTES && workers.has_pool();
+            let at_once =
+                !is_last && current.poll_waiting() && current.bytes <= LARGE_BATCH_BYTES && workers.start_pool();
             if at_once {
                 let (shape, rest) = (self.shape, self.rest());
                 workers.judge_beside(&current, &shape, rest, || stop_after = self.read_batch(&mut next));
-            } else if current.is_waiting() {
+            } else if current.poll_waiting() {
                 workers.judge(&current, &self.shape, self.rest(), is_last);
             }
             let mut has_more = false;
             for (budget, work) in self.budgets.iter_mut().zip(current.work()) {
                 has_more |= work > budget.rest() && budget.widen();
             }
-            if has_more && current.is_waiting() {
+            if has_more && current.poll_waiting() {
                 workers.judge(&current, &self.shape, self.rest(), is_last);
             }
             if self.deliver(&mut current, progress, options) {
@@ -296,7 +297,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.order.clone_from(self.order.follow(slot.step, &self.state, self.budgets[0].rest()));
         let mut damage = None;
         let mut read = Ok(());
-        if self.shape.layout.polynomials {
+        if self.shape.layout.has_polynomials {
             if self.shape.fair.is_some() {
                 read = self.read_frame(&mut slot.mid, &mut damage);
             } else {
@@ -387,11 +388,11 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         let budget = &mut self.budgets[1];
         let mut has_judged = budget.spend(slot.fair_work);
         let frame = self.shape.layout.end_record(step);
-        let mid = self.shape.layout.polynomials.then_some(&slot.mid);
+        let mid = self.shape.layout.has_polynomials.then_some(&slot.mid);
         let records = Records { step, frame, before: &slot.before, mid, end: &slot.end };
         if let Some(error) = slot.error {
             // If the scene itself has no result, no answer is right.
-            has_judged &= reach.has_result(step);
+            has_judged &= reach.advance_to(step);
             slot.fair = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {
             let known = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair));
@@ -427,7 +428,7 @@ fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
 
 impl Batch {
     /// Returns whether a step of the batch is still to be judged.
-    fn is_waiting(&mut self) -> bool {
+    fn poll_waiting(&mut self) -> bool {
         self.slots[..self.filled].iter_mut().map(lock).any(|slot| !slot.is_done || !slot.is_done_fairly)
     }
 

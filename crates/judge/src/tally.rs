@@ -328,7 +328,7 @@ impl Observer for Tally<'_> {
     }
 
     /// Uses the mid record's state without comparing it (oracle-behavior.md 4.2).
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
 }

@@ -93,18 +93,18 @@ impl Instructions {
     /// Returns the widest instructions for `pairs` pairs in all steps of a scene, if the check is worth the time.
     #[must_use]
     pub fn for_pairs(pairs: u64) -> Self {
-        if pairs < MIN_PAIRS { Self::plain() } else { Self::default() }
+        if pairs < MIN_PAIRS { Self::scalar() } else { Self::default() }
     }
 
     /// Chooses the width for systems of linear equations with `unknowns` unknowns.
     #[must_use]
     pub fn for_unknowns(unknowns: usize) -> Self {
-        if unknowns < MIN_UNKNOWNS { Self::plain() } else { Self::default() }
+        if unknowns < MIN_UNKNOWNS { Self::scalar() } else { Self::default() }
     }
 
     /// Returns instructions with one lane, on every machine.
     #[must_use]
-    pub const fn plain() -> Self {
+    pub const fn scalar() -> Self {
         Self(Arch::Scalar)
     }
 
@@ -153,7 +153,7 @@ impl<S: Simd> Lanes<S> {
 
     /// Returns one number in as many lanes as `self` has.
     #[inline(always)]
-    pub fn like(self, value: f64) -> Self {
+    pub fn splat_like(self, value: f64) -> Self {
         Self::all(self.simd, value)
     }
 
@@ -235,19 +235,19 @@ impl<S: Simd> Lanes<S> {
     /// Returns the lanes whose number is less than `bound`.
     #[inline(always)]
     pub fn below(self, bound: f64) -> Mask<S> {
-        self.lt(self.like(bound))
+        self.lt(self.splat_like(bound))
     }
 
     /// Returns the lanes whose number is at least `bound`.
     #[inline(always)]
     pub fn at_least(self, bound: f64) -> Mask<S> {
-        self.like(bound).le(self)
+        self.splat_like(bound).le(self)
     }
 
     /// Returns the lanes whose number is zero.
     #[inline(always)]
     pub fn is_zero(self) -> Mask<S> {
-        Mask { simd: self.simd, lanes: self.simd.equal_f64s(self.values, self.like(0.0).values) }
+        Mask { simd: self.simd, lanes: self.simd.equal_f64s(self.values, self.splat_like(0.0).values) }
     }
 }
 
@@ -408,7 +408,7 @@ mod tests {
 
     #[test]
     fn the_numbers_of_a_lane_stand_one_behind_the_other() {
-        for instructions in [Instructions::default(), Instructions::plain()] {
+        for instructions in [Instructions::default(), Instructions::scalar()] {
             let (count, rows) = instructions.run(Rows);
             assert_eq!(rows.len(), 9 * count);
             for (lane, row) in rows.chunks(9).enumerate() {

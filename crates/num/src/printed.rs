@@ -8,7 +8,7 @@ const DIGITS: i32 = 6;
 /// `0.00282843`, `1e+06`, `inf`, `-inf`, `nan` or, with the sign bit set, `-nan`. Rounds to nearest, exact ties to
 /// even, as the library does.
 #[must_use]
-pub fn general(value: f64) -> String {
+pub fn format_g(value: f64) -> String {
     let sign = if value.is_sign_negative() { "-" } else { "" };
     if value.is_nan() {
         return format!("{sign}nan");
@@ -45,7 +45,7 @@ pub fn exact(value: f64) -> String {
     } else if value.is_finite() {
         format!("{value:e}")
     } else {
-        general(value)
+        format_g(value)
     }
 }
 
@@ -110,15 +110,15 @@ mod tests {
             (f64::NAN.copysign(-1.0), "-nan"),
         ];
         for (value, text) in cases {
-            assert_eq!(general(value), text, "{value:?}");
+            assert_eq!(format_g(value), text, "{value:?}");
         }
     }
 
     #[test]
     fn general_rounds_exact_ties_to_even() {
-        assert_eq!(general(1_000_005.0), "1e+06");
-        assert_eq!(general(1_000_015.0), "1.00002e+06");
-        assert_eq!(general(100_000.5), "100000");
-        assert_eq!(general(100_001.5), "100002");
+        assert_eq!(format_g(1_000_005.0), "1e+06");
+        assert_eq!(format_g(1_000_015.0), "1.00002e+06");
+        assert_eq!(format_g(100_000.5), "100000");
+        assert_eq!(format_g(100_001.5), "100002");
     }
 }

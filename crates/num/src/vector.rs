@@ -2,7 +2,7 @@
 //!
 //! The vectors are nalgebra's, whose sums, products and inner product are rounded as the specification requires
 //! (`simulation.md`, conventions). **No code divides or normalizes them with nalgebra's operations**: the original
-//! multiplies by the reciprocal where a library divides each component. Use [`over`] and [`unit`](fn@unit); the lints
+//! multiplies by the reciprocal where a library divides each component. Use [`divide`] and [`unit`](fn@unit); the lints
 //! of the numeric crates enforce this.
 use nalgebra::{MatrixView2xX, Vector2};
 
@@ -12,7 +12,7 @@ pub type Vec2 = Vector2<f64>;
 /// Returns `v / s`, evaluated like the original: `r = 1/s`, then `(r*v.x, r*v.y)`. `s = 0` gives infinities or NaN.
 #[inline]
 #[must_use]
-pub fn over(v: Vec2, s: f64) -> Vec2 {
+pub fn divide(v: Vec2, s: f64) -> Vec2 {
     let reciprocal = 1.0 / s;
     Vec2::new(reciprocal * v.x, reciprocal * v.y)
 }
@@ -79,9 +79,9 @@ mod tests {
     #[test]
     fn a_vector_is_divided_by_way_of_the_reciprocal() {
         let reciprocal = 1.0 / 3.0;
-        assert_eq!(bits(over(Vec2::new(5.0, -7.0), 3.0)), bits(Vec2::new(reciprocal * 5.0, reciprocal * -7.0)));
-        assert!(over(Vec2::new(5.0, 0.0), 3.0).x < 5.0 / 3.0);
-        assert_eq!(over(Vec2::new(1.0, -1.0), 0.0), Vec2::new(f64::INFINITY, f64::NEG_INFINITY));
+        assert_eq!(bits(divide(Vec2::new(5.0, -7.0), 3.0)), bits(Vec2::new(reciprocal * 5.0, reciprocal * -7.0)));
+        assert!(divide(Vec2::new(5.0, 0.0), 3.0).x < 5.0 / 3.0);
+        assert_eq!(divide(Vec2::new(1.0, -1.0), 0.0), Vec2::new(f64::INFINITY, f64::NEG_INFINITY));
     }
 
     #[test]
@@ -127,7 +127,7 @@ mod tests {
     fn division_differs_which_is_why_nobody_may_use_it() {
         let differs = |n: u32| {
             let (vector, divisor) = (Vec2::new(f64::from(n), 1.0), 1.0 + f64::from(n) / 7.0);
-            bits(over(vector, divisor)) != bits(vector / divisor)
+            bits(divide(vector, divisor)) != bits(vector / divisor)
         };
         assert!((1..1000).any(differs));
     }

@@ -1,8 +1,8 @@
 //! Serializes numbers so that they read back bit for bit, except the bits of a NaN.
 //!
-//! Formats such as JSON have no infinity and no NaN, so these are written as C++ prints them ([`general`]). Fields of
+//! Formats such as JSON have no infinity and no NaN, so these are written as C++ prints them ([`format_g`]). Fields of
 //! numbers use `#[serde(with = "fosssim_num::written")]`.
-use super::{printed::general, vector::Vec2};
+use super::{printed::format_g, vector::Vec2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, de::Error};
 use std::borrow::Cow;
 
@@ -14,7 +14,7 @@ impl Serialize for Number {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self.0.is_finite() {
             true => serializer.serialize_f64(self.0),
-            false => serializer.serialize_str(&general(self.0)),
+            false => serializer.serialize_str(&format_g(self.0)),
         }
     }
 }

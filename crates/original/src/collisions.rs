@@ -1,7 +1,7 @@
 //! The original's messages about collisions that do not match (oracle-behavior.md 6.1).
 use fosssim_judge::replay::Remark;
 use fosssim_model::trace::LoggedImpulse;
-use fosssim_num::{printed::general, vector::Vec2};
+use fosssim_num::{printed::format_g, vector::Vec2};
 
 /// The line above the collisions of a step.
 pub(crate) const HEADER: &str = "Collision Detection Error: \n";
@@ -31,7 +31,7 @@ fn describe(impulse: &LoggedImpulse) -> String {
 
 /// Returns both components; the first is padded to the length of the second, never the reverse.
 fn direction(normal: Vec2) -> String {
-    let (x, y) = (general(normal.x), general(normal.y));
+    let (x, y) = (format_g(normal.x), format_g(normal.y));
     format!("{x:>width$} {y}", width = y.len())
 }
 

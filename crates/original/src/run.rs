@@ -6,7 +6,7 @@ use crate::{
     verdict::residual_file,
     words::{INPUT_AND_OUTPUT, NO_PICTURE_FOLDER, NO_VORTEX_HESSIAN, not_opened},
 };
-use fosssim_files::{Identity, open_for_reading, open_for_writing, patient, read_limited};
+use fosssim_files::{Identity, open_for_reading, open_for_writing, read_limited, with_timeout};
 use fosssim_judge::{Stop, Unreadable, WithoutResult, replay, replay::Progress};
 use fosssim_model::{
     scene::{
@@ -94,7 +94,7 @@ fn without_folder(
             Err(message) => return complain(message),
         }
     }
-    transcript.begins();
+    transcript.observe_begin();
     transcript.closes();
     drop(transcript.finish());
     complain(NO_PICTURE_FOLDER)
@@ -161,7 +161,7 @@ fn create_now(name: &Path) -> io::Result<File> {
 /// Opens the trace; a directory can be opened and reads as an empty file.
 fn open(name: &Path) -> io::Result<Box<dyn Read + Send>> {
     let (file, metadata) = open_for_reading(name)?;
-    if metadata.is_dir() { Ok(Box::new(io::empty())) } else { patient(file, &metadata) }
+    if metadata.is_dir() { Ok(Box::new(io::empty())) } else { with_timeout(file, &metadata) }
 }
 
 /// Simulates a scene, and records it into `file`.
@@ -173,7 +173,7 @@ fn simulate<W: Write>(
 ) -> u8 {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(file, Layout::for_scene(scene), simulation.state());
-    transcript.begins();
+    transcript.observe_begin();
     let mut stopped = None;
     for step in 1..=scene.steps() {
         transcript.step_begins(step);

@@ -8,7 +8,7 @@ use fosssim_judge::{
     replay::{Progress, Remark},
 };
 use fosssim_model::scene::{Integrator, Scene};
-use fosssim_num::printed::general;
+use fosssim_num::printed::format_g;
 use std::{
     io::{self, Write},
     time::Instant,
@@ -84,7 +84,7 @@ impl<'a, W: Write> Transcript<'a, W> {
     pub(crate) fn completes(&mut self) {
         self.print_dot(self.steps);
         let time = f64::from(self.steps) * self.heading.scene.time_step;
-        self.print_message(&format!("Simulation complete at time {}. Exiting.", general(time)));
+        self.print_message(&format!("Simulation complete at time {}. Exiting.", format_g(time)));
     }
 
     /// Prints the exit handler's line of a run without a verdict, after the file is closed.
@@ -168,9 +168,9 @@ impl<'a, W: Write> Transcript<'a, W> {
     pub(crate) fn step_ends(&mut self, step: u32) {
         let Some(clock) = &mut self.clock else { return };
         let now = Instant::now();
-        let [frame, total] = [now - clock.frame, now - clock.start].map(|time| general(time.as_secs_f64()));
+        let [frame, total] = [now - clock.frame, now - clock.start].map(|time| format_g(time.as_secs_f64()));
         clock.frame = now;
-        let time = general(f64::from(step) * self.heading.scene.time_step);
+        let time = format_g(f64::from(step) * self.heading.scene.time_step);
         self.write(format!("T: {time}\nFrame run time: {frame}s. Total run time: {total}s. \n").as_bytes());
     }
 
@@ -208,7 +208,7 @@ impl<'a, W: Write> Transcript<'a, W> {
 }
 
 impl<W: Write> Progress for Transcript<'_, W> {
-    fn begins(&mut self) {
+    fn observe_begin(&mut self) {
         self.banner();
     }
 
@@ -319,7 +319,7 @@ mod tests {
         let heading =
             Heading { scene_name: b"a/\xff.xml", scene: &scene, description: b"d\xe9", task: Task::Record(b"o") };
         let mut transcript = Transcript::new(Vec::new(), heading);
-        transcript.begins();
+        transcript.observe_begin();
         let bytes = transcript.finish().unwrap();
         let start = "\x1b[32;1m------------------------------------------    \n  _____ ___  ____ ____ ____  _                \n";
         assert!(bytes.starts_with(start.as_bytes()));
@@ -338,7 +338,7 @@ mod tests {
         for (count, dots) in [(200, 49), (50, 49), (34, 34), (5, 5), (0, 0)] {
             let scene = scene(count);
             let text = after_heading(&scene, Task::Run, |transcript| {
-                transcript.begins();
+                transcript.observe_begin();
                 steps(transcript, 1..=count);
                 transcript.completes();
                 transcript.closes();
@@ -355,7 +355,7 @@ mod tests {
         let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
         let missed = Remark::Missed(Impulse { pair, normal: Vec2::new(0.4, 0.0), time: 0.25 });
         let text = after_heading(&scene, Task::Grade(b"m.bin"), |transcript| {
-            transcript.begins();
+            transcript.observe_begin();
             steps(transcript, 1..=59);
             transcript.step_begins(60);
             transcript.step_judged(60, &[missed, Remark::Polynomials(FindingKind::PolynomialDegree, 2)]);
@@ -393,7 +393,7 @@ mod tests {
         let mut scene = scene(0);
         scene.time_step = -0.01;
         let text = after_heading(&scene, Task::Record(b"o"), |transcript| {
-            transcript.begins();
+            transcript.observe_begin();
             transcript.completes();
             transcript.closes();
         });

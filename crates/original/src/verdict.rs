@@ -2,7 +2,7 @@
 use crate::words::{PINK, PLAIN};
 use fosssim_judge::{Outcome, Overall, Residuals};
 use fosssim_model::assignments::Definition;
-use fosssim_num::printed::general;
+use fosssim_num::printed::format_g;
 
 /// The original's names of the residuals, in its order.
 const NAMES: [&str; 4] = [
@@ -20,7 +20,7 @@ pub(crate) fn lines(outcome: &Outcome, collisions: &str) -> String {
     }
     let mut text = String::new();
     for (name, (value, bound)) in NAMES.into_iter().zip(outcome.parity.residuals.with_bounds()) {
-        text += &format!("{name}: {}   {}\n", general(value), describe_passed(value < bound));
+        text += &format!("{name}: {}   {}\n", format_g(value), describe_passed(value < bound));
     }
     let passed_collisions = if outcome.parity.collisions_passed == Some(true) { "Yes." } else { "No." };
     text += &format!("{collisions}: {passed_collisions}\n");
@@ -33,7 +33,7 @@ pub(crate) fn lines(outcome: &Outcome, collisions: &str) -> String {
 pub(crate) fn incomplete(residuals: &Residuals) -> String {
     let mut text = String::new();
     for (name, (value, _)) in NAMES.into_iter().zip(residuals.with_bounds()) {
-        text += &format!("{name}: {}\n", general(value));
+        text += &format!("{name}: {}\n", format_g(value));
     }
     text += &format!(
         "{PINK}FOSSSim message: {PLAIN}Simulation did not run to completion. No pass/fail status will be reported.\n"
@@ -48,7 +48,7 @@ pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Optio
     if outcome.parity.overall == Overall::None {
         return None;
     }
-    let line = |(value, bound): (f64, f64)| format!("{}   {}\n", u8::from(value < bound), general(value));
+    let line = |(value, bound): (f64, f64)| format!("{}   {}\n", u8::from(value < bound), format_g(value));
     let mut text: String = outcome.parity.residuals.with_bounds().into_iter().map(line).collect();
     if assignment.prints_times {
         text += &format!("{}\n", u8::from(outcome.parity.collisions_passed == Some(true)));

@@ -67,7 +67,7 @@ impl Extent {
     /// Returns this box, limited to a few times the size of `start` around it, so that a body that flies away does not
     /// reduce the others to dots.
     #[must_use]
-    pub fn near(&self, start: &Self) -> Self {
+    pub fn limited_to(&self, start: &Self) -> Self {
         if start.is_empty() || self.is_empty() {
             return *self;
         }
@@ -190,7 +190,7 @@ mod tests {
         let start = Extent::for_scene(&scene, &[-2.0, 0.0, 2.0, 1.0]);
         let mut run = start;
         run.add(&scene, &[-2.0, 0.0, 5000.0, 1.0]);
-        assert_eq!(run.near(&start).high.x, 10.0);
-        assert_eq!(start.near(&start), start);
+        assert_eq!(run.limited_to(&start).high.x, 10.0);
+        assert_eq!(start.limited_to(&start), start);
     }
 }

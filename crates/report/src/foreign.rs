@@ -48,11 +48,11 @@ fn length_of_code(code: &str) -> Option<usize> {
     }
 }
 
-/// Returns the output of a program as [`plain`] text, without a terminal's codes. Names keep the codes; otherwise two
-/// names could look the same.
+/// Returns the output of a program as [`strip_control_characters`] text, without a terminal's codes. Names keep the
+/// codes; otherwise two names could look the same.
 #[must_use]
 pub fn clean_output(text: &str) -> String {
-    plain(&without_codes(text))
+    strip_control_characters(&without_codes(text))
 }
 
 /// Returns a word, quoted for a shell.
@@ -75,7 +75,7 @@ pub(crate) const fn is_unseen(c: char) -> bool {
 /// Returns text from others without control characters. Escape codes, bells and NULs become visible, line breaks and
 /// tabs stay, and invisible characters and those that XML 1.0 forbids are replaced.
 #[must_use]
-pub fn plain(text: &str) -> String {
+pub fn strip_control_characters(text: &str) -> String {
     // This is the case for nearly all texts, of which a class has tens of thousands.
     if is_visible_ascii(text) {
         return text.to_owned();
@@ -94,10 +94,10 @@ pub fn plain(text: &str) -> String {
     plain
 }
 
-/// Returns the text of [`plain`] on one line.
+/// Returns the text of [`strip_control_characters`] on one line.
 #[must_use]
 pub fn one_line(text: &str) -> String {
-    plain(text).replace(['\n', '\t'], " ")
+    strip_control_characters(text).replace(['\n', '\t'], " ")
 }
 
 #[cfg(test)]
@@ -106,17 +106,24 @@ mod tests {
 
     #[test]
     fn control_characters_become_visible() {
-        assert_eq!(plain("a\u{1b}[31mb\0\u{7}\r\nc\td\u{202e}e"), "a\\x1b[31mb\\x00\\x07\nc\td\u{fffd}e");
+        assert_eq!(
+            strip_control_characters("a\u{1b}[31mb\0\u{7}\r\nc\td\u{202e}e"),
+            "a\\x1b[31mb\\x00\\x07\nc\td\u{fffd}e"
+        );
         let log = "\u{1b}[32;1mOverall success: \u{1b}[31;1mFailed.\u{1b}[m";
         assert_eq!(clean_output(log), "Overall success: Failed.");
         assert_eq!(clean_output("\u{1b}]0;title\u{7}a\u{1b}]8;;x\u{1b}\\b"), "ab");
         assert_eq!(clean_output("a\u{1b}[31\u{1b}c\u{1b}"), "a\\x1b[31\\x1bc\\x1b", "what is no whole code is seen");
         for hidden in "\u{61c}\u{2069}\u{200b}\u{feff}\u{2028}\u{ad}\u{e0041}".chars() {
-            assert_eq!(plain(&format!("a{hidden}b")), "a\u{fffd}b", "{hidden:?}");
+            assert_eq!(strip_control_characters(&format!("a{hidden}b")), "a\u{fffd}b", "{hidden:?}");
         }
         assert_eq!(one_line("a\nb"), "a b");
         for c in (0..128_u8).map(char::from) {
-            assert_eq!(plain(&format!("a{c}b")) + "\u{e9}", plain(&format!("a{c}b\u{e9}")), "{c:?}");
+            assert_eq!(
+                strip_control_characters(&format!("a{c}b")) + "\u{e9}",
+                strip_control_characters(&format!("a{c}b\u{e9}")),
+                "{c:?}"
+            );
         }
     }
 

@@ -2,7 +2,7 @@
 //!
 //! The functions are pure.
 
-pub use fosssim_num::printed::general;
+pub use fosssim_num::printed::format_g;
 
 /// Returns the shortest text that reads back as the same number, without the sign of a zero, which nobody computes.
 #[must_use]
@@ -25,7 +25,7 @@ const ZERO_BOUND: f64 = 1e-13;
 
 /// Returns a number as in a calculation by hand: short decimals, a short fraction, or six digits.
 pub(crate) fn short(value: f64) -> String {
-    format_tidy(if value.abs() < ZERO_BOUND { 0.0 } else { value }, general)
+    format_tidy(if value.abs() < ZERO_BOUND { 0.0 } else { value }, format_g)
 }
 
 /// Returns short decimals or a short fraction if the number equals one up to a few roundings; otherwise the result of
@@ -64,7 +64,7 @@ pub fn format_count(value: u64, noun: &str) -> String {
 /// that differs. Also returns the position in both texts where they begin to differ; `None` if they are equal.
 #[must_use]
 pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>) {
-    let texts = in_one_notation(expected, actual).unwrap_or_else(|| (general(expected), general(actual)));
+    let texts = in_one_notation(expected, actual).unwrap_or_else(|| (format_g(expected), format_g(actual)));
     let (one, other) = (texts.0.as_bytes(), texts.1.as_bytes());
     let common = one.iter().zip(other).take_while(|(one, other)| one == other).count();
     let parts = expected.to_bits() != actual.to_bits() && texts.0 != texts.1;

@@ -2,7 +2,7 @@
 //! computation by hand.
 use crate::{
     explain::{ExplanationView, lines},
-    foreign::{plain, quote},
+    foreign::{quote, strip_control_characters},
     number::format_count,
     style::{Look, Style},
     view::{FindingView, view},
@@ -43,17 +43,17 @@ view! {
     #[schemars(deny_unknown_fields)]
     pub(crate) struct SmallestView from small: SmallestScene {
         /// The name of the original scene.
-        origin: String = plain(&small.origin),
+        origin: String = strip_control_characters(&small.origin),
         /// The content of the scene file.
         scene: String = small.xml.clone(),
         /// The command that reproduces the scene.
-        again: String = plain(&small.again),
+        again: String = strip_control_characters(&small.again),
         /// The number of times that the program was run.
         runs: u32 = small.runs,
         /// Whether no single change makes the scene smaller; false if the search was stopped early.
         minimal: bool = small.is_minimal,
         /// The end of the program, if it did not end well.
-        note: Option<String> = small.note.as_deref().map(plain),
+        note: Option<String> = small.note.as_deref().map(strip_control_characters),
         /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &small.first {
             Some(DisclosedFinding::Full(finding)) => Some(FindingView::from_finding(Book::Fair, finding)),

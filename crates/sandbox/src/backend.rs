@@ -186,7 +186,7 @@ impl Backend {
     /// [`Backend::without_sandbox`].
     pub fn best(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
-        let walls = layers::walls(&reports).map_err(missing_layers)?;
+        let walls = layers::select_layers(&reports).map_err(missing_layers)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
@@ -195,7 +195,7 @@ impl Backend {
     fn with(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
         let kind = match &self.kind {
             Kind::Launcher { supervisor, .. } => {
-                let walls = layers::walls(&reports).map_err(missing_layers)?;
+                let walls = layers::select_layers(&reports).map_err(missing_layers)?;
                 Kind::launcher(supervisor.clone(), Walls { landlock_version, ..walls })
             }
             Kind::Fake(script) => Kind::Fake(script.clone()),

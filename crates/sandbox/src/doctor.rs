@@ -10,7 +10,7 @@ use super::{
 /// The program must call [`supervisor_main`](super::supervisor_main) first in its `main`. If the supervisor does not
 /// start, every layer is reported as missing for that reason.
 #[must_use]
-pub fn doctor() -> Vec<LayerReport> {
+pub fn check_host() -> Vec<LayerReport> {
     match Supervisor::this_program().probe() {
         Ok(probe) => reports(&probe),
         Err(error) => Layer::ALL

@@ -257,7 +257,7 @@ pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerRe
 }
 
 /// Returns the layers that the supervisor sets up, from the reports. The error names missing required layers.
-pub(super) fn walls(reports: &[LayerReport]) -> Result<Walls, String> {
+pub(super) fn select_layers(reports: &[LayerReport]) -> Result<Walls, String> {
     let missing = missing(reports);
     if missing.is_empty() { Ok(active(reports)) } else { Err(missing.join("\n")) }
 }
@@ -337,28 +337,28 @@ mod tests {
             namespaces: true,
             group: true,
         };
-        assert_eq!(walls(&reports(&healthy(true))), Ok(all));
-        assert_eq!(walls(&reports(&healthy(false))), Ok(Walls { own_user: false, ..all }));
+        assert_eq!(select_layers(&reports(&healthy(true))), Ok(all));
+        assert_eq!(select_layers(&reports(&healthy(false))), Ok(Walls { own_user: false, ..all }));
         assert_eq!(reports(&healthy(true)).iter().map(|report| report.layer).collect::<Vec<_>>(), Layer::ALL);
     }
 
     #[test]
     fn without_landlock_only_root_with_namespaces_may_grade() {
         let missing_layers = |root| Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(root) };
-        assert!(!walls(&reports(&missing_layers(true))).unwrap().landlock);
+        assert!(!select_layers(&reports(&missing_layers(true))).unwrap().landlock);
         let bare = Probe { namespaces: Some("not permitted".into()), ..missing_layers(true) };
-        let missing = walls(&reports(&bare)).unwrap_err();
+        let missing = select_layers(&reports(&bare)).unwrap_err();
         assert!(missing.contains("file rules") && missing.contains("this grader included"), "{missing}");
         let bare = without(&without(&reports(&healthy(true)), Layer::Namespaces), Layer::FileRules);
-        assert!(walls(&bare).is_err());
-        let missing = walls(&reports(&missing_layers(false))).unwrap_err();
+        assert!(select_layers(&bare).is_err());
+        let missing = select_layers(&reports(&missing_layers(false))).unwrap_err();
         assert!(missing.contains("file rules") && missing.contains("5.13"), "{missing}");
     }
 
     #[test]
     fn root_that_cannot_change_its_user_is_refused() {
         let bound = Probe { own_user: Some("invalid argument".into()), ..healthy(true) };
-        assert!(walls(&reports(&bound)).unwrap_err().contains("ordinary user"));
+        assert!(select_layers(&reports(&bound)).unwrap_err().contains("ordinary user"));
     }
 
     #[test]
@@ -367,7 +367,7 @@ mod tests {
         let walls = available_layers(&reports(&missing_layers)).unwrap();
         assert!(!walls.landlock && walls.seccomp && walls.notify);
         assert_eq!(missing(&reports(&missing_layers)).len(), 1);
-        assert_eq!(available_layers(&reports(&healthy(true))), super::walls(&reports(&healthy(true))));
+        assert_eq!(available_layers(&reports(&healthy(true))), super::select_layers(&reports(&healthy(true))));
         let filterless = Probe { seccomp: Some("none".into()), ..healthy(true) };
         let walls = available_layers(&reports(&filterless)).unwrap();
         assert!(walls.own_user && walls.landlock && !walls.seccomp && !walls.notify);
@@ -382,16 +382,16 @@ mod tests {
     #[test]
     fn a_required_wall_cannot_be_taken_away() {
         let healthy = |root| reports(&healthy(root));
-        assert!(walls(&without(&healthy(true), Layer::CallFilter)).is_err());
-        assert!(walls(&without(&healthy(false), Layer::FileRules)).is_err());
-        let walls = walls(&without(&healthy(true), Layer::FileRules)).unwrap();
+        assert!(select_layers(&without(&healthy(true), Layer::CallFilter)).is_err());
+        assert!(select_layers(&without(&healthy(false), Layer::FileRules)).is_err());
+        let walls = select_layers(&without(&healthy(true), Layer::FileRules)).unwrap();
         assert!(!walls.landlock && !walls.scopes && walls.seccomp);
     }
 
     #[test]
     fn an_old_landlock_confines_files_and_not_signals() {
         let old = Probe { landlock_abi: 2, ..healthy(false) };
-        let walls = walls(&reports(&old)).unwrap();
+        let walls = select_layers(&reports(&old)).unwrap();
         assert!(walls.landlock && !walls.scopes);
     }
 }

@@ -50,7 +50,7 @@ mod sys;
 mod wire;
 
 pub use backend::{Backend, Supervisor};
-pub use doctor::doctor;
+pub use doctor::check_host;
 pub use fake::FakeRun;
 pub use fault::SandboxError;
 pub use job::{Job, Limits, Policy, ProgramIdentity};

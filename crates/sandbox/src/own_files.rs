@@ -112,7 +112,7 @@ pub(super) enum AllowedPath {
 /// Returns the rules that allow everything at and below `path` except `own` (resolved paths).
 ///
 /// Links below a split folder are left out; their targets are allowed at their own paths, or not at all.
-pub(super) fn around(path: &Path, own: &[PathBuf]) -> Vec<AllowedPath> {
+pub(super) fn allow_all_except(path: &Path, own: &[PathBuf]) -> Vec<AllowedPath> {
     let Ok(path) = path.canonicalize() else { return Vec::new() };
     let mut allowed = Vec::new();
     let mut left = vec![path];
@@ -146,7 +146,7 @@ mod tests {
         }
         std::os::unix::fs::symlink("fosssim-oracle", root.join("local/bin/innocent")).unwrap();
         let own = [root.join("local/bin/fosssim-oracle")];
-        let whole: Vec<PathBuf> = around(&root, &own)
+        let whole: Vec<PathBuf> = allow_all_except(&root, &own)
             .into_iter()
             .filter_map(|allowed| match allowed {
                 AllowedPath::Whole(path) => Some(path),
@@ -155,8 +155,8 @@ mod tests {
             .collect();
         assert_eq!(whole.len(), 2, "{whole:?}");
         assert!(whole.contains(&root.join("lib")) && whole.contains(&root.join("local/bin/python3")));
-        assert_eq!(around(&own[0], &own), []);
-        assert_eq!(around(&root.join("lib"), &own), [AllowedPath::Whole(root.join("lib"))]);
+        assert_eq!(allow_all_except(&own[0], &own), []);
+        assert_eq!(allow_all_except(&root.join("lib"), &own), [AllowedPath::Whole(root.join("lib"))]);
     }
 
     #[test]

@@ -46,7 +46,7 @@ pub async fn fail(
     }
     let row = find_job(transaction, lease.job).await?;
     if failure == Failure::Buried {
-        bury(transaction, lease.job, lease.attempt, fault).await?;
+        give_up(transaction, lease.job, lease.attempt, fault).await?;
     } else {
         note(transaction, &row, "failed try", fault).await?;
     }
@@ -132,12 +132,12 @@ async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> 
 
 async fn bury_all(transaction: &mut Transaction, jobs: &[BuriedJob]) -> Result<(), DbError> {
     for job in jobs {
-        bury(transaction, job.job, job.attempt, &job.fault).await?;
+        give_up(transaction, job.job, job.attempt, &job.fault).await?;
     }
     Ok(())
 }
 
-async fn bury(transaction: &mut Transaction, job: i64, attempt: i64, fault: &str) -> Result<(), DbError> {
+async fn give_up(transaction: &mut Transaction, job: i64, attempt: i64, fault: &str) -> Result<(), DbError> {
     let row = write_result(transaction, job, attempt, &Outcome::judge_error()).await?;
     if row.submission.is_none() && score::give_up(transaction, &row.task, fault).await? {
         return Ok(());

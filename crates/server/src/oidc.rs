@@ -225,10 +225,10 @@ impl Provider {
         })?;
         let token = answer.id_token().ok_or_else(|| untrusted_answer(anyhow!("the provider returned no ID token")))?;
         let nonce = Nonce::new(words.nonce);
-        let claims = match claims(&client, token, &nonce) {
+        let claims = match verify_token(&client, token, &nonce) {
             // Providers change their keys.
             Err(ClaimsVerificationError::SignatureVerification(SignatureVerificationError::NoMatchingKey)) => {
-                claims(&self.client(MIN_PAUSE, redirect).await?, token, &nonce)
+                verify_token(&self.client(MIN_PAUSE, redirect).await?, token, &nonce)
             }
             claims => claims,
         };
@@ -271,7 +271,7 @@ impl Provider {
 }
 
 /// Checks a token: the provider signed it for this client and this sign-in, and it has not expired.
-fn claims<'a>(
+fn verify_token<'a>(
     client: &Client,
     token: &'a CoreIdToken,
     nonce: &Nonce,

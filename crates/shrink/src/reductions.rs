@@ -19,11 +19,11 @@ fn remove_parts(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>
     let lengths = std::iter::successors(Some(count / 2), |length| Some(length / 2)).take_while(|length| *length > 0);
     // From the end, so that the rest keeps its numbers as long as possible.
     let ranges = lengths.flat_map(|length| (0..count).step_by(length).rev().map(move |start| start..start + length));
-    std::iter::once(1..count).chain(ranges).skip(index).map(|range| vec![without(scene, &range)]).next()
+    std::iter::once(1..count).chain(ranges).skip(index).map(|range| vec![without_parts(scene, &range)]).next()
 }
 
 /// Returns a scene without these parts and all that depends on them: edges with their ends, forces with their bodies.
-fn without(scene: &Scene, parts: &Range<usize>) -> Scene {
+fn without_parts(scene: &Scene, parts: &Range<usize>) -> Scene {
     let (mut scene, mut part) = (scene.clone(), 0..);
     let mut stays = || part.next().is_some_and(|part| !parts.contains(&part));
     let set = |new: &[Option<usize>], index: &mut usize| new[*index].inspect(|new| *index = *new).is_some();
@@ -112,7 +112,7 @@ fn round(value: f64, decimals: usize) -> f64 {
 fn round_number(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let mut copy = scene.clone();
     let (kind, value) = numbers(&mut copy).into_iter().nth(index).map(|(kind, value)| (kind, *value))?;
-    let plain = [kind.plain(), 0.0, 1.0, 2.0, 0.5, 3.0, 4.0, -value, -1.0, -2.0];
+    let plain = [kind.simplest_value(), 0.0, 1.0, 2.0, 0.5, 3.0, 4.0, -value, -1.0, -2.0];
     let whole = [value.trunc(), value.trunc() + value.signum()];
     let new = plain.into_iter().chain(whole).chain((0..=4).map(|decimals| round(value, decimals)));
     let with = |new: f64| {

@@ -27,7 +27,7 @@ pub(crate) enum NumberKind {
 
 impl NumberKind {
     /// Returns the simplest value, which needs no thought.
-    pub(crate) fn plain(self) -> f64 {
+    pub(crate) fn simplest_value(self) -> f64 {
         f64::from(u8::from(self == Self::Factor))
     }
 }
@@ -91,7 +91,7 @@ pub(crate) type Size = ([usize; 7], f64);
 pub(crate) fn size(scene: &Scene) -> Size {
     use Integrator::{ExplicitEuler, ForwardBackwardEuler, ImplicitEuler, LinearizedImplicitEuler, SymplecticEuler};
     let mut copy = scene.clone();
-    let not_plain = numbers(&mut copy).into_iter().filter(|(kind, value)| **value != kind.plain());
+    let not_plain = numbers(&mut copy).into_iter().filter(|(kind, value)| **value != kind.simplest_value());
     let (mut written, mut magnitude) = (0, 0.0);
     for (_, value) in not_plain {
         written += digits(*value);

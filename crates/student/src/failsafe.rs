@@ -1,14 +1,14 @@
 //! The rigid failsafe: an impact zone moves as one rigid body, or stops (collisions.md 5, last part).
 use fosssim_num::{
     elementary,
-    vector::{Vec2, at, length, over, put},
+    vector::{Vec2, at, divide, length, put},
 };
 
 use super::{
     Area, Mistake,
     author::Student,
     objects::{State, Zone},
-    rounding::single,
+    rounding::round_to_f32,
     world::World,
 };
 
@@ -38,7 +38,7 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
         return;
     }
     if stops(world, zone) {
-        stop(world, zone, q_start, state);
+        stop_zone(world, zone, q_start, state);
     } else {
         let rigid = RigidBody::new(world, zone, q_start, state);
         if mistake != Some(Mistake::FailsafeUnturnedUnmoved) || rigid.angle != 0.0 {
@@ -70,7 +70,7 @@ fn particles(world: &World, zone: &Zone) -> Vec<usize> {
     }
 }
 
-fn stop(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
+fn stop_zone(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     for particle in particles(world, zone) {
         if world.student.makes(Mistake::FailsafeStopsFixedOnly) && !world.is_fixed(particle) {
             continue;
@@ -147,16 +147,16 @@ impl<'a> RigidBody<'a> {
             total += mass;
             match self.mistake() {
                 Some(Mistake::FailsafeMassInteger) => total = total.trunc(),
-                Some(Mistake::FailsafeSumsSingle) => total = single(total),
+                Some(Mistake::FailsafeSumsSingle) => total = round_to_f32(total),
                 _ => {}
             }
         }
         #[expect(clippy::cast_precision_loss, reason = "a number of particles")]
         let count = zone.particles.len() as f64;
         let by_count = is_unweighted(Mistake::FailsafeCenterUnweighted);
-        self.center = over(self.center, if by_count { count } else { total });
+        self.center = divide(self.center, if by_count { count } else { total });
         let by_count = is_unweighted(Mistake::FailsafeMomentumUnweighted);
-        self.shift = over(self.shift, if by_count { count } else { total });
+        self.shift = divide(self.shift, if by_count { count } else { total });
         if self.mistake() == Some(Mistake::FailsafeNoTranslation) {
             self.shift = Vec2::zeros();
         }
@@ -208,7 +208,9 @@ impl<'a> RigidBody<'a> {
             match self.mistake() {
                 Some(Mistake::FailsafeAngularInteger) => momentum = momentum.trunc(),
                 Some(Mistake::FailsafeInertiaInteger) => inertia = inertia.trunc(),
-                Some(Mistake::FailsafeSumsSingle) => (momentum, inertia) = (single(momentum), single(inertia)),
+                Some(Mistake::FailsafeSumsSingle) => {
+                    (momentum, inertia) = (round_to_f32(momentum), round_to_f32(inertia))
+                }
                 _ => {}
             }
         }
@@ -268,10 +270,10 @@ impl<'a> RigidBody<'a> {
             let v = match self.mistake() {
                 Some(Mistake::FailsafeVelocityKept) => before,
                 Some(Mistake::FailsafeVelocityNoStep) => x - start,
-                Some(Mistake::FailsafeVelocityAdded) => before + over(x - start, h),
-                Some(Mistake::FailsafeVelocityFromPrediction) => over(x - at(&state.x, particle), h),
-                Some(Mistake::FailsafeVelocityOfCenter) => over(self.shift, h),
-                _ => over(x - start, h),
+                Some(Mistake::FailsafeVelocityAdded) => before + divide(x - start, h),
+                Some(Mistake::FailsafeVelocityFromPrediction) => divide(x - at(&state.x, particle), h),
+                Some(Mistake::FailsafeVelocityOfCenter) => divide(self.shift, h),
+                _ => divide(x - start, h),
             };
             put(&mut state.x, particle, x);
             put(&mut state.v, particle, v);

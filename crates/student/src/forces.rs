@@ -1,6 +1,6 @@
 //! The forces: the gradient of their potentials (simulation.md 2 and 3).
 use fosssim_model::scene::{Collision, CollisionDetection, Force};
-use fosssim_num::vector::{Vec2, at, length, over};
+use fosssim_num::vector::{Vec2, at, divide, length};
 
 use super::{
     Slip, StepMistake, Term,
@@ -57,7 +57,7 @@ fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let d = at(x, b) - at(x, a);
     let l = length(d);
     let is_long = makes(StepMistake::SpringDirection) || makes(StepMistake::SpringDirectionEverywhere);
-    let n = if is_long { d } else { over(d, l) };
+    let n = if is_long { d } else { divide(d, l) };
     let stiffness = if makes(StepMistake::SpringNoStiffness) { 1.0 } else { stiffness };
     let stretch = match () {
         () if makes(StepMistake::SpringNoRestLength) => l,
@@ -99,7 +99,7 @@ fn gravitation(world: &World, (first, second): (usize, usize), constant: f64, x:
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let d = at(x, second) - at(x, first);
     let r = length(d);
-    let n = over(d, r);
+    let n = divide(d, r);
     let constant = if makes(StepMistake::GravitationNoConstant) { 1.0 } else { constant };
     let (m1, m2) = match () {
         () if makes(StepMistake::GravitationNoMasses) => (1.0, 1.0),
@@ -116,9 +116,9 @@ fn vortex(force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let Force::Vortex { first, second, strength, coupling } = *force else { return };
     let d = at(x, second) - at(x, first);
     let r = length(d);
-    let along = strength * over(d, r);
+    let along = strength * divide(d, r);
     let around = Vec2::new(-along.y, along.x) - (at(v, second) - at(v, first));
-    let push = -(coupling * over(around, r * r));
+    let push = -(coupling * divide(around, r * r));
     subtract(g, first, push);
     add(g, second, push);
 }

@@ -1,6 +1,6 @@
 //! The matrix of the implicit integrators: the mass, and the second derivatives of the forces (simulation.md 3 and 4).
 use fosssim_model::scene::{Force, Integrator};
-use fosssim_num::vector::{at, length, over};
+use fosssim_num::vector::{at, divide, length};
 
 use super::{Slip, StepMistake, Term, step_failure::StepFailure, world::World};
 
@@ -157,7 +157,7 @@ fn gravitation_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let student = world.student;
     let d = at(x, second) - at(x, first);
     let r = length(d);
-    let n = if student.makes(StepMistake::JacobianGravitationDirection) { d } else { over(d, r) };
+    let n = if student.makes(StepMistake::JacobianGravitationDirection) { d } else { divide(d, r) };
     let scale = constant * world.masses[2 * second] * world.masses[2 * first] / (r * r * r);
     let three = if student.makes(StepMistake::JacobianGravitationNoThree) { 1.0 } else { 3.0 };
     let three = world.weight(Term::JacobianGravitationAlong, r) * three;
@@ -173,7 +173,7 @@ fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let d = at(x, edge.second) - at(x, edge.first);
     let l = length(d);
     let is_long = makes(StepMistake::JacobianElasticDirection) || makes(StepMistake::SpringDirectionEverywhere);
-    let n = if is_long { d } else { over(d, l) };
+    let n = if is_long { d } else { divide(d, l) };
     let outer = block(|r, c| n[r] * n[c]);
     let stretch = if makes(StepMistake::JacobianElasticNoRestLength) { l } else { l - rest_length };
     let is_positive = world.student.slips_by(Term::JacobianElasticAcross, Slip::Absolute);
@@ -194,7 +194,7 @@ fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 
     let d = at(x, b) - at(x, a);
     let l = length(d);
     let is_long = makes(StepMistake::JacobianDampingDirection) || makes(StepMistake::SpringDirectionEverywhere);
-    let n = if is_long { d } else { over(d, l) };
+    let n = if is_long { d } else { divide(d, l) };
     let outer = block(|r, c| n[r] * n[c]);
     let w = at(v, b) - at(v, a);
     let of_outer = world.weight(Term::JacobianDampingOuter, l);
@@ -212,7 +212,7 @@ fn velocity_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
     let edge = world.scene.edges[edge];
     let d = at(x, edge.second) - at(x, edge.first);
-    let n = if world.student.makes(StepMistake::SpringDirectionEverywhere) { d } else { over(d, length(d)) };
+    let n = if world.student.makes(StepMistake::SpringDirectionEverywhere) { d } else { divide(d, length(d)) };
     if world.student.makes(StepMistake::JacobianVelocityIdentity) {
         return block(|r, c| damping * IDENTITY[r][c]);
     }

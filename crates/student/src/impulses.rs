@@ -165,7 +165,7 @@ fn resolve(
         }
     }
     match student.mistake_in(&[Area::ImpulseLoop, Area::Trace]) {
-        Some(Mistake::ImpulsesCapped) => cap(world, &before, state),
+        Some(Mistake::ImpulsesCapped) => limit_velocity_changes(world, &before, state),
         Some(Mistake::ImpulsesPositionsRestored) => state.x.clone_from(&prediction.x),
         Some(Mistake::ImpulsesPositionsFromVelocities) => {
             for particle in 0..world.scene.particles.len() {
@@ -178,7 +178,7 @@ fn resolve(
 }
 
 /// Limits every change of velocity to a maximum size, and the change of position in the same way.
-fn cap(world: &World, before: &State, state: &mut State) {
+fn limit_velocity_changes(world: &World, before: &State, state: &mut State) {
     for particle in 0..world.scene.particles.len() {
         let change = at(&state.v, particle) - at(&before.v, particle);
         if length(change) > MAX_IMPULSE {

@@ -16,20 +16,20 @@ const NEWTON_LIMIT_OF_MISTAKES: u32 = 60;
 
 /// Advances the state by one step, without collisions. `solves` counts the systems that are solved.
 pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
-    let whole = whole(world.scene.integrator);
+    let whole = whole_step_term(world.scene.integrator);
     if whole.is_some_and(|whole| world.student.slips_by(whole, Slip::Missing)) {
         return Ok(());
     }
     let before = (!world.student.makes_none()).then(|| state.clone());
     match world.scene.integrator {
         Integrator::ExplicitEuler => {
-            explicit(world, world, [Term::ExplicitPositions, Term::ExplicitVelocities], true, state);
+            step_explicit(world, world, [Term::ExplicitPositions, Term::ExplicitVelocities], true, state);
         }
         // The library supplies the integrator, and the student the forces.
         Integrator::ForwardBackwardEuler => {
-            explicit(&world.for_student(Student::default()), world, SYMPLECTIC, false, state)
+            step_explicit(&world.for_student(Student::default()), world, SYMPLECTIC, false, state)
         }
-        Integrator::SymplecticEuler => explicit(world, world, SYMPLECTIC, false, state),
+        Integrator::SymplecticEuler => step_explicit(world, world, SYMPLECTIC, false, state),
         Integrator::LinearizedImplicitEuler if world.student.makes(StepMistake::LinearIterates) => {
             step_implicit(world, state, solves)?;
         }
@@ -48,7 +48,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
 const SYMPLECTIC: [Term; 2] = [Term::SymplecticPositions, Term::SymplecticVelocities];
 
 /// Returns the quantity that stands for the whole step of an integrator written by students.
-const fn whole(integrator: Integrator) -> Option<Term> {
+const fn whole_step_term(integrator: Integrator) -> Option<Term> {
     Some(match integrator {
         Integrator::ExplicitEuler => Term::Explicit,
         Integrator::SymplecticEuler => Term::Symplectic,
@@ -84,13 +84,14 @@ fn rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
 
 /// Makes one step of the explicit integrators, which move positions with the old or the new velocities, under the
 /// forces of a world that may have another author.
-fn explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_by_old: bool, state: &mut State) {
+fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_by_old: bool, state: &mut State) {
     let (student, h) = (world.student, world.scene.time_step);
     // The factor must stay a multiplication, because a change of sign would flip the sign of a NaN.
     let minus_one = black_box(-1.0);
     let x = if student.slips_by(of_v, Slip::Behind) { &student.sum(&state.x, h, &state.v) } else { &state.x };
     let mut accelerations = forces::gradient(forces, x, &state.v);
-    let forgets = whole(world.scene.integrator).is_some_and(|whole| student.slips_by(whole, Slip::FixedForgotten));
+    let forgets =
+        whole_step_term(world.scene.integrator).is_some_and(|whole| student.slips_by(whole, Slip::FixedForgotten));
     for (k, entry) in accelerations.iter_mut().enumerate() {
         *entry = if world.is_fixed(k / 2) && !forgets { 0.0 } else { minus_one * *entry };
         *entry /= world.masses[k];

@@ -5,7 +5,7 @@ use super::{
     author::Student,
     logged_polynomials::logged_polynomial,
     objects::{Contact, State},
-    rounding::single,
+    rounding::round_to_f32,
     step::step,
     step_failure::StepFailure,
     world::{StepLog, World},
@@ -113,7 +113,7 @@ fn integer(value: usize) -> i32 {
 
 fn logged_numbers(student: Student, values: &[f64]) -> Vec<f64> {
     if student.makes(Mistake::LogSinglePrecision) {
-        values.iter().map(|&value| single(value)).collect()
+        values.iter().map(|&value| round_to_f32(value)).collect()
     } else {
         values.to_vec()
     }

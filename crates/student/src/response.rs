@@ -1,12 +1,12 @@
 //! The impulses that resolve one contact (collisions.md 3): positions and velocities at the end of the step change.
 use fosssim_model::scene::Collision;
-use fosssim_num::vector::{Vec2, at, over, unit};
+use fosssim_num::vector::{Vec2, at, divide, unit};
 
 use super::{
     Area, Mistake,
     author::Student,
     objects::{Contact, Object, State},
-    rounding::single,
+    rounding::round_to_f32,
     world::{World, subtract},
 };
 
@@ -14,7 +14,7 @@ use super::{
 const HERE: &[Area] = &[Area::Response];
 
 /// Returns twice `(1 + COR) / 2`.
-pub fn bounce(world: &World) -> f64 {
+pub fn restitution_factor(world: &World) -> f64 {
     let student = world.student;
     let f = match student.mistake_in(HERE) {
         Some(Mistake::ResponseNoRestitution) => 1.0,
@@ -39,7 +39,7 @@ fn restitution(world: &World) -> f64 {
 /// `predicted.x`, which may be an earlier state than `result`.
 pub fn respond(world: &World, contact: &Contact, q_start: &[f64], predicted: &State, result: &mut State) {
     let u = if world.student.makes(Mistake::ResponseNotNormalized) { contact.n } else { unit(contact.n) };
-    let mut response = PairResponse { world, q_start, predicted, result, u, bounce: bounce(world) };
+    let mut response = PairResponse { world, q_start, predicted, result, u, bounce: restitution_factor(world) };
     let particle = contact.pair.particle;
     match contact.pair.object {
         Object::Particle(other) => response.particle_particle(particle, other),
@@ -68,7 +68,7 @@ impl PairResponse<'_> {
         if self.world.student.makes(Mistake::ResponseEndVelocity) {
             return at(&self.predicted.v, particle);
         }
-        over(at(&self.predicted.x, particle) - at(self.q_start, particle), self.world.scene.time_step)
+        divide(at(&self.predicted.x, particle) - at(self.q_start, particle), self.world.scene.time_step)
     }
 
     /// Pushes a particle that is not fixed; `share / inertia` is the change of its speed along `u`.
@@ -79,7 +79,7 @@ impl PairResponse<'_> {
         }
         let sign = if student.makes(Mistake::ResponseSign) { -sign } else { sign };
         let (share, moved) = if student.makes(Mistake::ResponseSinglePrecision) {
-            (single(share), single(moved))
+            (round_to_f32(share), round_to_f32(moved))
         } else {
             (share, moved)
         };
@@ -157,7 +157,7 @@ impl PairResponse<'_> {
         let h = self.world.scene.time_step;
         let mut speed = student.dot(self.velocity(one), self.u);
         if student.makes(Mistake::ResponseSinglePrecision) {
-            speed = single(speed);
+            speed = round_to_f32(speed);
         }
         let mut sign = if student.makes(Mistake::ResponseSign) { -1.0 } else { 1.0 };
         if student.makes(Mistake::ResponseHalfPlaneHalved) {

@@ -4,7 +4,7 @@ use fosssim_num::vector::{Vec2, at, put};
 use super::{Mistake, author::Student};
 
 /// Returns a number rounded to single precision.
-pub fn single(value: f64) -> f64 {
+pub fn round_to_f32(value: f64) -> f64 {
     #[expect(clippy::cast_possible_truncation, reason = "this is the mistake: a float where a double belongs")]
     let single = value as f32;
     f64::from(single)

@@ -100,7 +100,7 @@ impl SimplePass<'_> {
     }
 
     /// Returns `1 + COR`.
-    fn bounce(&self, kind: &SimpleKind) -> f64 {
+    fn restitution_factor(&self, kind: &SimpleKind) -> f64 {
         let Collision::Simple { restitution } = self.world.scene.collision else { return 2.0 };
         match () {
             () if self.makes(kind.response, Slip::NoFactor) => 2.0,
@@ -144,7 +144,7 @@ impl SimplePass<'_> {
             return None;
         }
         let n = self.returned_vector(kind, n);
-        let (u, bounce) = (unit(n), self.bounce(kind));
+        let (u, bounce) = (unit(n), self.restitution_factor(kind));
         let impulse = |pass: &Self, state: &State| {
             bounce * (pass.velocity(kind, state, two) - pass.velocity(kind, state, one)).dot(&u)
         };
@@ -195,7 +195,7 @@ impl SimplePass<'_> {
 
     fn push_edge(&self, state: &mut State, [one, two, three]: [usize; 3], n: Vec2, alpha: f64) {
         let kind = &EDGES;
-        let (u, bounce, beta) = (unit(n), self.bounce(kind), 1.0 - alpha);
+        let (u, bounce, beta) = (unit(n), self.restitution_factor(kind), 1.0 - alpha);
         let impulse = |pass: &Self, state: &State| {
             let [v1, v2, v3] = [one, two, three].map(|particle| pass.velocity(kind, state, particle));
             let of_edge = match () {
@@ -244,7 +244,7 @@ impl SimplePass<'_> {
         if self.world.is_fixed(one) && self.makes(kind.response, Slip::FixedSpared) {
             return Some(n);
         }
-        let (u, bounce, v) = (unit(n), self.bounce(kind), self.velocity(kind, state, one));
+        let (u, bounce, v) = (unit(n), self.restitution_factor(kind), self.velocity(kind, state, one));
         let change = if self.makes(kind.response, Slip::Whole) { bounce * v } else { bounce * v.dot(&u) * u };
         let part = TermPart { length: length(n), is_negative: true, ..TermPart::from_term(kind.response, one) };
         self.world.contribute(&mut state.v, part, change);

@@ -40,7 +40,7 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
 pub fn merge(student: Student, zones: Vec<Zone>) -> Vec<Zone> {
     match student.mistake_in(HERE) {
         Some(Mistake::ZonesNotMerged) => return zones,
-        Some(Mistake::ZonesAllInOne) => return everything(zones),
+        Some(Mistake::ZonesAllInOne) => return merge_all(zones),
         Some(Mistake::ZonesUnionFind) => return disjoint_sets(&zones),
         _ => {}
     }
@@ -88,7 +88,7 @@ fn join(student: Student, zone: &mut Zone, other: Zone) {
     }
 }
 
-fn everything(zones: Vec<Zone>) -> Vec<Zone> {
+fn merge_all(zones: Vec<Zone>) -> Vec<Zone> {
     let whole = zones.into_iter().reduce(|mut whole, zone| {
         join(Student::default(), &mut whole, zone);
         whole

@@ -2,7 +2,7 @@
 use crate::{
     cli::{console, input},
     files::Place,
-    report::{foreign::plain, number::format_count},
+    report::{foreign::strip_control_characters, number::format_count},
     suite::{EarlierGrade, Grade},
 };
 use anyhow::{Context, Result, bail};
@@ -48,12 +48,12 @@ pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
         return;
     }
     for grade in &mut *grades {
-        let name = plain(&grade.submission);
+        let name = strip_control_characters(&grade.submission);
         grade.before = earlier.iter().find(|before| before.submission == name).cloned();
     }
     let new: Vec<&str> = grades.iter().filter(|one| one.before.is_none()).map(|one| one.submission.as_str()).collect();
     if let (false, [first, ..]) = (earlier.is_empty(), &new[..]) {
         let new = format_count(new.len() as u64, "submission");
-        console::remark(format!("{new} have no earlier grade, for example {}\n", plain(first)));
+        console::remark(format!("{new} have no earlier grade, for example {}\n", strip_control_characters(first)));
     }
 }

@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<u8> {
             None => return Ok(exit::INTERRUPTED),
         },
         (None, [scene, trace]) => {
-            let (case, card) = trace_on_scene(scene, trace, arguments)?;
+            let (case, card) = explain_trace(scene, trace, arguments)?;
             (Diagnosis { cases: vec![case], ..Diagnosis::default() }, vec![card])
         }
         (None, _) => bail!("explain takes a scene and a trace, or --program PROGRAM and any number of scenes"),
@@ -60,7 +60,7 @@ fn drawing(arguments: &ExplainArguments) -> Drawing {
     Drawing { hints: arguments.hints, has_pictures: arguments.format == ExplainFormat::Html }
 }
 
-fn trace_on_scene(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> Result<(Case, Option<Card>)> {
+fn explain_trace(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> Result<(Case, Option<Card>)> {
     let scene = input::scene(scene)?;
     let mut trace = input::trace(trace)?;
     if let Some(kind) = trace.looks_like {

@@ -26,7 +26,7 @@ use crate::{
     judge::Rules,
     report::{
         explain,
-        foreign::{clean_output, plain},
+        foreign::{clean_output, strip_control_characters},
         grade,
         number::format_count,
         page::Audience,
@@ -383,14 +383,21 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
         text += &format!("{}\n\n{}\n", words::build(&build.end), clean_output(&build.output));
     }
     if let Some(unfit) = words::describe_unfit(grade) {
-        text += &format!("{}\n", plain(&unfit));
+        text += &format!("{}\n", strip_control_characters(&unfit));
     }
     let never_ran = |verdict| matches!(verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError);
     for scene in grade.scenes().filter(|scene| !never_ran(scene.verdict)) {
-        text += &format!("\n=== {} ===\n{}: {}\n", plain(&scene.scene), scene.verdict, plain(&words::summary(scene)));
+        text += &format!(
+            "\n=== {} ===\n{}: {}\n",
+            strip_control_characters(&scene.scene),
+            scene.verdict,
+            strip_control_characters(&words::summary(scene))
+        );
         let details = grade::describe_difference(scene).into_iter().chain(words::details(scene));
         text.extend(
-            details.chain(explain::lines(&scene.settled, Style::Plain)).map(|line| format!("{}\n", plain(&line))),
+            details
+                .chain(explain::lines(&scene.settled, Style::Plain))
+                .map(|line| format!("{}\n", strip_control_characters(&line))),
         );
         for (stream, printed_there) in [("output", &scene.stdout), ("error", &scene.stderr)] {
             if !printed_there.trim().is_empty() {

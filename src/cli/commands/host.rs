@@ -33,7 +33,7 @@ const DEMO_MISTAKE: &str = "pe-square-no-eh";
 const DEMO_SUITE: &str = include_str!("demo.toml");
 
 pub(super) fn doctor() -> Result<u8> {
-    let reports = sandbox::doctor();
+    let reports = sandbox::check_host();
     let mut text = String::new();
     for report in &reports {
         let state = match (report.active, report.required) {

@@ -25,7 +25,7 @@ use crate::{
         located::{ContentIndex, Contents, FailureKind, LocatedFailure, TriedScene, locate},
         milestone,
         plan::{self, Plan},
-        smallest::impatient,
+        smallest::shorten_limits,
     },
     together::told::cut,
 };
@@ -145,7 +145,7 @@ impl ProgramUnderTest {
     pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
         let long = self.limits();
         // The limits after a run that ended at a limit.
-        let short = impatient(&long);
+        let short = shorten_limits(&long);
         let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
         let bar = console::Bar::for_runs(tasks.len() as u64);
         for task in &tasks {
@@ -288,7 +288,7 @@ pub(super) fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<
 
 /// Infers the milestone of a program, and reports it if it is not the default.
 fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
-    let found = milestone::looks_like(runner, program).map_err(anyhow::Error::msg)?.unwrap_or(Assignment::DEFAULT);
+    let found = milestone::infer_milestone(runner, program).map_err(anyhow::Error::msg)?.unwrap_or(Assignment::DEFAULT);
     if found != Assignment::DEFAULT {
         let Definition { title, key, .. } = found.definition();
         console::remark(format!("it looks like a program of {title} (--suite {key})\n"));

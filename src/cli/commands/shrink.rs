@@ -22,7 +22,9 @@ use crate::{
     suite::{
         config::Hints,
         located::FailureKind,
-        smallest::{MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, impatient},
+        smallest::{
+            MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, shorten_limits,
+        },
     },
     together::told::cut,
 };
@@ -80,7 +82,7 @@ pub(super) fn add_smallest(
     let runs = runs.filter(|((case, _), _)| !case.accepted && is_chosen(&case.scene));
     let wrong = runs.map(|((case, task), (ended, _))| WrongScene { task, explanations: &case.explanations, ended });
     let wrong: Vec<WrongScene<'_>> = wrong.collect();
-    let (run_limits, name) = (impatient(&program.limits()), program.program.display().to_string());
+    let (run_limits, name) = (shorten_limits(&program.limits()), program.program.display().to_string());
     let (runner, assignment) = (program.runner(&run_limits), program.assignment);
     let shrinker = Shrinker { runner, program: &program.program, assignment, limits };
     let causes = causes(&diagnosis.common, &wrong);
@@ -126,7 +128,7 @@ pub(super) fn describe(
         note,
         first,
         explanations: match reason {
-            WrongReason::Mistake(cause) => cut(drawing.hints, vec![lead(cause, explanations)]),
+            WrongReason::Mistake(cause) => cut(drawing.hints, vec![with_example(cause, explanations)]),
             _ => explanations,
         },
         ..SmallestScene::default()
@@ -144,7 +146,7 @@ pub(super) fn describe(
 }
 
 /// Returns the cause, with the example of the scene's own explanation.
-fn lead(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
+fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
     let named = own.iter().find(|one| is_named_in(cause, std::slice::from_ref(one)));
     match named.or_else(|| own.first()) {
         // Its counts are the run's.
@@ -183,6 +185,6 @@ mod tests {
     fn what_fits_a_single_sample_is_not_shown() {
         let wrong = Explanation::for_wrong(Vec::new(), OfPolynomials::Nothing);
         let fitted = |samples| Explanation { samples, details: vec![Detail::Term("x".into())], ..wrong.clone() };
-        assert_eq!([1, 2].map(|samples| lead(&fitted(samples), Vec::new()).details.len()), [0, 1]);
+        assert_eq!([1, 2].map(|samples| with_example(&fitted(samples), Vec::new()).details.len()), [0, 1]);
     }
 }

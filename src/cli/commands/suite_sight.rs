@@ -42,7 +42,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
     let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written(row, scene.assignment()));
     let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_theirs).collect();
-    let logs_polynomials = scenes.iter().any(|scene| Layout::for_scene(scene).polynomials);
+    let logs_polynomials = scenes.iter().any(|scene| Layout::for_scene(scene).has_polynomials);
     // Most mistakes of writing a trace concern lists that logs of states lack.
     let concerns =
         |row: &Row| (logs_polynomials || row.area != Area::Trace) && scenes.iter().any(|scene| can_show(scene, row));

@@ -1,6 +1,6 @@
 //! Traces as inputs, which are streams and are decompressed while they are read.
 use super::{asset, no_asset, open, printable_name};
-use crate::files::{Identity, patient};
+use crate::files::{Identity, with_timeout};
 use crate::{
     cli::output::has_extension,
     report::check::{SNIFFED_BYTES, looks_like},
@@ -93,7 +93,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         }
         let context = || format!("cannot read the trace {shown}");
         let (file, metadata) = open(name).with_context(context)?;
-        let file = patient(file, &metadata).with_context(context)?;
+        let file = with_timeout(file, &metadata).with_context(context)?;
         let reader = maybe_packed(Box::new(watched(file)), has_extension(name, "zst"), &failure);
         (reader.with_context(context)?, Some(Identity::from_metadata(&metadata)))
     };

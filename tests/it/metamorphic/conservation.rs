@@ -4,7 +4,7 @@ use super::{
     search,
 };
 use fosssim_oracle::{
-    num::vector::{Vec2, at, length, over},
+    num::vector::{Vec2, at, divide, length},
     scene::{Collision, Edge, HalfPlane, Particle, Scene},
     sim::{Detection, Impulse, Observer, Pass, RootSearch, Simulation, Stage, State, Zone},
 };
@@ -77,7 +77,7 @@ fn one_contact() -> impl Strategy<Value = Scene> {
             };
             let collision = Collision::ContinuousTime { restitution };
             let drift = if fixed { Vec2::zeros() } else { Vec2::new(drift.0, drift.1) };
-            let flight = over(Vec2::new(to.0 - one.0, 6.0 * to.1), TIME_STEP);
+            let flight = divide(Vec2::new(to.0 - one.0, 6.0 * to.1), TIME_STEP);
             let disc = body((one.0, one.1 + 3.0), flight - Vec2::new(0.0, 6.0 / TIME_STEP), masses.0, false, 0.4);
             match kind {
                 0 => scene(1, collision, vec![disc, body(two, drift, masses.1, fixed, 0.5)]),

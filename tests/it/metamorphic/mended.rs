@@ -79,7 +79,7 @@ impl<O: Observer> Observer for Mended<'_, O> {
     fn detection(&mut self, detection: &Detection<'_>) {
         self.inner.detection(detection);
     }
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
 }

@@ -6,7 +6,7 @@ use super::{
     transform::with_ends_exchanged,
 };
 use fosssim_oracle::{
-    num::vector::{Vec2, at, length, over},
+    num::vector::{Vec2, at, divide, length},
     scene::{Collision, Edge, HalfPlane, Particle, Scene},
     sim::{Decision, Detection, Observer, PairKind, RootSearch, Simulation},
 };
@@ -18,7 +18,7 @@ fn traveller(radius: f64) -> impl Strategy<Value = Particle> {
     let part = || -3.0..3.0;
     ((part(), part()), (part(), part()), 0.25..4.0).prop_map(move |((x, y), (to_x, to_y), mass): (_, (f64, f64), _)| {
         let position = Vec2::new(x, y);
-        let velocity = over(Vec2::new(to_x, to_y) - position, TIME_STEP);
+        let velocity = divide(Vec2::new(to_x, to_y) - position, TIME_STEP);
         Particle { position, velocity, mass, fixed: false, radius, tag: None }
     })
 }

@@ -9,7 +9,7 @@ use fosssim_model::{
 };
 use fosssim_num::{
     polynomial::Polynomial,
-    vector::{Vec2, at, over},
+    vector::{Vec2, at, divide},
 };
 
 /// The part of an edge, from each end, within which positions count as near the end.
@@ -210,7 +210,7 @@ pub(super) fn zone_motion(scene: &Scene, particles: &[usize], q_start: &[f64], q
     let total: f64 = particles.iter().map(|&particle| mass(particle)).sum();
     let mean = |value: &dyn Fn(usize) -> Vec2| {
         let sum = particles.iter().fold(Vec2::zeros(), |sum, &particle| sum + mass(particle) * value(particle));
-        over(sum, total)
+        divide(sum, total)
     };
     let (center, shift) = (mean(&|particle| at(q_start, particle)), mean(&moved));
     let momentum = particles.iter().fold(0.0, |momentum, &particle| {

@@ -10,13 +10,13 @@ use crate::{
     plan::PlannedGroup,
     result::{Reason, RunEnd, SceneResult},
     score,
-    smallest::{DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, causes, impatient},
+    smallest::{DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, causes, shorten_limits},
     staging::StagedProgram,
     verdict::Verdict,
 };
 use fosssim_mistakes::{
     diagnose::Explanation,
-    together::{likely_mistakes, settle},
+    together::{likely_mistakes, reconcile_explanations},
 };
 use fosssim_model::assignments::Assignment;
 
@@ -71,7 +71,7 @@ impl SubmissionGrading<'_> {
         if plan.staff_hints.explains() {
             grade.located = locate_failure(&grade, || self.shared.contents(plan));
         }
-        settle(&mut grade);
+        reconcile_explanations(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
             // A panic here must not lose the grade.
             grade.smallest = catch_panic(|| self.smallest(&grade, staged, describe)).unwrap_or_default();
@@ -95,7 +95,7 @@ impl SubmissionGrading<'_> {
             })
             .collect();
         let Some(first) = plan.scenes().next() else { return Vec::new() };
-        let limits = impatient(&plan.limits);
+        let limits = shorten_limits(&plan.limits);
         let shrinker = Shrinker {
             runner: Runner { limits: &limits, cards: None, ..self.runner(first, None) },
             program: &staged.program,
@@ -126,7 +126,7 @@ impl SubmissionGrading<'_> {
         let (staged, first) = (self.staged_program(), self.grader.plan.scenes().next()?);
         let program = &staged.as_ref().as_ref().ok()?.program;
         // An error here must not lose the grade.
-        let found = milestone::looks_like(&self.runner(first, None), program).ok().flatten();
+        let found = milestone::infer_milestone(&self.runner(first, None), program).ok().flatten();
         found.filter(|found| milestone::lacks(*found, expected))
     }
 }

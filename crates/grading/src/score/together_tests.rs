@@ -9,7 +9,7 @@ use fosssim_findings::{
     Rules,
     explanation::{About, Explanation, NanStage, NotFinite},
 };
-use fosssim_mistakes::together::{likely_mistakes, settle, worth};
+use fosssim_mistakes::together::{likely_mistakes, reconcile_explanations, worth};
 use std::time::Duration;
 
 fn explanation(key: &str, about: About, reproduced: u64) -> Explanation {
@@ -62,7 +62,7 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         smallest: Vec::new(),
         notes: std::collections::BTreeMap::new(),
     };
-    settle(&mut grade);
+    reconcile_explanations(&mut grade);
     grade
 }
 

@@ -45,7 +45,7 @@ pub enum Mismatch {
 /// polynomial must have NaN as well.
 #[inline]
 pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
-    match is_clear(expected, actual).or_else(|| fits(expected, actual)) {
+    match match_if_clear(expected, actual).or_else(|| match_if_right(expected, actual)) {
         Some(found) => Ok(found),
         None => compare_closely(expected, actual, hints),
     }
@@ -136,7 +136,7 @@ impl Similarity {
 }
 
 /// Compares like [`compare`] if no bounds of the coefficients are needed; `None` if the comparison needs them.
-fn is_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
+fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     let lost = expected.iter().take_while(|r| r.value.abs() < LEADING_COEFFICIENT).count();
     let kept = &expected[lost..];
     if kept.len() != actual.len() {
@@ -190,7 +190,7 @@ pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
 
 /// Compares like [`compare`] if the logged polynomial is complete and right with the best factor, as nearly all are;
 /// otherwise `None`. The factor is found once, and one loop compares all coefficients by the same operations.
-fn fits(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
+fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;
     }

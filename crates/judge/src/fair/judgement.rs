@@ -60,7 +60,7 @@ impl Judging {
             all.add(new);
         }
         self.said.lost += step.lost;
-        self.said.shares.widen(&step.shares);
+        self.said.shares.max_with(&step.shares);
         let mut is_wrong = !step.findings.is_empty();
         for (form, place) in [(Form::Course, step.course_form), (Form::Right, step.right_form)] {
             let Some(place) = place else { continue };

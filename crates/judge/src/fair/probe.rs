@@ -176,7 +176,7 @@ impl Observer for PerturbedRun<'_> {
         self.stale |= detection.decision.collides();
     }
 
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
 }

@@ -71,7 +71,7 @@ impl<'a> Reach<'a> {
     }
 
     /// Returns whether the reference's own run has a result for `step`.
-    pub fn has_result(&mut self, step: u32) -> bool {
+    pub fn advance_to(&mut self, step: u32) -> bool {
         self.run_to(step);
         self.run.as_ref().is_some_and(|run| !run.is_lost)
     }

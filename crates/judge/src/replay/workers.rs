@@ -40,7 +40,7 @@ impl<'a> Workers<'a> {
     }
 
     /// Starts all threads, and returns whether there is more than one.
-    pub(super) fn has_pool(&mut self) -> bool {
+    pub(super) fn start_pool(&mut self) -> bool {
         let threads = match self.threads {
             0 => std::thread::available_parallelism().map_or(1, std::num::NonZero::get).min(MAX_THREADS),
             given => given,
@@ -65,7 +65,7 @@ impl<'a> Workers<'a> {
 
     /// Judges a batch while nothing is read. The trace's last batch uses one thread, unless more are requested.
     pub(super) fn judge(&mut self, batch: &Batch, shape: &StepRules<'_>, rest: [u64; 2], is_last: bool) {
-        if is_last && self.threads == 0 && self.pool.is_none() || !self.has_pool() {
+        if is_last && self.threads == 0 && self.pool.is_none() || !self.start_pool() {
             self.grow_to(1);
             judge_batch(batch, &mut self.list[..1], shape, rest);
         } else {
@@ -150,7 +150,7 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
     simulation.set_steps_done(step - 1);
     let layout = shape.layout;
     let frame = layout.end_record(step);
-    let mid = layout.polynomials.then_some(&*mid);
+    let mid = layout.has_polynomials.then_some(&*mid);
     (*error, *beyond_limit) = (None, false);
     let mut tally = Tally::new((step, frame), end, mid, shape.logs_impulses, buffers, result);
     let begin = simulation.search_counts();
@@ -158,8 +158,8 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
     *searches += simulation.search_counts() - begin;
     match end_of_step {
         Ok(()) => {
-            *beyond_limit = layout.polynomials && tally.needs_more();
-            tally.finish(simulation.state(), layout.impulses, layout.polynomials);
+            *beyond_limit = layout.has_polynomials && tally.needs_more();
+            tally.finish(simulation.state(), layout.has_impulses, layout.has_polynomials);
         }
         Err(cause) => *error = Some(cause),
     }
@@ -170,7 +170,7 @@ fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>)
     let StepSlot { step, before, mid, end, result, fair: judged, is_extraordinary, is_deferred, .. } = slot;
     if let (Some(context), None, false) = (&shape.fair, &slot.error, slot.beyond_limit) {
         let frame = shape.layout.end_record(*step);
-        let mid = shape.layout.polynomials.then_some(&*mid);
+        let mid = shape.layout.has_polynomials.then_some(&*mid);
         let records = Records { step: *step, frame, before, mid, end };
         *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
         *is_deferred = *is_extraordinary && !records.start_ordinarily(context);

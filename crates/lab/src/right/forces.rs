@@ -4,7 +4,7 @@ use fosssim_model::{
     scene::{Collision, CollisionDetection, Force, Scene},
     sim::{PairKind, PenaltyPairs},
 };
-use fosssim_num::vector::{Vec2, at, length, over};
+use fosssim_num::vector::{Vec2, at, divide, length};
 use nalgebra::DMatrix;
 
 /// The forces of a scene, in the order and arithmetic of one program.
@@ -136,7 +136,7 @@ impl<'a> ForceTerms<'a> {
                 }
                 PairKind::ParticleHalfPlane => {
                     let plane = scene.half_planes[other];
-                    let q = over(plane.normal, length(plane.normal));
+                    let q = divide(plane.normal, length(plane.normal));
                     let n = (plane.point - place).dot(&q) * q;
                     terms.extend(push(n, radius).map(|force| (one, force)));
                 }

@@ -66,13 +66,13 @@ impl Arithmetic {
         addend + a * b
     }
 
-    /// Returns the whole trace of a scene, whose collision handling logs no polynomials. `hear` receives the state and
+    /// Returns the whole trace of a scene, whose collision handling logs no polynomials. `visit` receives the state and
     /// the contacts after every step.
     ///
     /// # Errors
     /// The steps so far, if a step has no result because of a vortex force in an implicit step, or because Newton's
     /// method does not converge.
-    pub fn trace(self, scene: &Scene, mut hear: impl FnMut(&State, &[Contact])) -> Result<Vec<u8>, Vec<u8>> {
+    pub fn trace(self, scene: &Scene, mut visit: impl FnMut(&State, &[Contact])) -> Result<Vec<u8>, Vec<u8>> {
         let mut state = start(scene);
         let mut forces = ForceTerms::new(scene, self);
         let mut bytes = Vec::new();
@@ -86,7 +86,7 @@ impl Arithmetic {
                 _ => Vec::new(),
             };
             record(scene, &state, &contacts, &mut bytes);
-            hear(&state, &contacts);
+            visit(&state, &contacts);
         }
         Ok(bytes)
     }

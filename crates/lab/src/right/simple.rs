@@ -1,6 +1,6 @@
 //! Handles collisions at the end of a step with impulses.
 use fosssim_model::scene::Scene;
-use fosssim_num::vector::{Vec2, at, length, over, put};
+use fosssim_num::vector::{Vec2, at, divide, length, put};
 use fosssim_oracle::student::{Contact, Object, Pair, State};
 
 /// A particle that an impulse changes, with its share of the impulse; the first body's share is positive.
@@ -33,7 +33,7 @@ pub(super) fn handle(scene: &Scene, restitution: f64, state: &mut State) -> Vec<
             meet(Object::Edge(index), n, body.radius + edge.radius, &shares);
         }
         for (index, plane) in scene.half_planes.iter().enumerate() {
-            let q = over(plane.normal, length(plane.normal));
+            let q = divide(plane.normal, length(plane.normal));
             meet(Object::HalfPlane(index), (plane.point - place).dot(&q) * q, body.radius, &[]);
         }
     }
@@ -46,7 +46,7 @@ fn answer(scene: &Scene, restitution: f64, v: &mut [f64], n: Vec2, shares: &[Imp
     if !(speed > 0.0) {
         return false;
     }
-    let u = over(n, length(n));
+    let u = divide(n, length(n));
     // A half-plane also stops a fixed particle.
     let mobility = |&(particle, share): &ImpulseShare| {
         let body = &scene.particles[particle];

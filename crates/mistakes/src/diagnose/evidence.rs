@@ -30,7 +30,7 @@ pub(super) struct OpenTrace {
 }
 
 impl OpenTrace {
-    pub(super) fn allows(&self, said: &str) -> bool {
+    pub(super) fn allows_statement(&self, said: &str) -> bool {
         self.symptoms.iter().any(|symptom| symptom.allowed.contains_key(said))
     }
 
@@ -40,7 +40,7 @@ impl OpenTrace {
 
     /// Returns whether the trace needs this mistake in addition to others: they reproduce it together, but not
     /// separately.
-    pub(super) fn needs(&self, said: &str) -> bool {
+    pub(super) fn requires_statement(&self, said: &str) -> bool {
         self.symptoms.iter().any(|symptom| symptom.one.is_complete() && symptom.one.key == said)
     }
 }
@@ -122,7 +122,7 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
             let is_kin = |one: &&Explanation| trace.symptoms.iter().any(|other| other.one.key == one.key);
             evidence.kin += usize::from(told.filter(|told| told.is_of_stage()).is_some_and(|told| is_kin(&told)));
             evidence.complete += usize::from(trace.allows_wholly(word));
-            if trace.allows(word) {
+            if trace.allows_statement(word) {
                 evidence.traces += 1;
             } else if told.is_some_and(|told| trace.symptoms.iter().any(|one| contradicts(&one.one, told))) {
                 evidence.against += 1;
@@ -175,7 +175,7 @@ fn unite(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let mut told = told.clone();
     let said = told.statement();
     // A contradicting trace is not reproduced at all.
-    let against = open.iter().filter(|trace| !trace.allows(&said)).flat_map(|trace| &trace.symptoms);
+    let against = open.iter().filter(|trace| !trace.allows_statement(&said)).flat_map(|trace| &trace.symptoms);
     told.samples +=
         against.filter(|symptom| contradicts(&symptom.one, &told)).map(|symptom| symptom.one.samples).sum::<u64>();
     let About::Polynomials { subjects, found } = &mut told.about else { return told };

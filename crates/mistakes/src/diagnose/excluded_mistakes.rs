@@ -1,6 +1,6 @@
 //! Finds mistakes that a program does not make, although its wrong traces suggest them.
 use super::{
-    Explanation, about::About, heads::explain_together, known::shows_within, naming::alternatives,
+    Explanation, about::About, heads::explain_together, known::mistake_is_visible_within, naming::alternatives,
     not_finite::find_in_trace, sampling::Source, written::is_written,
 };
 use fosssim_model::{assignments::Assignment, scene::Scene};
@@ -42,9 +42,9 @@ fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> b
 
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
 /// program does not make: they are in code that a student of this milestone does not write, or right scenes contradict
-/// them. The program was right there, and with the mistake it would not have been ([`shows`](super::known::shows)).
-/// Each integrator has its own file, so only scenes with it show its mistakes. The key of values that are not finite is
-/// included if the reported mistakes lead to such values.
+/// them. The program was right there, and with the mistake it would not have been
+/// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with it
+/// show its mistakes. The key of values that are not finite is included if the reported mistakes lead to such values.
 #[must_use]
 pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);
@@ -53,8 +53,9 @@ pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])
         find(key).is_none_or(|row| row.area != Area::Integrator)
             || wrong.iter().any(|(other, list)| other.integrator == scene.integrator && is_named(list))
     };
-    let is_denied =
-        |key: &str, work: &Cell<u64>| right.iter().any(|scene| is_asked(scene, key) && shows_within(scene, key, work));
+    let is_denied = |key: &str, work: &Cell<u64>| {
+        right.iter().any(|scene| is_asked(scene, key) && mistake_is_visible_within(scene, key, work))
+    };
     let mut refuted: Vec<String> = whose.map_or_else(Vec::new, |whose| supplied_keys(whose, wrong));
     loop {
         let likely = explain_together(traces(), &refuted);

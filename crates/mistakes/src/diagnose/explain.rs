@@ -42,7 +42,7 @@ pub fn explain_kept(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
 
 /// Explains a trace like [`explain`], with records from any source.
 fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
-    if Layout::for_scene(scene).polynomials && pairs(scene).count() > MAX_PAIRS {
+    if Layout::for_scene(scene).has_polynomials && pairs(scene).count() > MAX_PAIRS {
         return not_finite::find_in_trace(scene, source);
     }
     let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);

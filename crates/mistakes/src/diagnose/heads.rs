@@ -181,7 +181,7 @@ fn wrong_polynomials(
 /// Returns whether an explained trace also needs this known mistake.
 fn is_needed(next: &Explanation, open: &[OpenTrace]) -> bool {
     let said = next.statement();
-    open.iter().any(|trace| trace.is_covered && trace.needs(&said))
+    open.iter().any(|trace| trace.is_covered && trace.requires_statement(&said))
 }
 
 /// Returns whether a further mistake repeats a reported one under another name. A program has one formula for each
@@ -296,7 +296,7 @@ fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
 
 /// Removes everything that a mistake explains; of a trace that it explains, only other complete explanations stay.
 fn leave_open(open: &mut [OpenTrace], said: &str) {
-    for trace in open.iter_mut().filter(|trace| trace.allows(said)) {
+    for trace in open.iter_mut().filter(|trace| trace.allows_statement(said)) {
         trace.is_covered = true;
         trace.symptoms.retain(|symptom| !symptom.allowed.contains_key(said) && symptom.one.is_complete());
     }

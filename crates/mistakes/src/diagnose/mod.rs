@@ -31,7 +31,7 @@ pub use fosssim_findings::explanation::{
 use fosssim_findings::explanation::{about, fault, guess};
 pub use fosssim_student::{assignments::probe_scenes, plain::formula_in};
 pub use heads::explain_together;
-pub use known::{can_show, find_known, reproduces, shows};
+pub use known::{can_show, find_known, mistake_is_visible, reproduces};
 pub use naming::is_named_in;
 pub use near::{PairTrait, pair_traits};
 pub use not_finite::not_finite;

@@ -32,7 +32,7 @@ pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
     if !told.groups.iter().all(|group| group.hints.explains()) {
         told.located = None;
     }
-    settle(&mut told);
+    reconcile_explanations(&mut told);
     Cow::Owned(told)
 }
 
@@ -59,7 +59,7 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
         ..grade.as_ref().clone()
     };
     if grade.shows_output {
-        settle(&mut visible);
+        reconcile_explanations(&mut visible);
     } else {
         visible.groups.iter_mut().for_each(GroupGrade::withhold);
     }
@@ -130,7 +130,7 @@ pub fn explained_by(grade: &Grade, mistake: &Explanation) -> usize {
 /// Corrects the explanations of each scene by all scenes together: by several wrong ones, or by right ones that
 /// contradict a mistake. A caller that removes groups from a grade must call it again, so that nothing about them is
 /// revealed.
-pub fn settle(grade: &mut Grade) {
+pub fn reconcile_explanations(grade: &mut Grade) {
     let speak_together = !grade.refuted.is_empty() || likely_mistake(grade).is_some();
     let likely = if speak_together { likely_mistakes(grade) } else { Vec::new() };
     let likely: Vec<Explanation> = likely.into_iter().map(|(one, _)| one).collect();

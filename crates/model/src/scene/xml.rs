@@ -111,7 +111,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     }
 
     /// Returns the first element of a kind of which only one counts.
-    fn single<T>(
+    fn first_of_kind<T>(
         &mut self,
         name: &str,
         read: impl FnOnce(&mut TagFields<'d, 't, '_>) -> Option<T>,
@@ -133,7 +133,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         name: &str,
         read: impl FnOnce(&mut TagFields<'d, 't, '_>) -> Option<T>,
     ) -> Option<Option<T>> {
-        self.single(name, read).map_or(Some(None), |part| part.value.map(Some))
+        self.first_of_kind(name, read).map_or(Some(None), |part| part.value.map(Some))
     }
 
     /// Returns a single required element.
@@ -143,7 +143,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         attributes: &str,
         read: impl FnOnce(&mut TagFields<'d, 't, '_>) -> Option<T>,
     ) -> Option<Part<'d, 't, T>> {
-        let part = self.single(name, read);
+        let part = self.first_of_kind(name, read);
         if let (None, Some(scene)) = (&part, &self.document.scene)
             && !self.document.broken
             && !self.document.meant.contains(name)
@@ -164,7 +164,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     fn is_rigid(&mut self) -> bool {
         let types = [("particle-system", false), ("rigid-body", true)];
         let stub = "rigid bodies are an unfinished stub of the original and are not simulated";
-        let single = self.single("simtype", |fields| {
+        let single = self.first_of_kind("simtype", |fields| {
             // A missing or empty type means a particle system.
             let rigid = !fields.is_blank("type") && fields.choice("type", &types)?;
             if rigid {
@@ -195,8 +195,8 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
 
     /// Returns the collision handling, with the detection that its penalty force uses.
     fn collision(&mut self) -> Option<Collision> {
-        let read = self.single("collision", collision).map_or(Some(Collision::None), |part| part.value);
-        let Some(part) = self.single("collisiondetection", detection) else { return read };
+        let read = self.first_of_kind("collision", collision).map_or(Some(Collision::None), |part| part.value);
+        let Some(part) = self.first_of_kind("collisiondetection", detection) else { return read };
         match read? {
             Collision::Penalty { stiffness, thickness, .. } => {
                 Some(Collision::Penalty { stiffness, thickness, detection: part.value? })

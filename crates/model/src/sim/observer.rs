@@ -28,7 +28,7 @@ pub trait Observer {
     }
     /// Returns the steering part of this observer, if it has one.
     #[inline]
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         None
     }
     /// Observes the test of a pair.
@@ -74,7 +74,7 @@ pub trait Steer {
 pub struct Steering<S>(pub S);
 
 impl<S: Steer> Observer for Steering<S> {
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(&mut self.0)
     }
 }
@@ -82,7 +82,7 @@ impl<S: Steer> Observer for Steering<S> {
 /// Passes the state of the synchronization point to an observer, and lets it steer.
 pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> Resume {
     observer.synchronization(state);
-    observer.steers().map_or(Resume::Own, |steer| steer.synchronize(state))
+    observer.as_steer().map_or(Resume::Own, |steer| steer.synchronize(state))
 }
 
 /// The pairs of a detection pass that an observer needs.
@@ -129,8 +129,8 @@ impl<O: Observer + ?Sized> Observer for &mut O {
         (**self).wanted_pairs()
     }
     #[inline]
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
-        (**self).steers()
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+        (**self).as_steer()
     }
 }
 
@@ -147,7 +147,7 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
             WantedPairs::Calls
         }
     }
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
 }
@@ -156,15 +156,15 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
 /// state if one of them requests it.
 impl<A: Observer, B: Observer> Steer for (A, B) {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
-        let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
+        let both = [self.0.as_steer(), self.1.as_steer()].into_iter().flatten();
         both.for_each(|steer| steer.solve(pair, q_start, q_end, polynomials));
     }
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
-        let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
+        let both = [self.0.as_steer(), self.1.as_steer()].into_iter().flatten();
         both.fold(decision, |decision, steer| steer.decide(pair, decision))
     }
     fn synchronize(&mut self, state: &mut State) -> Resume {
-        let both = [self.0.steers(), self.1.steers()].into_iter().flatten();
+        let both = [self.0.as_steer(), self.1.as_steer()].into_iter().flatten();
         both.fold(Resume::Own, |resume, steer| match steer.synchronize(state) {
             Resume::Own => resume,
             Resume::Synchronized => Resume::Synchronized,

@@ -86,7 +86,7 @@ impl Simulation {
         }
         self.q_start.clone_from(&self.state.positions);
         self.stepper.limit_work(self.most_work.saturating_sub(self.handler.counts().work()));
-        self.stepper.advance(step, &self.bodies, &mut self.forces, &mut self.state, observer.steers())?;
+        self.stepper.advance(step, &self.bodies, &mut self.forces, &mut self.state, observer.as_steer())?;
         self.handler.limit_work(self.most_work.saturating_sub(self.stepper.work()));
         self.handler.handle(&self.bodies, step, &self.q_start, &mut self.state, observer)?;
         self.steps_done = step;
@@ -159,7 +159,7 @@ mod tests {
         fn impulse(&mut self, impulse: &Impulse) {
             self.lines.push(format!("impulse {} {}", impulse.normal.x, impulse.normal.y));
         }
-        fn steers(&mut self) -> Option<&mut dyn Steer> {
+        fn as_steer(&mut self) -> Option<&mut dyn Steer> {
             Some(self)
         }
         fn synchronization(&mut self, _state: &State) {

@@ -164,7 +164,7 @@ impl<R: Read> Read for Hashing<R> {
 mod tests {
     use super::*;
 
-    const LAYOUT: Layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 2 };
+    const LAYOUT: Layout = Layout { particles: 1, has_impulses: false, has_polynomials: false, steps: 2 };
 
     #[test]
     fn a_changed_step_changes_its_digest_only() {

@@ -7,9 +7,9 @@ pub struct Layout {
     /// The number of particles N.
     pub particles: usize,
     /// Whether records hold an impulse list (`simple`, `continuous-time`, `hybrid`).
-    pub impulses: bool,
+    pub has_impulses: bool,
     /// Whether records hold polynomials and each step has a mid record (`continuous-time`, `hybrid`).
-    pub polynomials: bool,
+    pub has_polynomials: bool,
     /// The number of steps.
     pub steps: u32,
 }
@@ -20,7 +20,12 @@ impl Layout {
     pub fn for_scene(scene: &Scene) -> Self {
         let records = scene.collision.handling().records;
         let (impulses, polynomials) = (records.impulses != ImpulseList::Absent, records.polynomials);
-        Self { particles: scene.particles.len(), impulses, polynomials, steps: scene.steps() }
+        Self {
+            particles: scene.particles.len(),
+            has_impulses: impulses,
+            has_polynomials: polynomials,
+            steps: scene.steps(),
+        }
     }
 
     /// Returns the number of bytes of positions and velocities, 32 N.
@@ -32,7 +37,7 @@ impl Layout {
     /// Returns the number of records per step: 2 with a mid record, otherwise 1.
     #[must_use]
     pub const fn records_per_step(&self) -> u32 {
-        if self.polynomials { 2 } else { 1 }
+        if self.has_polynomials { 2 } else { 1 }
     }
 
     /// Returns the number of records of a complete trace, including the initial one.
@@ -45,7 +50,7 @@ impl Layout {
     /// more. Programs whose library has no collisions write such traces.
     #[must_use]
     pub fn is_states_only(&self, bytes: u64) -> bool {
-        let more = self.impulses || self.polynomials;
+        let more = self.has_impulses || self.has_polynomials;
         more && self.particles > 0 && bytes == (1 + u64::from(self.steps)) * self.state_bytes() as u64
     }
 
@@ -58,7 +63,7 @@ impl Layout {
     /// Returns whether record `record` is a mid record, i.e. not the last one of its step.
     #[must_use]
     pub fn is_mid(&self, record: u64) -> bool {
-        self.polynomials && record % 2 == 1
+        self.has_polynomials && record % 2 == 1
     }
 
     /// Returns the number of the end record of step `step`; 0 is the initial record.
@@ -74,14 +79,14 @@ mod tests {
 
     #[test]
     fn records_and_steps_correspond() {
-        let layout = Layout { particles: 1, impulses: true, polynomials: true, steps: 3 };
+        let layout = Layout { particles: 1, has_impulses: true, has_polynomials: true, steps: 3 };
         assert_eq!((0..layout.records()).map(|r| layout.step_of(r)).collect::<Vec<_>>(), [0, 1, 1, 2, 2, 3, 3]);
         assert_eq!((0..3).map(|r| layout.is_mid(r)).collect::<Vec<_>>(), [false, true, false]);
         assert_eq!(layout.end_record(3), 6);
-        let layout = Layout { polynomials: false, ..layout };
+        let layout = Layout { has_polynomials: false, ..layout };
         assert_eq!((0..layout.records()).map(|r| layout.step_of(r)).collect::<Vec<_>>(), [0, 1, 2, 3]);
         assert!(!layout.is_mid(1));
         assert!(layout.is_states_only(4 * 32) && !layout.is_states_only(4 * 32 + 8));
-        assert!(!Layout { impulses: false, ..layout }.is_states_only(4 * 32), "that is all that there should be");
+        assert!(!Layout { has_impulses: false, ..layout }.is_states_only(4 * 32), "that is all that there should be");
     }
 }

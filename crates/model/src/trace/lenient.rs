@@ -201,10 +201,10 @@ impl<R: Read> Lenient<R> {
         frame.logged = 0;
         frame.plain = true;
         self.read_state(&mut frame.state)?;
-        if self.layout.impulses {
+        if self.layout.has_impulses {
             self.impulses(&mut frame.impulses)?;
         }
-        if self.layout.polynomials {
+        if self.layout.has_polynomials {
             self.read_polynomials(frame)?;
         }
         frame.note = self.notes.first().cloned();

@@ -56,11 +56,11 @@ impl Log {
     /// Appends a record with the current lists, without its polynomials.
     pub(super) fn write_head(&self, out: &mut Vec<u8>, layout: Layout, state: &State) {
         encode::append_state(out, state);
-        if layout.impulses {
+        if layout.has_impulses {
             encode::count(out, self.impulses());
             out.extend_from_slice(&self.impulses);
         }
-        if layout.polynomials {
+        if layout.has_polynomials {
             encode::count(out, self.polynomials.count());
         }
     }

@@ -176,14 +176,14 @@ impl<R: Read> Reader<R> {
         let (record, list) = (self.records() - 1, self.record_offset() + self.layout.state_bytes() as u64 + 4);
         let odd = (0..).zip(impulses).filter_map(|(number, impulse)| {
             let offset = list + number * List::Impulses.entry_bytes();
-            Some(TraceError::new(self.layout, record, offset, self.odd(number, impulse)?))
+            Some(TraceError::new(self.layout, record, offset, self.find_malformation(number, impulse)?))
         });
         let odd: Vec<_> = odd.take(MAX_NOTES).collect();
         self.notes.extend(odd);
     }
 
     /// Returns the oddity of an impulse, if it has one.
-    fn odd(&self, number: u64, impulse: &LoggedImpulse) -> Option<Malformation> {
+    fn find_malformation(&self, number: u64, impulse: &LoggedImpulse) -> Option<Malformation> {
         let particles = self.layout.particles;
         let Some(kind) = impulse.kind() else {
             return Some(Malformation::UnknownKind { impulse: number, kind: impulse.kind });
@@ -210,7 +210,7 @@ mod tests {
 
     #[test]
     fn a_frame_beyond_the_limit_is_refused_before_it_is_in_memory() {
-        let layout = Layout { particles: 0, impulses: true, polynomials: true, steps: 0 };
+        let layout = Layout { particles: 0, has_impulses: true, has_polynomials: true, steps: 0 };
         for list in [[0, i32::MAX, 0], [0, 1, 1 << 28]] {
             // As many empty polynomials, or coefficients of one, as there are zero bytes.
             let head = list.map(i32::to_le_bytes).concat();

@@ -103,7 +103,7 @@ mod tests {
     const IMPULSE: Impulse = Impulse { pair: PAIR, normal: Vec2::new(-0.0, -0.25), time: 0.5 };
 
     fn layout() -> Layout {
-        Layout { particles: 1, impulses: true, polynomials: true, steps: 1 }
+        Layout { particles: 1, has_impulses: true, has_polynomials: true, steps: 1 }
     }
 
     fn state(x: f64) -> State {

@@ -86,11 +86,11 @@ impl Summary {
             layout,
             edges: scene.edges.len(),
             half_planes: scene.half_planes.len(),
-            polynomials_per_pass: if layout.polynomials { pairs(scene).polynomials() as u64 } else { 0 },
+            polynomials_per_pass: if layout.has_polynomials { pairs(scene).polynomials() as u64 } else { 0 },
             ..Self::default()
         };
-        let mut hear = |record, frame: &Frame, notes: &[TraceError]| summary.record(record, frame, notes);
-        summary.trace = Digests::walk(&mut trace, layout, &mut hear);
+        let mut visit = |record, frame: &Frame, notes: &[TraceError]| summary.record(record, frame, notes);
+        summary.trace = Digests::walk(&mut trace, layout, &mut visit);
         summary
     }
 
@@ -136,10 +136,10 @@ impl fmt::Display for Summary {
         if let (count, Some(first)) = &self.notes {
             writeln!(f, "odd            {}, the first: {first}", number(*count, "value"))?;
         }
-        if self.layout.impulses {
+        if self.layout.has_impulses {
             writeln!(f, "impulses       {}", self.impulses)?;
         }
-        if self.layout.polynomials {
+        if self.layout.has_polynomials {
             writeln!(f, "polynomials    {} ({} per detection pass)", self.polynomials, self.polynomials_per_pass)?;
         }
         self.write_collisions(f)?;

@@ -60,13 +60,13 @@ impl<W: Write> Writer<W> {
     /// Writes one frame; lists that the layout does not have are left out.
     pub fn write_frame(&mut self, frame: &Frame) {
         encode::append_state(&mut self.buffer, &frame.state);
-        if self.layout.impulses {
+        if self.layout.has_impulses {
             encode::count(&mut self.buffer, frame.impulses.len());
             for impulse in &frame.impulses {
                 encode::impulse(&mut self.buffer, impulse);
             }
         }
-        if self.layout.polynomials {
+        if self.layout.has_polynomials {
             encode::count(&mut self.buffer, frame.polynomials.len());
             frame.polynomials.iter().for_each(|polynomial| encode::polynomial(&mut self.buffer, polynomial));
         }
@@ -80,7 +80,7 @@ impl<W: Write> Writer<W> {
     /// Once it is [full](Self::is_full), it takes two more records, then they must be written.
     pub(super) fn record(&mut self, state: &State, log: &Log) {
         log.write_head(&mut self.buffer, self.layout, state);
-        if self.layout.polynomials {
+        if self.layout.has_polynomials {
             let polynomials = log.polynomials.bytes();
             if polynomials.len() < LONG {
                 self.buffer.extend_from_slice(polynomials);
@@ -187,7 +187,7 @@ mod tests {
     }
 
     fn layout() -> Layout {
-        Layout { particles: 1, impulses: false, polynomials: false, steps: 3 }
+        Layout { particles: 1, has_impulses: false, has_polynomials: false, steps: 3 }
     }
 
     fn frame() -> Frame {

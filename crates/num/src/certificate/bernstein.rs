@@ -15,9 +15,9 @@ pub(super) fn never_positive(coefficients: &[f64]) -> bool {
     match *coefficients {
         // The value at 0 is the cheapest test; it is positive for most polynomials that are positive anywhere.
         [.., last] if last >= 0.0 => false,
-        [a, b, c, d] => negative(&[a, b, c, d], &[1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]),
-        [a, b, c, d, e] => negative(&[a, b, c, d, e], &[1.0, 0.25, 1.0 / 6.0, 0.25, 1.0]),
-        [a, b, c, d, e, f] => negative(&[a, b, c, d, e, f], &[1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
+        [a, b, c, d] => is_negative_on_unit(&[a, b, c, d], &[1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]),
+        [a, b, c, d, e] => is_negative_on_unit(&[a, b, c, d, e], &[1.0, 0.25, 1.0 / 6.0, 0.25, 1.0]),
+        [a, b, c, d, e, f] => is_negative_on_unit(&[a, b, c, d, e, f], &[1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
         _ => false,
     }
 }
@@ -25,7 +25,7 @@ pub(super) fn never_positive(coefficients: &[f64]) -> bool {
 /// Returns whether all Bernstein coefficients are negative with a margin, and the zeros are near and separated. The
 /// inputs are the coefficients, highest power first, and the reciprocals of the binomial coefficients.
 #[inline(always)]
-fn negative<const LENGTH: usize>(coefficients: &[f64; LENGTH], reciprocals: &[f64; LENGTH]) -> bool {
+fn is_negative_on_unit<const LENGTH: usize>(coefficients: &[f64; LENGTH], reciprocals: &[f64; LENGTH]) -> bool {
     let mut near = coefficients[0].abs();
     let mut size = near;
     let mut zeros_are_near = true;

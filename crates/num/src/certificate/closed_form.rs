@@ -20,9 +20,9 @@ pub(super) fn never_positive(coefficients: &[f64]) -> Option<Level> {
         [] => (Level::Vanishing, true),
         [c] => (Level::Vanishing, c <= 0.0),
         [a, b] if a == 0.0 || b == 0.0 => (Level::Vanishing, b <= 0.0),
-        [a, b] => (Level::Line, line(a, b)),
+        [a, b] => (Level::Line, line_is_excluded(a, b)),
         [a, b, c] if a == 0.0 || (b == 0.0 && c == 0.0) => (Level::Vanishing, c <= 0.0),
-        [a, b, c] => (Level::Parabola, parabola(a, b, c)),
+        [a, b, c] => (Level::Parabola, parabola_is_excluded(a, b, c)),
         _ => (Level::Vanishing, false),
     };
     excluded.then_some(level)
@@ -30,7 +30,7 @@ pub(super) fn never_positive(coefficients: &[f64]) -> Option<Level> {
 
 /// Returns whether the line `a t + b` is excluded; neither may be zero.
 #[inline]
-fn line(a: f64, b: f64) -> bool {
+fn line_is_excluded(a: f64, b: f64) -> bool {
     if a < 0.0 {
         // Positive before its zero at a positive time; only rounding could hide it.
         if b > 0.0 {
@@ -56,8 +56,8 @@ fn exact_line(a: f64, b: f64) -> bool {
 
 /// Returns whether the parabola `a t² + b t + c` is excluded; `a` is not zero, and `b` and `c` are not both zero.
 #[inline]
-fn parabola(a: f64, b: f64, c: f64) -> bool {
-    c < 0.0 && (misses(a, b, c) || negative(a, b, c))
+fn parabola_is_excluded(a: f64, b: f64, c: f64) -> bool {
+    c < 0.0 && (misses(a, b, c) || is_negative_on_unit(a, b, c))
 }
 
 /// Returns whether the parabola clearly has no real zero. The only sample is then the one at 0, which is c.
@@ -82,7 +82,7 @@ fn misses(a: f64, b: f64, c: f64) -> bool {
 /// at most 8 u r^2 |a| = 2^-4 |a|. The samples beyond the outermost zeros have a modulus of at least |a|, and the one
 /// between two zeros on either side of `[0, 1]` at least |a|/4.
 #[inline]
-fn negative(a: f64, b: f64, c: f64) -> bool {
+fn is_negative_on_unit(a: f64, b: f64, c: f64) -> bool {
     let size = a.abs() + b.abs() + c.abs();
     let below = -PARABOLA_MARGIN * size;
     c < below

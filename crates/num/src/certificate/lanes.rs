@@ -21,7 +21,7 @@ pub fn is_small<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
 /// positive within the step.
 #[inline(always)]
 pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
-    let (zero, small) = (a.like(0.0), is_small(a));
+    let (zero, small) = (a.splat_like(0.0), is_small(a));
     // Without the leading coefficient the polynomial is empty, or a constant that is not positive.
     let constant = small & b.below(LEADING_COEFFICIENT);
     let near = a.lt(zero) & b.le(zero) & (LINE_NEAR * a).le(b);
@@ -35,7 +35,7 @@ pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
 /// Performs the root finder's operations: one zero and the samples on its two sides.
 #[inline(always)]
 fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
-    let (nothing, one) = (a.like(0.0), a.like(1.0));
+    let (nothing, one) = (a.splat_like(0.0), a.splat_like(1.0));
     let zero = -b / a;
     let before = nothing.lt(a * (zero - one) + b);
     let after = nothing.lt(a * (zero + one) + b);
@@ -129,7 +129,7 @@ pub fn search_ends<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGT
 #[inline(always)]
 fn ends<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
     let modulus = coefficient.abs();
-    let largest = modulus.like(SEARCH_MAX_COEFFICIENT);
+    let largest = modulus.splat_like(SEARCH_MAX_COEFFICIENT);
     modulus.is_zero() | (modulus.at_least(SEARCH_MIN_COEFFICIENT) & modulus.le(largest))
 }
 
@@ -180,7 +180,7 @@ mod tests {
 
         #[test]
         fn lanes_say_what_single_polynomials_say(lists in prop::array::uniform3(prop::array::uniform8(coefficient()))) {
-            for instructions in [Instructions::default(), Instructions::plain()] {
+            for instructions in [Instructions::default(), Instructions::scalar()] {
                 let answers = instructions.run(Ask(&lists));
                 for lane in 0..MAX_LANES {
                     let [a, b, c] = lists.map(|numbers| numbers[lane]);

@@ -1,5 +1,5 @@
 //! `e^x = 2^(k/128) e^r` with `|r| <= ln 2 / 256` (Tang, ACM TOMS 15, 1989; with a table of 128 powers).
-use super::{fused, tables::POWERS};
+use super::{multiply_add, tables::POWERS};
 
 /// The number 128 / ln 2.
 const PARTS: f64 = f64::from_bits(0x4067_1547_652b_82fe);
@@ -29,24 +29,24 @@ pub fn exp(x: f64) -> f64 {
     if exponent >= TOO_LARGE {
         return if x < 0.0 { 0.0 } else { f64::INFINITY };
     }
-    let shifted = fused(x, PARTS, ROUNDS);
+    let shifted = multiply_add(x, PARTS, ROUNDS);
     let k = shifted.to_bits();
     let parts = shifted - ROUNDS;
-    let r = fused(parts, MINUS_PART[1], fused(parts, MINUS_PART[0], x));
+    let r = multiply_add(parts, MINUS_PART[1], multiply_add(parts, MINUS_PART[0], x));
     let row = 2 * (k & 127) as usize;
     let tail = f64::from_bits(POWERS[row]);
     let power = POWERS[row + 1].wrapping_add(k << 45);
     let square = r * r;
-    let low = fused(fused(r, SERIES[1], SERIES[0]), square, r + tail);
-    let more = fused(square * square, fused(r, SERIES[3], SERIES[2]), low);
+    let low = multiply_add(multiply_add(r, SERIES[1], SERIES[0]), square, r + tail);
+    let more = multiply_add(square * square, multiply_add(r, SERIES[3], SERIES[2]), low);
     if exponent < LARGE {
         let power = f64::from_bits(power);
-        return fused(power, more, power);
+        return multiply_add(power, more, power);
     }
     if k & 0x8000_0000 == 0 {
         // The power may be too large for a number, so it is temporarily reduced by 2^1009.
         let power = f64::from_bits(power.wrapping_sub(1009 << 52));
-        return fused(power, more, power) * f64::from_bits((1023 + 1009) << 52);
+        return multiply_add(power, more, power) * f64::from_bits((1023 + 1009) << 52);
     }
     scale_subnormal(f64::from_bits(power.wrapping_add(1022 << 52)), more) * f64::MIN_POSITIVE
 }

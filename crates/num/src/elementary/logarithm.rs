@@ -1,5 +1,5 @@
 //! `ln x = k ln 2 + ln c + ln(z/c)` for `x = 2^k z` with a `c` close to `z` from a table (Tang, ACM TOMS 16, 1990).
-use super::{fused, tables::LOGARITHMS};
+use super::{multiply_add, tables::LOGARITHMS};
 
 /// The number ln 2 in two parts; a product of the first with an exponent is exact.
 const LN_2: [f64; 2] = [f64::from_bits(0x3fe6_2e42_fefa_3800), f64::from_bits(0x3d2e_f357_93c7_6730)];
@@ -54,13 +54,13 @@ pub fn ln(x: f64) -> f64 {
     let exponent = f64::from((place.cast_signed() >> 52) as i32);
     let z = f64::from_bits(bits.wrapping_sub(place & 0xfff << 52));
     let [reciprocal, logarithm] = [LOGARITHMS[row], LOGARITHMS[row + 1]].map(f64::from_bits);
-    let r = fused(z, reciprocal, -1.0);
-    let high = fused(exponent, LN_2[0], logarithm);
+    let r = multiply_add(z, reciprocal, -1.0);
+    let high = multiply_add(exponent, LN_2[0], logarithm);
     let sum = high + r;
     let square = r * r;
-    let low = fused(square, SERIES[0], fused(exponent, LN_2[1], high - sum + r));
-    let inner = fused(fused(r, SERIES[4], SERIES[3]), square, fused(r, SERIES[2], SERIES[1]));
-    fused(r * square, inner, low) + sum
+    let low = multiply_add(square, SERIES[0], multiply_add(exponent, LN_2[1], high - sum + r));
+    let inner = multiply_add(multiply_add(r, SERIES[4], SERIES[3]), square, multiply_add(r, SERIES[2], SERIES[1]));
+    multiply_add(r * square, inner, low) + sum
 }
 
 /// Returns the logarithm of a number close to one, with the first two terms in double precision arithmetic of two
@@ -73,14 +73,14 @@ fn at_one(x: f64) -> f64 {
     let r = x - 1.0;
     let square = r * r;
     let cube = r * square;
-    let first = fused(square, b[3], fused(r, b[2], b[1]));
-    let second = fused(square, b[6], fused(r, b[5], b[4]));
-    let third = fused(cube, b[10], fused(square, b[9], fused(r, b[8], b[7])));
-    let inner = fused(fused(third, cube, second), cube, first);
-    let high = fused(-HALF, r, fused(r, HALF, r));
+    let first = multiply_add(square, b[3], multiply_add(r, b[2], b[1]));
+    let second = multiply_add(square, b[6], multiply_add(r, b[5], b[4]));
+    let third = multiply_add(cube, b[10], multiply_add(square, b[9], multiply_add(r, b[8], b[7])));
+    let inner = multiply_add(multiply_add(third, cube, second), cube, first);
+    let high = multiply_add(-HALF, r, multiply_add(r, HALF, r));
     let low = r - high;
-    let sum = fused(high * high, b[0], r);
-    let rest = fused(high * high, b[0], r - sum);
-    let rest = fused(b[0] * low, high + r, rest);
-    sum + fused(inner, cube, rest)
+    let sum = multiply_add(high * high, b[0], r);
+    let rest = multiply_add(high * high, b[0], r - sum);
+    let rest = multiply_add(b[0] * low, high + r, rest);
+    sum + multiply_add(inner, cube, rest)
 }

@@ -20,7 +20,7 @@ pub use trigonometry::{cos, sin};
 
 /// Returns `a * b + c`, rounded once.
 #[inline]
-fn fused(a: f64, b: f64, c: f64) -> f64 {
+fn multiply_add(a: f64, b: f64, c: f64) -> f64 {
     a.mul_add(b, c)
 }
 

@@ -1,6 +1,6 @@
 //! Reduces an angle by quarters of a turn: by π/2 in parts (Cody and Waite), or, for very large angles, by the digits
 //! of 2/π (Payne and Hanek, SIGNUM 18, 1983).
-use super::{fused, tables::TWO_OVER_PI};
+use super::{multiply_add, tables::TWO_OVER_PI};
 
 /// An angle near zero, and the number of subtracted quarters of a turn, of which the last two bits count.
 #[derive(Debug, Clone, Copy)]
@@ -37,18 +37,18 @@ const fn power(exponent: i32) -> f64 {
 }
 
 /// Reduces an angle below 1.05e8.
-pub(super) fn near(x: f64) -> ReducedAngle {
-    let shifted = fused(x, TO_QUARTERS, ROUNDS);
+pub(super) fn reduce_small(x: f64) -> ReducedAngle {
+    let shifted = multiply_add(x, TO_QUARTERS, ROUNDS);
     let quarters = shifted - ROUNDS;
-    let first = fused(-quarters, PIECES[1], fused(-quarters, PIECES[0], x));
-    let second = fused(-quarters, PIECES[2], first);
-    let angle = fused(-quarters, PIECES[3], second);
-    let rest = fused(-quarters, PIECES[2], first - second) + fused(-quarters, PIECES[3], second - angle);
+    let first = multiply_add(-quarters, PIECES[1], multiply_add(-quarters, PIECES[0], x));
+    let second = multiply_add(-quarters, PIECES[2], first);
+    let angle = multiply_add(-quarters, PIECES[3], second);
+    let rest = multiply_add(-quarters, PIECES[2], first - second) + multiply_add(-quarters, PIECES[3], second - angle);
     ReducedAngle { quarters: shifted.to_bits() as u32 & 3, angle, rest }
 }
 
 /// Reduces any finite angle from there on.
-pub(super) fn far(x: f64) -> ReducedAngle {
+pub(super) fn reduce_large(x: f64) -> ReducedAngle {
     let x = x * power(-600);
     let scaled = x * SPLITS;
     let high = scaled - (scaled - x);

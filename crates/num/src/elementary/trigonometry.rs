@@ -1,8 +1,8 @@
 //! Sine and cosine by a table of angles in steps of 1/128 and short series in between, like IBM's library (Gal and
 //! Bachelis, ACM TOMS 17, 1991). An angle beyond the table is first reduced to one near zero.
 use super::{
-    fused,
-    reduction::{QUARTER, ReducedAngle, far, near},
+    multiply_add,
+    reduction::{QUARTER, ReducedAngle, reduce_large, reduce_small},
     tables::ANGLES,
 };
 
@@ -62,8 +62,8 @@ fn high_word(angle: f64) -> u32 {
 fn reduce(angle: f64, word: u32) -> Option<ReducedAngle> {
     match word {
         _ if !angle.is_finite() => None,
-        word if word < NEAR_ENDS => Some(near(angle)),
-        _ => Some(far(angle)),
+        word if word < NEAR_ENDS => Some(reduce_small(angle)),
+        _ => Some(reduce_large(angle)),
     }
 }
 
@@ -85,16 +85,16 @@ fn nearest_angle(modulus: f64) -> ([f64; 4], f64) {
 fn sine(x: f64, dx: f64) -> f64 {
     if x.abs() < TAYLOR_ENDS {
         let square = x * x;
-        let series = TAYLOR.iter().rev().copied().reduce(|sum, next| fused(sum, square, next)).unwrap_or(0.0);
-        return x + fused(square, fused(series, x, -(0.5 * dx)), dx);
+        let series = TAYLOR.iter().rev().copied().reduce(|sum, next| multiply_add(sum, square, next)).unwrap_or(0.0);
+        return x + multiply_add(square, multiply_add(series, x, -(0.5 * dx)), dx);
     }
     let ([sine, sine_rest, cosine, cosine_rest], difference) = nearest_angle(x.abs());
     let dx = if x <= 0.0 { -dx } else { dx };
     let square = difference * difference;
-    let s = difference + fused(difference * square, fused(SINE[1], square, SINE[0]), dx);
-    let c = fused(difference, dx, square * cosine_complement(square));
-    let rest = fused(-c, sine, fused(s, cosine_rest, sine_rest));
-    (sine + fused(s, cosine, rest)).copysign(x)
+    let s = difference + multiply_add(difference * square, multiply_add(SINE[1], square, SINE[0]), dx);
+    let c = multiply_add(difference, dx, square * cosine_complement(square));
+    let rest = multiply_add(-c, sine, multiply_add(s, cosine_rest, sine_rest));
+    (sine + multiply_add(s, cosine, rest)).copysign(x)
 }
 
 /// Returns the cosine of `x + dx`, for the same arguments as [`sine`].
@@ -102,13 +102,13 @@ fn cosine(x: f64, dx: f64) -> f64 {
     let ([sine, sine_rest, cosine, cosine_rest], difference) = nearest_angle(x.abs());
     let difference = difference + if x < 0.0 { -dx } else { dx };
     let square = difference * difference;
-    let s = fused(difference * square, fused(SINE[1], square, SINE[0]), difference);
+    let s = multiply_add(difference * square, multiply_add(SINE[1], square, SINE[0]), difference);
     let c = square * cosine_complement(square);
-    let rest = fused(-c, cosine, fused(-s, sine_rest, cosine_rest));
-    cosine + fused(-s, sine, rest)
+    let rest = multiply_add(-c, cosine, multiply_add(-s, sine_rest, cosine_rest));
+    cosine + multiply_add(-s, sine, rest)
 }
 
 /// Returns `(1 - cos x) / x²` for a small `x` with this square.
 fn cosine_complement(square: f64) -> f64 {
-    fused(square, fused(COSINE[2], square, COSINE[1]), COSINE[0])
+    multiply_add(square, multiply_add(COSINE[2], square, COSINE[1]), COSINE[0])
 }

@@ -1,6 +1,6 @@
 //! The first difference: expected and actual values side by side.
 use super::super::{
-    number::{exact, general},
+    number::{exact, format_g},
     style::{Look, Style},
     table::{Align, Cell, Table},
 };
@@ -186,7 +186,7 @@ fn polynomials_with(
             differs: is_missing || differing.contains(&power) || wrong == Some(power),
         }
     };
-    let carried = format!("expected values carry the trace's factor {}; any positive one is right", general(factor));
+    let carried = format!("expected values carry the trace's factor {}; any positive one is right", format_g(factor));
     SideBySide {
         before: vec![logged_by(place)],
         rows: (0..powers).rev().map(row).collect(),

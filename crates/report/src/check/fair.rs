@@ -1,6 +1,6 @@
 //! The fair rules' part of the check report, for people.
 use super::super::{
-    number::{count, general},
+    number::{count, format_g},
     share,
     style::{Look, Style},
     table::{Align, Table},
@@ -20,9 +20,9 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     line(format!("{}: {}", style.paint(look, word), summary(fair, outcome)));
     if let Some([low, high]) = fair.factor {
         let range = if high / low - 1.0 < 1e-9 {
-            general(low)
+            format_g(low)
         } else {
-            format!("between {} and {}", general(low), general(high))
+            format!("between {} and {}", format_g(low), format_g(high))
         };
         line(format!("factor of the polynomials: {range}; any positive factor is right"));
     }

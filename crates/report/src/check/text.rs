@@ -2,7 +2,7 @@
 use super::{
     super::{
         explain,
-        number::{count, format_count, general},
+        number::{count, format_count, format_g},
         share,
         style::{Look, Style},
         table::{Align, Cell, Table},
@@ -225,8 +225,8 @@ fn render_residuals(outcome: &Outcome, style: Style) -> String {
         let verdict = if judged { pass_cell(value < bound) } else { "".into() };
         table.row([
             name.into(),
-            general(value).into(),
-            general(bound).into(),
+            format_g(value).into(),
+            format_g(bound).into(),
             format_share(value, bound).into(),
             verdict,
         ]);

@@ -10,12 +10,12 @@ use fosssim_grading::{
 };
 use fosssim_judge::{FindingKind, fair::Cause};
 use fosssim_mistakes::diagnose::{About, Explanation};
-use fosssim_mistakes::together::settle;
+use fosssim_mistakes::together::reconcile_explanations;
 use fosssim_testing::{Need, skip};
 use std::{path::Path, slice, time::Duration};
 
 fn all() -> [Grade; 3] {
-    [samples::good(), samples::bad(), samples::fault()]
+    [samples::accepted_grade(), samples::failing_grade(), samples::fault()]
 }
 
 fn schema(name: &str) -> serde_json::Value {
@@ -56,7 +56,7 @@ fn nothing_hostile_gets_through_any_format() {
         }
     }
     assert_harmless(&csv_of_submissions(&all(), &[]));
-    let annotations = Format::Github.render(&[samples::bad()]);
+    let annotations = Format::Github.render(&[samples::failing_grade()]);
     assert!(annotations.lines().all(|line| line.starts_with("::error ") || line.starts_with("::warning ")));
     let csv = Format::Csv.render(&all());
     assert!(!csv.contains(",=") && !csv.contains("\n="), "{csv}");
@@ -66,7 +66,7 @@ fn nothing_hostile_gets_through_any_format() {
 fn json_follows_its_schema() {
     assert_valid("grade.schema.json", &Format::Json.render(&all()));
     insta::assert_snapshot!("grade_json", Format::Json.render(&all()).replace(env!("CARGO_PKG_VERSION"), "VERSION"));
-    assert_eq!(json_lines(&[samples::good()], &[]).lines().count(), 1);
+    assert_eq!(json_lines(&[samples::accepted_grade()], &[]).lines().count(), 1);
 }
 
 #[test]
@@ -84,12 +84,12 @@ fn who_is_passed_over_is_told_of_a_class_in_every_format_and_once() {
     }
     assert_valid("grade.schema.json", &Format::Json.render_class(&all(), &passed_over));
     // A class has one suite, and so the same groups.
-    let csv = csv_of_submissions(&[samples::good(), samples::good()], &passed_over);
+    let csv = csv_of_submissions(&[samples::accepted_grade(), samples::accepted_grade()], &passed_over);
     let mut rows = csv::Reader::from_reader(csv.as_bytes());
     let names: Vec<String> = rows.records().map(|row| row.expect("rows of one length")[0].to_owned()).collect();
     assert_eq!(names[2..], [".hidden", "'=a|b,<c>::d"]);
     assert_eq!(json_lines(&all(), &passed_over).lines().count(), 5);
-    let mut one = [samples::good()];
+    let mut one = [samples::accepted_grade()];
     add_warnings(&mut one, &passed_over);
     for format in Format::ALL.iter().filter(|format| **format != Format::Csv) {
         assert!(format.render(&one).contains(".hidden"), "{}", format.name());
@@ -106,7 +106,7 @@ fn gradescope_follows_its_schema() {
     assert!(document.get("score").is_none(), "a fault of ours is nobody's zero");
     insta::assert_snapshot!(
         "grade_gradescope",
-        Format::Gradescope.render(&[samples::bad()]).replace(env!("CARGO_PKG_VERSION"), "VERSION")
+        Format::Gradescope.render(&[samples::failing_grade()]).replace(env!("CARGO_PKG_VERSION"), "VERSION")
     );
 }
 
@@ -118,13 +118,13 @@ fn prairielearn_follows_its_schema() {
     let document: serde_json::Value =
         serde_json::from_str(&Format::Prairielearn.render(&[samples::fault()])).expect("JSON");
     assert_eq!(document["gradable"], false);
-    insta::assert_snapshot!("grade_prairielearn", Format::Prairielearn.render(&[samples::bad()]));
+    insta::assert_snapshot!("grade_prairielearn", Format::Prairielearn.render(&[samples::failing_grade()]));
 }
 
 /// Half of the score beside the word "accepted" needs its reason.
 #[test]
 fn prairielearn_says_that_groups_which_are_not_shown_count() {
-    let mut grade = samples::good();
+    let mut grade = samples::accepted_grade();
     grade.groups.retain(|group| group.visibility == Visibility::Visible);
     assert!(Format::Prairielearn.render(&[grade.clone()]).contains(r#""message": "accepted""#));
     let hidden = fosssim_grading::GroupGrade {
@@ -187,7 +187,7 @@ fn an_untouched_template_is_told_in_ten_lines() {
 /// One scene alone takes a loop that is one round short for an empty one: no format says what all scenes together deny.
 #[test]
 fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
-    let mut grade = samples::good();
+    let mut grade = samples::accepted_grade();
     let named = |key: &str, same_as: &[&str]| Explanation {
         key: key.to_owned(),
         same_as: same_as.iter().map(|&key| key.to_owned()).collect(),
@@ -206,7 +206,7 @@ fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
     }
     grade.groups.iter_mut().for_each(|group| group.visibility = Visibility::Visible);
     grade.verdict = Verdict::WrongAnswer;
-    settle(&mut grade);
+    reconcile_explanations(&mut grade);
     for format in Format::ALL {
         let document = format.render(std::slice::from_ref(&grade));
         let said = if *format == Format::Csv { "loop-one-fewer" } else { "one round fewer" };
@@ -223,7 +223,7 @@ fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
 /// Where a program crashes stands in every format at the top.
 #[test]
 fn what_failing_scenes_have_in_common_is_told_in_every_format() {
-    let mut grade = samples::good();
+    let mut grade = samples::accepted_grade();
     grade.groups[0].scenes[0].result.verdict = Verdict::RuntimeError;
     grade.groups[1].visibility = Visibility::Visible;
     grade.verdict = Verdict::RuntimeError;
@@ -296,7 +296,10 @@ fn junit_follows_its_schema() {
 fn text_csv_and_github_read_well() {
     insta::assert_snapshot!("grade_text", Format::Text.render(&all()));
     insta::assert_snapshot!("grade_csv", Format::Csv.render(&all()));
-    insta::assert_snapshot!("grade_submissions_csv", csv_of_submissions(&[samples::good(), samples::good()], &[]));
+    insta::assert_snapshot!(
+        "grade_submissions_csv",
+        csv_of_submissions(&[samples::accepted_grade(), samples::accepted_grade()], &[])
+    );
     insta::assert_snapshot!("grade_github", Format::Github.render(&all()));
     insta::assert_snapshot!("grade_markdown", Format::Markdown.render(&all()));
 }
@@ -305,7 +308,7 @@ fn text_csv_and_github_read_well() {
 #[test]
 fn with_hidden_groups_students_are_told_nothing_that_a_program_chose() {
     let failing = |choice: u32| {
-        let mut grade = samples::good();
+        let mut grade = samples::accepted_grade();
         let visible = &mut grade.groups[0].scenes;
         visible[0].result.verdict = Verdict::WrongAnswer;
         let kind = if choice == 1 { FindingKind::Position } else { FindingKind::Coefficient };

@@ -26,7 +26,7 @@ pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
         (is_right, is_left_out, rank(&likely, &first.settled), Reverse(scenes.len()), *place)
     });
     for (_, scenes) in &mut causes {
-        let best = (0..scenes.len()).min_by_key(|&place| obscurity(scenes[place])).unwrap_or(0);
+        let best = (0..scenes.len()).min_by_key(|&place| clarity_rank(scenes[place])).unwrap_or(0);
         scenes[..=best].rotate_right(1);
     }
     causes.into_iter().map(|(_, scenes)| scenes).collect()
@@ -35,7 +35,7 @@ pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
 /// Returns the scene that shows a mistake best.
 pub(crate) fn clearest_scene<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
     let named = grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
-    named.min_by_key(|scene| obscurity(scene))
+    named.min_by_key(|scene| clarity_rank(scene))
 }
 
 /// Returns the rank of the best of some explanations among the likely mistakes. Other explanations come after them, and
@@ -48,7 +48,7 @@ pub(crate) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
 /// Returns how hard a cause is to see in a scene; the smallest value is the clearest scene. The criteria are, in this
 /// order: whether the rule books differ (the fault may be round-off), the number of named mistakes, the number of
 /// mistakes with the same effect, the number of faults (which grows with the motion), and its length.
-fn obscurity(scene: &SceneGrade) -> (bool, usize, usize, u64, u32) {
+fn clarity_rank(scene: &SceneGrade) -> (bool, usize, usize, u64, u32) {
     let found = scene.disclosure.as_ref().map_or(0, |all| all.official().counts.total());
     (scene.differs.is_some(), scene.settled.len(), scene.explanations.len(), found, scene.steps)
 }

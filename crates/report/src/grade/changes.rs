@@ -48,10 +48,10 @@ mod tests {
 
     #[test]
     fn changes_of_hidden_groups_are_not_told_to_students() {
-        let mut then = samples::good();
+        let mut then = samples::accepted_grade();
         then.groups[1].points = Some(0.0);
         then.groups[1].scenes[0].result.verdict = Verdict::TimeLimit;
-        let mut now = samples::good();
+        let mut now = samples::accepted_grade();
         now.groups[0].points = Some(5.0);
         now.groups[0].scenes[0].result.verdict = Verdict::WrongAnswer;
         (now.points, now.before) = (Some(15.0), Some((&then).into()));

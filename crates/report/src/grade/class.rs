@@ -202,7 +202,7 @@ mod tests {
 
     #[test]
     fn a_class_is_summed_up() {
-        let grades = [samples::good(), samples::bad(), samples::fault(), samples::stopped_grade()];
+        let grades = [samples::accepted_grade(), samples::failing_grade(), samples::fault(), samples::stopped_grade()];
         insta::assert_snapshot!(class(&grades, 3, Style::Plain));
         assert!(class(&grades, usize::MAX, Style::Plain).contains("Rest/SV"), "the whole list");
     }
@@ -213,7 +213,7 @@ mod tests {
             submission: name.to_owned(),
             program: Some(program.to_owned()),
             same_program: same.iter().map(|name| (*name).to_owned()).collect(),
-            ..samples::good()
+            ..samples::accepted_grade()
         };
         let grades = [with("zoe", "1", &["kim"]), with("ann", "2", &[]), with("kim", "1", &["zoe"])];
         assert!(class(&grades, 3, Style::Plain).ends_with("The same program, byte for byte\n  zoe, kim\n"));
@@ -232,6 +232,9 @@ mod tests {
     fn what_was_not_run_or_not_judged_is_no_failure_of_a_scene() {
         let grades = [samples::fault(), samples::stopped_grade()];
         assert_eq!(find_hardest(&grades), (Vec::new(), 1));
-        assert_eq!(find_hardest(&[samples::bad(), samples::unfit()]), find_hardest(&[samples::bad()]));
+        assert_eq!(
+            find_hardest(&[samples::failing_grade(), samples::unfit()]),
+            find_hardest(&[samples::failing_grade()])
+        );
     }
 }

@@ -13,9 +13,9 @@ pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
         grade.groups.iter().flat_map(move |group| {
             group.scenes.iter().map(move |scene| {
                 vec![
-                    safe(&grade.submission),
-                    safe(&group.name),
-                    safe(&scene.scene),
+                    escape_formula(&grade.submission),
+                    escape_formula(&group.name),
+                    escape_formula(&scene.scene),
                     scene.verdict.code().to_owned(),
                     scene.points.map(points).unwrap_or_default(),
                     points(scene.max_points),
@@ -23,9 +23,9 @@ pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
                     scene.steps.to_string(),
                     format!("{:.3}", scene.measured.cpu.as_secs_f64()),
                     format!("{:.3}", scene.measured.wall.as_secs_f64()),
-                    safe(&words::summary(scene)),
+                    escape_formula(&words::summary(scene)),
                     scene.differs.map(|cause| key(&cause)).unwrap_or_default(),
-                    scene.settled.first().map(|likeliest| safe(&likeliest.key)).unwrap_or_default(),
+                    scene.settled.first().map(|likeliest| escape_formula(&likeliest.key)).unwrap_or_default(),
                 ]
             })
         })
@@ -46,15 +46,15 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
                 reason,same_program,worth";
     let mut head: Vec<String> = head.split(',').map(str::to_owned).collect();
     if let Some(first) = grades.first() {
-        head.extend(first.groups.iter().map(|group| safe(&group.name)));
+        head.extend(first.groups.iter().map(|group| escape_formula(&group.name)));
         let timed = first.groups.iter().filter(|group| group.speed.is_some());
-        head.extend(timed.map(|group| safe(&format!("{}: times the reference", group.name))));
+        head.extend(timed.map(|group| escape_formula(&format!("{}: times the reference", group.name))));
     }
     let rows = grades.iter().map(|grade| {
         let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
         let mistakes: Vec<String> = grade.located.iter().map(words::describe_located).chain(mistakes).collect();
         let mut row = vec![
-            safe(&grade.submission),
+            escape_formula(&grade.submission),
             grade.verdict.name().to_owned(),
             grade.points.map(points).unwrap_or_default(),
             points(grade.max_points),
@@ -62,9 +62,9 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
             grade.scenes().count().to_string(),
             format!("{:.3}", grade.wall.as_secs_f64()),
             grade.differing().to_string(),
-            safe(&mistakes.join(" ")),
-            safe(&no_points(grade).or_else(|| words::reason(grade)).unwrap_or_default()),
-            safe(&grade.same_program.join(", ")),
+            escape_formula(&mistakes.join(" ")),
+            escape_formula(&no_points(grade).or_else(|| words::reason(grade)).unwrap_or_default()),
+            escape_formula(&grade.same_program.join(", ")),
             likely_mistakes(grade).first().map(|(first, _)| points(worth(grade, first))).unwrap_or_default(),
         ];
         row.extend(grade.groups.iter().map(|group| group.points.map(points).unwrap_or_default()));
@@ -81,9 +81,9 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
 /// Returns rows for entries that are not graded, with the reason in the column for reasons.
 fn empty_rows(passed_over: &[PassedOver], head: &[String], reasons: &str) -> Vec<Vec<String>> {
     let cell = |entry: &PassedOver, column: &str| match column {
-        "submission" => safe(&entry.name),
+        "submission" => escape_formula(&entry.name),
         "verdict" => NOT_GRADED.to_owned(),
-        column if column == reasons => safe(&entry.why),
+        column if column == reasons => escape_formula(&entry.why),
         _ => String::new(),
     };
     // A group may have the name of a column.
@@ -103,7 +103,7 @@ fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
 
 /// Returns text that no spreadsheet reads as a formula. Text that begins like an escaped formula is escaped again, so
 /// that different texts have different cells.
-fn safe(text: &str) -> String {
+fn escape_formula(text: &str) -> String {
     const FORMULAS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
     let text = one_line(text);
     let begins = |c: char| c == '\'' || c.is_whitespace();
@@ -116,10 +116,13 @@ mod tests {
 
     #[test]
     fn formulas_are_defused() {
-        assert_eq!(safe("=HYPERLINK(\"x\")"), "'=HYPERLINK(\"x\")");
-        assert_eq!(safe(" @SUM(A1)"), "' @SUM(A1)");
-        assert_eq!(safe("a=b"), "a=b");
-        assert_eq!(safe("\u{ff1d}cmd"), "'\u{ff1d}cmd");
-        assert_eq!((safe("'=cmd").as_str(), safe("'").as_str(), safe("O'-x").as_str()), ("''=cmd", "'", "O'-x"));
+        assert_eq!(escape_formula("=HYPERLINK(\"x\")"), "'=HYPERLINK(\"x\")");
+        assert_eq!(escape_formula(" @SUM(A1)"), "' @SUM(A1)");
+        assert_eq!(escape_formula("a=b"), "a=b");
+        assert_eq!(escape_formula("\u{ff1d}cmd"), "'\u{ff1d}cmd");
+        assert_eq!(
+            (escape_formula("'=cmd").as_str(), escape_formula("'").as_str(), escape_formula("O'-x").as_str()),
+            ("''=cmd", "'", "O'-x")
+        );
     }
 }

@@ -1,7 +1,7 @@
 //! Gradescope's results.json. If the grader failed there is no score: the harness exits with an error instead of giving
 //! zero points.
 use super::{super::explain, describe_difference, describe_speed, head_lines, points, see_above};
-use crate::foreign::{clean_output, plain};
+use crate::foreign::{clean_output, strip_control_characters};
 use crate::{number::format_count, style::Style, view::document, words};
 use fosssim_findings::{
     Grade, SceneGrade, Verdict, Visibility,
@@ -58,7 +58,7 @@ pub(crate) fn render(grade: &Grade) -> String {
                 score: grade.points.and(scene.points).map(round_points),
                 max_score: round_points(scene.max_points),
                 status: if scene.verdict.is_accepted() { "passed" } else { "failed" },
-                name: format!("{} ({})", plain(&scene.scene), plain(&group.name)),
+                name: format!("{} ({})", strip_control_characters(&scene.scene), strip_control_characters(&group.name)),
                 number: format!("{}.{}", g + 1, s + 1),
                 output: match grade.unfit() {
                     Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
@@ -83,9 +83,9 @@ pub(crate) fn render(grade: &Grade) -> String {
                 score: grade.points.and(speed.points).map(round_points),
                 max_score: round_points(speed.marking.points),
                 status: if speed.points == Some(speed.marking.points) { "passed" } else { "failed" },
-                name: format!("speed ({})", plain(&group.name)),
+                name: format!("speed ({})", strip_control_characters(&group.name)),
                 number: format!("{}.{}", g + 1, group.scenes.len() + 1),
-                output: plain(&words),
+                output: strip_control_characters(&words),
                 tags: vec!["speed".to_owned()],
                 visibility: group.visibility,
             });
@@ -102,7 +102,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         tests,
         extra_data: Extra {
             verdict: grade.verdict.name(),
-            suite: plain(&grade.suite),
+            suite: strip_control_characters(&grade.suite),
             version: env!("CARGO_PKG_VERSION"),
             sandbox: grade.layers.clone(),
         },
@@ -122,13 +122,13 @@ fn describe_grade(grade: &Grade) -> String {
         None => describe_timeout(grade),
     }];
     if let Some(build) = grade.failed_build() {
-        lines.push(format!("{}\n{}", plain(&words::build(&build.end)), clean_output(&build.output)));
+        lines.push(format!("{}\n{}", strip_control_characters(&words::build(&build.end)), clean_output(&build.output)));
     } else {
         // A fault of the upload reveals no scene.
         let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
-        lines.extend(head_lines(&shown).iter().map(|line| plain(line)));
+        lines.extend(head_lines(&shown).iter().map(|line| strip_control_characters(line)));
     }
-    lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", plain(warning))));
+    lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", strip_control_characters(warning))));
     lines.join("\n")
 }
 
@@ -145,8 +145,11 @@ fn describe_timeout(grade: &Grade) -> String {
         && (grade.shows_output || grade.is_visible())
     {
         let _ = write!(text, " Your program took {:.1} s", grade.wall.as_secs_f64());
-        let (seconds, scene, summary) =
-            (longest.measured.wall.as_secs_f64(), plain(&longest.scene), plain(&words::summary(longest)));
+        let (seconds, scene, summary) = (
+            longest.measured.wall.as_secs_f64(),
+            strip_control_characters(&longest.scene),
+            strip_control_characters(&words::summary(longest)),
+        );
         let _ = match group.visibility {
             Visibility::Visible => write!(text, ", {seconds:.1} s of it in scene {scene}: {summary}."),
             _ => write!(text, ", {seconds:.1} s of it in one scene."),
@@ -156,10 +159,10 @@ fn describe_timeout(grade: &Grade) -> String {
 }
 
 fn describe_scene(scene: &SceneGrade) -> String {
-    let mut lines = vec![format!("{}: {}", scene.verdict, plain(&words::summary(scene)))];
+    let mut lines = vec![format!("{}: {}", scene.verdict, strip_control_characters(&words::summary(scene)))];
     lines.extend(describe_difference(scene));
-    lines.extend(words::details(scene).iter().map(|detail| plain(detail)));
-    lines.extend(explain::lines(&scene.settled, Style::Plain).iter().map(|line| plain(line)));
+    lines.extend(words::details(scene).iter().map(|detail| strip_control_characters(detail)));
+    lines.extend(explain::lines(&scene.settled, Style::Plain).iter().map(|line| strip_control_characters(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(format!("The program's standard error:\n{}", clean_output(&scene.stderr)));
     }

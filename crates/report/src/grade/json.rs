@@ -1,6 +1,6 @@
 //! The program's own JSON (`schemas/grade.schema.json`), with everything in a grade.
 use super::{super::explain::ExplanationView, describe_speed, phrases::NOT_GRADED};
-use crate::foreign::{clean_output, plain};
+use crate::foreign::{clean_output, strip_control_characters};
 use crate::{
     check::CauseView,
     smallest::SmallestView,
@@ -43,9 +43,9 @@ view! {
     #[schemars(deny_unknown_fields)]
     struct GradeView from grade: Grade {
         /// The submission's name.
-        submission: String = plain(&grade.submission),
+        submission: String = strip_control_characters(&grade.submission),
         /// The suite's name.
-        suite: String = plain(&grade.suite),
+        suite: String = strip_control_characters(&grade.suite),
         /// The requested rule books.
         rules: Rules = grade.rules,
         /// The book that gives verdicts and points.
@@ -69,11 +69,11 @@ view! {
         /// The layers of the sandbox that were active.
         sandbox: Vec<String> = grade.layers.clone(),
         /// The weaknesses of the sandbox on this host.
-        warnings: Vec<String> = grade.warnings.iter().map(|warning| plain(warning)).collect(),
+        warnings: Vec<String> = grade.warnings.iter().map(|warning| strip_control_characters(warning)).collect(),
         /// The fault of the whole submission as a sentence, such as a program of another milestone; left out if there
         /// is none.
         #[serde(skip_serializing_if = "Option::is_none")]
-        unfit: Option<String> = words::describe_unfit(grade).map(|unfit| plain(&unfit)),
+        unfit: Option<String> = words::describe_unfit(grade).map(|unfit| strip_control_characters(&unfit)),
         /// The end of the build; null if the suite builds nothing.
         build: Option<BuildView> = grade.build.as_ref().map(BuildView::from),
         /// The common contents of the scenes in which the program crashes or exceeds a limit; null if there are none.
@@ -98,7 +98,7 @@ view! {
             .collect(),
         /// Other submissions with an identical program (at most 20); left out if there are none.
         #[serde(skip_serializing_if = "Vec::is_empty")]
-        same_program: Vec<String> = grade.same_program.iter().map(|name| plain(name)).collect(),
+        same_program: Vec<String> = grade.same_program.iter().map(|name| strip_control_characters(name)).collect(),
         /// The changes since an earlier grading; left out if none was given.
         #[serde(skip_serializing_if = "Option::is_none")]
         changes: Option<ChangesView> = grade.changes().as_ref().map(ChangesView::from),
@@ -116,11 +116,11 @@ view! {
         /// The maximum number of points in the earlier grading.
         max_points: f64 = changes.max_points,
         /// The scenes that became right.
-        right: Vec<String> = changes.right.iter().map(|scene| plain(&scene.scene)).collect(),
+        right: Vec<String> = changes.right.iter().map(|scene| strip_control_characters(&scene.scene)).collect(),
         /// The scenes that are no longer right.
-        broke: Vec<String> = changes.broke.iter().map(|scene| plain(&scene.scene)).collect(),
+        broke: Vec<String> = changes.broke.iter().map(|scene| strip_control_characters(&scene.scene)).collect(),
         /// The scenes that fail with another verdict than before.
-        others: Vec<String> = changes.others.iter().map(|(scene, _)| plain(&scene.scene)).collect(),
+        others: Vec<String> = changes.others.iter().map(|(scene, _)| strip_control_characters(&scene.scene)).collect(),
     }
 }
 
@@ -129,7 +129,7 @@ view! {
     #[schemars(deny_unknown_fields)]
     struct LocatedView from found: LocatedFailure {
         /// The common contents as a sentence.
-        text: String = plain(&words::describe_located(found)),
+        text: String = strip_control_characters(&words::describe_located(found)),
         /// The number of scenes in which the program fails.
         failed: usize = found.failed,
         /// The number of failing scenes that have the contents.
@@ -137,7 +137,7 @@ view! {
         /// The number of scenes with the contents in which the program does not fail.
         without: usize = found.without,
         /// The first scene in which the program fails.
-        first_scene: String = plain(&found.first),
+        first_scene: String = strip_control_characters(&found.first),
         /// The last step of that scene that is complete in the trace.
         last_complete_step: u32 = found.step,
     }
@@ -150,7 +150,7 @@ view! {
         /// Whether the build made a program.
         succeeded: bool = build.end.is_success(),
         /// The end of the build as a sentence.
-        end: String = plain(&words::build(&build.end)),
+        end: String = strip_control_characters(&words::build(&build.end)),
         /// The compiler's output, truncated if it is long.
         output: String = clean_output(&build.output),
     }
@@ -161,7 +161,7 @@ view! {
     #[schemars(deny_unknown_fields)]
     struct GroupView from group: GroupGrade {
         /// The group's name.
-        name: String = plain(&group.name),
+        name: String = strip_control_characters(&group.name),
         /// The visibility of the group's results.
         visibility: Visibility = group.visibility,
         /// The worst verdict of the group's scenes.
@@ -198,7 +198,7 @@ view! {
         #[schemars(range(min = 0.0))]
         max_points: f64 = speed.marking.points,
         /// The measurement as a sentence.
-        text: String = plain(&describe_speed(speed)),
+        text: String = strip_control_characters(&describe_speed(speed)),
         /// The submission's minimum processor time, divided by the reference's.
         #[schemars(range(min = 0.0))]
         ratio: Option<f64> = measure_ratio(speed).map(|measured| measured.ratio),
@@ -218,7 +218,7 @@ view! {
     #[schemars(deny_unknown_fields)]
     struct SceneView from scene: SceneGrade {
         /// The scene's name.
-        scene: String = plain(&scene.scene),
+        scene: String = strip_control_characters(&scene.scene),
         /// The scene's verdict.
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::name)))]
         verdict: &'static str = scene.verdict.name(),
@@ -226,11 +226,11 @@ view! {
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
         code: &'static str = scene.verdict.code(),
         /// The reason for the verdict, in one line.
-        summary: String = plain(&words::summary(scene)),
+        summary: String = strip_control_characters(&words::summary(scene)),
         /// The rule by which the two rule books judge the scene differently; null if they agree.
         difference: Option<CauseView> = scene.differs.as_ref().map(CauseView::from),
         /// The place of the first difference, and the number of findings of each kind, if hints allow it.
-        details: Vec<String> = words::details(scene).iter().map(|detail| plain(detail)).collect(),
+        details: Vec<String> = words::details(scene).iter().map(|detail| strip_control_characters(detail)).collect(),
         /// The likely mistakes, the likeliest first, if hints allow it.
         explanations: Vec<ExplanationView> = scene.settled.iter().map(ExplanationView::from).collect(),
         /// The points reached; null if the grader failed or did not run the scene.
@@ -268,7 +268,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
 }
 
 fn with_plain_words(entry: &PassedOver) -> PassedOver {
-    PassedOver { name: plain(&entry.name), why: plain(&entry.why) }
+    PassedOver { name: strip_control_characters(&entry.name), why: strip_control_characters(&entry.why) }
 }
 
 /// Returns a line per grade, and a line per entry that is not a submission.

@@ -1,6 +1,6 @@
 //! JUnit XML: a suite per group, a case per scene. Wrong programs are failures; errors of the grader are errors.
 use super::{super::explain, describe_difference, head_lines, phrases::NOT_GRADED};
-use crate::foreign::{clean_output, plain};
+use crate::foreign::{clean_output, strip_control_characters};
 use crate::{style::Style, words};
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
@@ -13,17 +13,27 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
             report.add_test_suite(fault_suite(grade, &unfit));
         }
         for group in &grade.groups {
-            let mut suite = TestSuite::new(format!("{}: {}", plain(&grade.submission), plain(&group.name)));
+            let mut suite = TestSuite::new(format!(
+                "{}: {}",
+                strip_control_characters(&grade.submission),
+                strip_control_characters(&group.name)
+            ));
             for (number, warning) in grade.warnings.iter().enumerate() {
-                suite.add_property(quick_junit::Property::new(format!("warning.{number}"), plain(warning)));
+                suite.add_property(quick_junit::Property::new(
+                    format!("warning.{number}"),
+                    strip_control_characters(warning),
+                ));
             }
             for (number, line) in head_lines(grade).iter().enumerate().filter(|_| grade.unfit().is_none()) {
-                suite.add_property(quick_junit::Property::new(format!("likely_mistake.{number}"), plain(line)));
+                suite.add_property(quick_junit::Property::new(
+                    format!("likely_mistake.{number}"),
+                    strip_control_characters(line),
+                ));
             }
             for scene in &group.scenes {
                 // A test case can contain only its result and the program's output.
                 if let Some(words) = describe_difference(scene) {
-                    let name = format!("rules_differ.{}", plain(&scene.scene));
+                    let name = format!("rules_differ.{}", strip_control_characters(&scene.scene));
                     suite.add_property(quick_junit::Property::new(name, words));
                 }
                 suite.add_test_case(test_case(grade, scene));
@@ -35,8 +45,8 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
         let mut suite = TestSuite::new(NOT_GRADED);
         for PassedOver { name, why } in passed_over {
             let mut status = TestCaseStatus::skipped();
-            status.set_message(plain(why));
-            suite.add_test_case(TestCase::new(plain(name), status));
+            status.set_message(strip_control_characters(why));
+            suite.add_test_case(TestCase::new(strip_control_characters(name), status));
         }
         report.add_test_suite(suite);
     }
@@ -47,13 +57,13 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
 fn fault_suite(grade: &Grade, unfit: &str) -> TestSuite {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
     status.set_type(grade.verdict.name());
-    status.set_message(plain(unfit));
+    status.set_message(strip_control_characters(unfit));
     if let Some(build) = &grade.build {
         status.set_description(clean_output(&build.output));
     }
     let mut case = TestCase::new("submission", status);
-    case.set_classname(plain(&grade.submission));
-    let mut suite = TestSuite::new(format!("{}: submission", plain(&grade.submission)));
+    case.set_classname(strip_control_characters(&grade.submission));
+    let mut suite = TestSuite::new(format!("{}: submission", strip_control_characters(&grade.submission)));
     suite.add_test_case(case);
     suite
 }
@@ -67,20 +77,20 @@ fn test_case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             let kind = if verdict == Verdict::JudgeError { NonSuccessKind::Error } else { NonSuccessKind::Failure };
             let mut status = TestCaseStatus::non_success(kind);
             status.set_type(verdict.name());
-            status.set_message(plain(&words::summary(scene)));
+            status.set_message(strip_control_characters(&words::summary(scene)));
             let mut description = words::details(scene);
             description.extend(explain::lines(&scene.settled, Style::Plain));
             if let Some(build) = grade.failed_build() {
                 description.extend([words::build(&build.end), clean_output(&build.output)]);
             }
             if !description.is_empty() {
-                status.set_description(plain(&description.join("\n")));
+                status.set_description(strip_control_characters(&description.join("\n")));
             }
             status
         }
     };
-    let mut case = TestCase::new(plain(&scene.scene), status);
-    case.set_classname(plain(&grade.submission));
+    let mut case = TestCase::new(strip_control_characters(&scene.scene), status);
+    case.set_classname(strip_control_characters(&grade.submission));
     case.set_time(scene.measured.wall);
     if !scene.stdout.is_empty() {
         case.set_system_out(clean_output(&scene.stdout));

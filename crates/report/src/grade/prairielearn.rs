@@ -1,7 +1,7 @@
 //! PrairieLearn's results.json: a score from 0 to 1. `gradable: false` stands for errors of the grader and for uploads
 //! without a runnable program, which do not count as an attempt.
 use super::{super::explain, describe_difference, describe_speed, head_lines, score, see_above};
-use crate::foreign::{clean_output, one_line, plain};
+use crate::foreign::{clean_output, one_line, strip_control_characters};
 use crate::{style::Style, view::document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
@@ -130,7 +130,7 @@ fn describe_scene(scene: &SceneGrade) -> String {
 }
 
 fn cut(text: &str) -> String {
-    let text = plain(text);
+    let text = strip_control_characters(text);
     match text.char_indices().nth(MAX_TEXT_LENGTH) {
         Some((end, _)) => format!("{} [cut short]", &text[..end]),
         None => text,

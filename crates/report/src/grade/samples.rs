@@ -9,7 +9,7 @@ use fosssim_grading::{
 };
 use fosssim_judge::{Book, FindingCounts, FindingKind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
 use fosssim_mistakes::diagnose::{About, Explanation};
-use fosssim_mistakes::together::settle;
+use fosssim_mistakes::together::reconcile_explanations;
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::{collections::BTreeMap, time::Duration};
 
@@ -67,7 +67,7 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
 }
 
 /// Returns a grade with everything accepted.
-pub(crate) fn good() -> Grade {
+pub(crate) fn accepted_grade() -> Grade {
     let scenes = |names: &[&str]| {
         names.iter().map(|name| scene(name, Verdict::Accepted, "all 100 steps are right")).collect::<Vec<_>>()
     };
@@ -81,7 +81,7 @@ pub(crate) fn good() -> Grade {
 }
 
 /// Returns a grade with every verdict of a run, and with texts that try to break the report's syntax.
-pub(crate) fn bad() -> Grade {
+pub(crate) fn failing_grade() -> Grade {
     let mut wrong =
         scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");
     wrong.differs = Some(Cause::AbsoluteCoefficients);
@@ -204,7 +204,7 @@ pub(crate) fn unwritten() -> Grade {
             group("Impulses", Visibility::Visible, scenes("Impulses")),
         ],
     );
-    settle(&mut grade);
+    reconcile_explanations(&mut grade);
     grade
 }
 

@@ -3,7 +3,7 @@ use super::{
     markup::{mark_difference, number},
     render_template,
 };
-use crate::{describe::pair_key, detect::Detect, number::general};
+use crate::{describe::pair_key, detect::Detect, number::format_g};
 use askama::Template;
 use fosssim_evidence::{CallLog, InspectedCall};
 use fosssim_judge::{
@@ -79,7 +79,7 @@ impl CallContent<'_> {
 
 /// Returns the decision by the expected polynomials.
 fn describe_decision(study: &Study) -> String {
-    Detect { study, place: None }.decision(general)
+    Detect { study, place: None }.decision(format_g)
 }
 
 /// Returns whether a curve has a zero within the step. Curves without are flat lines, which text describes better.

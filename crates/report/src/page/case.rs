@@ -191,7 +191,7 @@ impl TraceContent<'_> {
             out += &figure(&residuals.svg(PlotTarget::Page));
         }
         let differ = evidence.steps.iter().any(|step| step.actual_passes != Some(step.expected_passes));
-        if evidence.layout.polynomials && differ {
+        if evidence.layout.has_polynomials && differ {
             out += &figure(&passes.svg(PlotTarget::Page));
         }
         if out.is_empty() { out } else { format!("<div class=\"charts\">\n{out}</div>\n") }

@@ -154,7 +154,7 @@ impl ClassContent<'_> {
     }
 
     /// Returns the address of the first submission's page that shows a wrong scene.
-    fn shows(&self, name: &str) -> Option<String> {
+    fn scenes_naming(&self, name: &str) -> Option<String> {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
         self.class.grades.iter().find(fails).map(|grade| self.address(grade, name))
     }
@@ -324,7 +324,7 @@ mod tests {
             points: groups.iter().map(|group| group.points).sum(),
             max_points: 100.0,
             groups,
-            ..samples::good()
+            ..samples::accepted_grade()
         }
     }
 

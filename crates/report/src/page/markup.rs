@@ -1,6 +1,6 @@
 //! HTML with untrusted text in it, which is escaped.
 use crate::foreign::is_unseen;
-use crate::number::{format_count, format_pair, general};
+use crate::number::{format_count, format_g, format_pair};
 use fosssim_findings::CourseNote;
 use std::fmt::Write;
 
@@ -69,7 +69,7 @@ pub(super) fn data(value: &serde_json::Value) -> String {
 
 /// Returns a number in a table.
 pub(super) fn number(value: f64) -> String {
-    text(&general(value))
+    text(&format_g(value))
 }
 
 /// Returns two numbers as HTML, with marks on the digits of the second that differ from the first. Numbers that count

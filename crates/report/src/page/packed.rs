@@ -135,7 +135,7 @@ mod tests {
     use fosssim_model::trace::Layout;
 
     fn evidence(particles: usize, steps: u32, value: impl Fn(usize) -> f64) -> Evidence {
-        let layout = Layout { particles, impulses: false, polynomials: false, steps };
+        let layout = Layout { particles, has_impulses: false, has_polynomials: false, steps };
         let records = steps as usize + 1;
         let track = Track { values: (0..4 * particles * records).map(value).collect(), records };
         let (window, inspected) = (Window { first: 0, last: steps }, Vec::new());

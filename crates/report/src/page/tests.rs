@@ -240,7 +240,7 @@ fn wrong(results: Vec<SceneResult>, hints: Hints) -> Grade {
         groups: vec![with_results(marking(hints), results)],
         verdict: Verdict::WrongAnswer,
         shows_output: true,
-        ..crate::grade::samples::good()
+        ..crate::grade::samples::accepted_grade()
     }
 }
 
@@ -362,9 +362,9 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let mut grade = Grade {
         groups: vec![with_results(marking(Hints::Full), results)],
         verdict: Verdict::RuntimeError,
-        ..crate::grade::samples::good()
+        ..crate::grade::samples::accepted_grade()
     };
-    fosssim_mistakes::together::settle(&mut grade);
+    fosssim_mistakes::together::reconcile_explanations(&mut grade);
     let html = GradePage { grade: &grade, card: &card, class: None, reader: Audience::Staff }.html();
     let articles: Vec<&str> = html.split("<article ").skip(1).collect();
     let order = [small, large, "Group/crash"];
@@ -420,7 +420,7 @@ fn a_student_s_page_has_no_hidden_group() {
         points: Some(0.0),
         max_points: 37.0,
         shows_output: true,
-        ..crate::grade::samples::good()
+        ..crate::grade::samples::accepted_grade()
     };
     let page = |reader| GradePage { grade: &grade, card: &|_| card.clone(), class: None, reader }.html();
     let (staff, student) = (page(Audience::Staff), page(Audience::Student));
@@ -440,7 +440,7 @@ fn a_course_adds_its_own_words() {
     let (_, result) =
         drawn(&asset("ContinuousTimeTests/spinning-edge-sweeps-balls.xml"), "pe-linear-one-ab", Hints::Full);
     let mut grade = wrong(vec![result], Hints::Full);
-    fosssim_mistakes::together::settle(&mut grade);
+    fosssim_mistakes::together::reconcile_explanations(&mut grade);
     let note = CourseNote {
         text: Some("Lecture <9>.".to_owned()),
         link: Some("https://example.edu/9?a&b".to_owned()),

@@ -101,7 +101,7 @@ fn settle(order: &RunOrder) -> Result<Side, Failure> {
     sys::new_session().map_err(stage("start the supervisor's session"))?;
     let alone = sys::single_thread().map_err(stage("fork"))?;
     let held = HeldResources::take(order)?;
-    if let Fork::Parent(keeper) = namespaces::leave()? {
+    if let Fork::Parent(keeper) = namespaces::fork_into_namespaces()? {
         return Ok(Side::Guardian { keeper, held });
     }
     mounts::unshare(libc::CLONE_NEWNS | libc::CLONE_NEWNET).map_err(stage("make namespaces"))?;

@@ -29,7 +29,7 @@ pub(super) enum Side {
 ///
 /// The step that failed. The process is then between the namespaces and must end.
 pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
-    match leave()? {
+    match fork_into_namespaces()? {
         Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(stage("wait"))?)),
         Fork::Child => {
             let rest = libc::CLONE_NEWNS | libc::CLONE_NEWNET | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
@@ -46,7 +46,7 @@ pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
 /// # Errors
 ///
 /// The errors of [`enter`].
-pub(super) fn leave() -> Result<Fork, Failure> {
+pub(super) fn fork_into_namespaces() -> Result<Fork, Failure> {
     let (user, group) = (sys::user(), sys::group());
     if user == 0 {
         mounts::unshare(libc::CLONE_NEWPID).map_err(stage("make a process namespace"))?;

@@ -179,7 +179,7 @@ fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
     probe.no_new_privileges = failure_reason(sys::no_new_privileges());
     probe.landlock = match probe.landlock_abi {
         0 => Some("the kernel has no Landlock, or it is switched off".into()),
-        version => failure_reason(walls::nothing(version >= SIGNAL_SCOPE_ABI).and_then(walls::enforce)),
+        version => failure_reason(walls::deny_all_ruleset(version >= SIGNAL_SCOPE_ABI).and_then(walls::enforce)),
     };
     let filters = |announce| {
         let own_process = Some(std::process::id() as i32);

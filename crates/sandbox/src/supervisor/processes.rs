@@ -30,7 +30,7 @@ impl Stat {
 
     /// Returns the resident memory in pages. A main thread that has ended has none; its other threads share the same
     /// memory.
-    fn resident(&self) -> u64 {
+    fn resident_pages(&self) -> u64 {
         if self.state != b'Z' || !self.is_alive() {
             return self.resident_pages;
         }
@@ -58,7 +58,7 @@ pub(super) fn usage(pid: i32, tree: bool) -> Usage {
     let swap = machine::has_swap();
     let mut add = |stat: &Stat| {
         usage.cpu += Duration::from_millis(10 * stat.ticks);
-        usage.memory += stat.resident() * page + if swap { read_swapped(stat.pid) } else { 0 };
+        usage.memory += stat.resident_pages() * page + if swap { read_swapped(stat.pid) } else { 0 };
         usage.threads += stat.threads;
     };
     if tree {

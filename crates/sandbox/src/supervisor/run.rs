@@ -259,7 +259,7 @@ impl Run {
             wall,
             peak_memory: largest.max(self.peak_memory),
             trace_over: self.is_trace_over(),
-            folder_over: self.over(&after) || !shallow,
+            folder_over: self.exceeds_folder_limits(&after) || !shallow,
             stdout_bytes: self.stdout.bytes.len() as u64,
             stderr_bytes: self.stderr.bytes.len() as u64,
             stdout_truncated: self.stdout.truncated,
@@ -462,7 +462,7 @@ impl Run {
         if self.order.volatile {
             contents = contents.at_least(folder::in_use(self.folder.as_fd()));
         }
-        let over = self.over(&contents);
+        let over = self.exceeds_folder_limits(&contents);
         self.record_cause(over, RunEnd::FolderLimit);
         if self.order.volatile && !self.can_hide_memory() {
             return;
@@ -476,7 +476,7 @@ impl Run {
             contents.bytes += held.nameless;
         }
         self.unseen_memory = held.memory;
-        let over = self.over(&contents);
+        let over = self.exceeds_folder_limits(&contents);
         self.record_cause(over, RunEnd::FolderLimit);
     }
 
@@ -491,7 +491,7 @@ impl Run {
         self.order.tools || !self.order.walls.seccomp
     }
 
-    fn over(&self, contents: &FolderUsage) -> bool {
+    fn exceeds_folder_limits(&self, contents: &FolderUsage) -> bool {
         contents.over || contents.bytes > self.order.folder_bytes() || contents.files > self.order.limits.folder_files
     }
 }

@@ -138,7 +138,7 @@ impl Places {
 
     /// Adds a place like [`Places::add`], but without the grader's own files below the path.
     fn add_around(&mut self, path: &Path, access: BitFlags<AccessFs>, own: &[PathBuf]) {
-        for allowed in own_files::around(path, own) {
+        for allowed in own_files::allow_all_except(path, own) {
             match allowed {
                 AllowedPath::Whole(path) => self.add(&path, access),
                 AllowedPath::Listing(path) => self.add(&path, access & AccessFs::ReadDir),
@@ -190,7 +190,7 @@ pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
 }
 
 /// Returns a ruleset that allows nothing, for the probe.
-pub(super) fn nothing(scopes: bool) -> io::Result<RulesetCreated> {
+pub(super) fn deny_all_ruleset(scopes: bool) -> io::Result<RulesetCreated> {
     begin_ruleset(scopes, NEWEST)
 }
 

@@ -21,29 +21,29 @@ const MAX_SILENCE: Duration = Duration::from_secs(60);
 
 /// Reports that the process is ready.
 pub(super) fn say_ready() {
-    tell(&[NotifyState::Ready]);
+    notify_systemd(&[NotifyState::Ready]);
 }
 
 /// Reports that the process ends.
 pub(super) fn say_stopping() {
-    tell(&[NotifyState::Stopping]);
+    notify_systemd(&[NotifyState::Stopping]);
 }
 
-fn tell(state: &[NotifyState<'_>]) {
+fn notify_systemd(state: &[NotifyState<'_>]) {
     if let Err(error) = sd_notify::notify(state) {
         tracing::warn!(%error, "systemd can't be told");
     }
 }
 
 /// Sends a heartbeat whenever a health check succeeds, forever.
-pub(super) async fn beat(data: PathBuf, is_well: impl AsyncFn() -> bool) {
+pub(super) async fn send_heartbeats(data: PathBuf, is_well: impl AsyncFn() -> bool) {
     let watchdog = sd_notify::watchdog_enabled();
     let every = watchdog.map_or(BEAT_INTERVAL, |watchdog| (watchdog / 3).min(BEAT_INTERVAL));
     loop {
         match tokio::time::timeout(CHECK_TIMEOUT, is_well()).await {
             Ok(true) => {
                 if watchdog.is_some() {
-                    tell(&[NotifyState::Watchdog]);
+                    notify_systemd(&[NotifyState::Watchdog]);
                 }
                 // A full disk must not cause a restart.
                 drop(fs::write(data.join(HEARTBEAT_FILE), b""));

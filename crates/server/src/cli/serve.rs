@@ -104,7 +104,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     greet(&app, [&local, &public], example, arguments.work.grader.as_deref()).await?;
     heartbeat::say_ready();
     let seen = database.clone();
-    tokio::spawn(heartbeat::beat(folders.data.clone(), async move || seen.is_healthy().await));
+    tokio::spawn(heartbeat::send_heartbeats(folders.data.clone(), async move || seen.is_healthy().await));
     let serving = net::serve(listener, web::router(app), stop.clone());
     match working {
         None => serving.await?,

@@ -44,7 +44,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
     };
     heartbeat::say_ready();
     let seen = database.clone();
-    tokio::spawn(heartbeat::beat(local.folders.data.clone(), async move || seen.is_healthy().await));
+    tokio::spawn(heartbeat::send_heartbeats(local.folders.data.clone(), async move || seen.is_healthy().await));
     local.work(&arguments.work, arguments.slots, arguments.name.as_deref(), stop).await?;
     database.close().await;
     Ok(())
@@ -67,7 +67,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let folder = folders.work(&name);
     heartbeat::say_ready();
     // A worker that can't reach its server is healthy: it keeps trying, and keeps its jobs.
-    tokio::spawn(heartbeat::beat(folders.data.clone(), async || true));
+    tokio::spawn(heartbeat::send_heartbeats(folders.data.clone(), async || true));
     let slots = slots(arguments.slots);
     tracing::info!(worker = name, server, slots, grader = %grader.display(), "working");
     let program = Program::new(grader, arguments.work.threads.get());

@@ -344,7 +344,7 @@ impl FromRow for Submission {
             late: Lateness::from_row(row)?,
             mark: row.maybe_text("comment")?.map(|_| Mark::from_row(row)).transpose()?,
         });
-        submission.overrule();
+        submission.apply_staff_points();
         Ok(submission)
     }
 }
@@ -358,7 +358,7 @@ fn read_progress(row: &Row) -> Result<Option<Progress>, DbError> {
 
 impl Submission {
     /// Replaces the grader's points by those from staff, which lose nothing for being late.
-    pub(super) fn overrule(&mut self) {
+    pub(super) fn apply_staff_points(&mut self) {
         let Some(grade) = &mut self.grade else { return };
         let given = self.mark.as_ref().and_then(|mark| mark.points.clone());
         let points = grade.outcome.points.take();

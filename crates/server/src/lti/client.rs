@@ -85,7 +85,7 @@ impl ServiceAnswer {
     }
 
     /// Returns the answer if it reports success.
-    pub(super) fn successful(self) -> Result<Self, ServiceFault> {
+    pub(super) fn ensure_success(self) -> Result<Self, ServiceFault> {
         // The beginning of the platform's text, on one line, for people.
         let said: String = String::from_utf8_lossy(&self.body).chars().take(200).collect();
         let said: String = said.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
@@ -140,7 +140,7 @@ impl Client {
     /// Reads a file that a platform publishes.
     pub(super) async fn get(&self, platform: &Platform, address: &str) -> Result<ServiceAnswer, ServiceFault> {
         let ask = Ask { address: address.to_owned(), accept: "application/json", body: None };
-        self.send(platform, &ask, None).await?.successful()
+        self.send(platform, &ask, None).await?.ensure_success()
     }
 
     async fn send(&self, platform: &Platform, ask: &Ask, token: Option<&str>) -> Result<ServiceAnswer, ServiceFault> {
@@ -168,11 +168,11 @@ impl Client {
         let token = self.token(database, platform, scope).await?;
         let told = self.send(platform, ask, Some(&token)).await?;
         if told.status != 401 {
-            return told.successful();
+            return told.ensure_success();
         }
         self.tokens.lock().unwrap_or_else(PoisonError::into_inner).remove(&(platform.id, scope.to_owned()));
         let token = self.token(database, platform, scope).await?;
-        self.send(platform, ask, Some(&token)).await?.successful()
+        self.send(platform, ask, Some(&token)).await?.ensure_success()
     }
 
     /// Returns a token for a scope, requested with an assertion that this service signed (SEC 4.1, RFC 7523).
@@ -204,7 +204,7 @@ impl Client {
             accept: "application/json",
             body: Some(("application/x-www-form-urlencoded", body.into_bytes())),
         };
-        let told = self.send(platform, &ask, None).await?.successful()?;
+        let told = self.send(platform, &ask, None).await?.ensure_success()?;
         let token: Token = told.read("its token")?;
         if token.access_token.is_empty() || token.access_token.bytes().any(|c| !c.is_ascii_graphic()) {
             return Err(ServiceFault::Refused("its token is invalid".to_owned()));

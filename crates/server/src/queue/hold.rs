@@ -121,7 +121,7 @@ pub async fn fail(
     let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
     let Some(row) = held else { return Ok(Failure::Late) };
     let failures = row.int("failures")? + 1;
-    let (deaths, wait) = (row.int("deaths")?, policy.wait(failures).max(least).min(MAX_PLATFORM_WAIT));
+    let (deaths, wait) = (row.int("deaths")?, policy.retry_delay(failures).max(least).min(MAX_PLATFORM_WAIT));
     let loss = Loss { job: lease.job, failures, deaths, wait, fault };
     lose(transaction, loss, failures >= i64::from(policy.max_failures)).await
 }

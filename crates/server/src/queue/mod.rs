@@ -109,7 +109,7 @@ impl QueuePolicy {
     }
 
     /// Returns a random wait, so that jobs that failed together do not return together.
-    fn wait(&self, failures: i64) -> Duration {
+    fn retry_delay(&self, failures: i64) -> Duration {
         let longest = self.longest(failures);
         longest - longest / 4 * secret::random_byte().into() / 255
     }
@@ -159,7 +159,7 @@ mod tests {
         let waits: Vec<u64> = (1..=6).map(|failures| policy.longest(failures).as_secs()).collect();
         assert_eq!(waits, [1, 4, 16, 64, 120, 120]);
         assert_eq!(policy.longest(i64::MAX), policy.longest_wait);
-        let some: std::collections::BTreeSet<Duration> = (0..100).map(|_| policy.wait(3)).collect();
+        let some: std::collections::BTreeSet<Duration> = (0..100).map(|_| policy.retry_delay(3)).collect();
         assert!(some.len() > 10 && some.first() >= Some(&Duration::from_secs(12)), "{some:?}");
         assert!(some.last() <= Some(&Duration::from_secs(16)), "{some:?}");
     }

@@ -59,7 +59,7 @@ pub(super) fn complete(api: &mut OpenApi) {
     for (name, scheme) in schemes() {
         components.security_schemes.insert(name.to_owned(), scheme.into());
     }
-    open_what_is_extended(&mut components.schemas);
+    allow_extension(&mut components.schemas);
     for (path, item) in &mut api.paths.paths {
         for operation in operations(item) {
             name_parts(path, operation);
@@ -70,7 +70,7 @@ pub(super) fn complete(api: &mut OpenApi) {
 
 /// Removes the ban of additional fields from types that are part of larger types; otherwise the larger type's own
 /// fields would be invalid.
-fn open_what_is_extended(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
+fn allow_extension(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
     let closed: BTreeMap<String, Object> = schemas
         .iter()
         .filter_map(|(name, schema)| match schema {

@@ -91,7 +91,7 @@ impl<G: Grader> Health<G> {
     }
 
     /// Checks after a fault whether the worker can still grade; if so, the job may be at fault.
-    pub(super) async fn survives(&self, stop: &CancellationToken) -> bool {
+    pub(super) async fn check_after_fault(&self, stop: &CancellationToken) -> bool {
         self.is_proven.store(false, Ordering::Release);
         self.prove(stop).await
     }

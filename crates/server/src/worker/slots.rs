@@ -156,7 +156,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
     };
     // A failure of the grader may be the machine's fault, which must not count as a failure of the job.
     let ending = match ending {
-        JobEnding::Failed(fault) if !health.survives(&stop).await => {
+        JobEnding::Failed(fault) if !health.check_after_fault(&stop).await => {
             tracing::warn!(job = job.lease.job, fault, "the job goes to another worker");
             JobEnding::GivenBack
         }

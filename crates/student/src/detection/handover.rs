@@ -1,7 +1,7 @@
 //! The last step before coefficients are passed to the root finder.
 use fosssim_num::polynomial::Polynomial;
 
-use crate::{Area, Mistake, author::Student, objects::Object, rounding::single};
+use crate::{Area, Mistake, author::Student, objects::Object, rounding::round_to_f32};
 
 /// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Handover];
@@ -22,7 +22,7 @@ pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Ve
         Some(Mistake::HandoverNegated) => lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= -1.0),
         Some(Mistake::HandoverSwapped) => lists.swap(0, 1),
         Some(Mistake::HandoverSinglePrecision) => {
-            lists.iter_mut().flatten().for_each(|coefficient| *coefficient = single(*coefficient));
+            lists.iter_mut().flatten().for_each(|coefficient| *coefficient = round_to_f32(*coefficient));
         }
         Some(Mistake::HandoverPositionOnly) => lists.truncate(if edge { 3 } else { 1 }),
         Some(Mistake::HandoverApproachOnly) => lists = lists.split_off(lists.len() - 1),

@@ -14,7 +14,7 @@ use crate::{
     author::Student,
     logged_polynomials::logged_polynomial,
     objects::{Contact, Object, Pair},
-    rounding::single,
+    rounding::round_to_f32,
     step_failure::StepFailure,
     world::{StepLog, World},
 };
@@ -251,7 +251,7 @@ pub fn detect(
     }
     let mut time = searched_time(&polynomials, log)?;
     if student.makes(Mistake::ContactTimeSingle) {
-        time = single(time);
+        time = round_to_f32(time);
     }
     if !within_step(student, time, world.scene.time_step) {
         return Ok(None);
@@ -265,7 +265,7 @@ pub fn detect(
     }
     match student.mistake_in(&[Area::ContactVector]) {
         Some(Mistake::ContactUnitLength) => n = unit(n),
-        Some(Mistake::ContactSingle) => n = Vec2::new(single(n.x), single(n.y)),
+        Some(Mistake::ContactSingle) => n = Vec2::new(round_to_f32(n.x), round_to_f32(n.y)),
         Some(Mistake::ContactNoise) => n += 1e-7 * Vec2::new(n.y, n.x),
         _ => {}
     }

@@ -159,7 +159,7 @@ impl Reel {
         let start: Vec<f64> = scene.particles.iter().flat_map(|p| [p.position.x, p.position.y]).collect();
         let start = Extent::for_scene(scene, &start);
         extent.join(&start);
-        let painter = Painter::new(scene, &extent.near(&start), options);
+        let painter = Painter::new(scene, &extent.limited_to(&start), options);
         Self { painter, main, overlay, picks, single: false }
     }
 

@@ -24,7 +24,7 @@ fn what_fits_at_once_is_what_a_close_look_says() {
             .collect();
         let (factor, noise) = (4.0 * next(), [0.0, 1e-15, 1e-13][round % 3]);
         let actual: Vec<f64> = expected.iter().map(|r| factor * (r.value + noise * (next() - 0.5) * r.bound)).collect();
-        if let Some(found) = fits(&expected, &actual) {
+        if let Some(found) = match_if_right(&expected, &actual) {
             let close = compare_closely(&expected, &actual, &[1.0]).expect("right");
             let bits = |found: Match| (found.scale.map(f64::to_bits), found.share.to_bits());
             assert_eq!(bits(found), bits(close));
@@ -52,7 +52,7 @@ fn what_is_right_at_once_is_right() {
         let size: f64 = expected.iter().map(|r| r.value.abs()).sum();
         let kept = expected.iter().skip_while(|r| r.value.abs() < LEADING_COEFFICIENT);
         let actual: Vec<f64> = kept.map(|r| factor * (r.value + noise * (next() - 0.5) * size)).collect();
-        let Some(found) = is_clear(&expected, &actual) else { continue };
+        let Some(found) = match_if_clear(&expected, &actual) else { continue };
         if let Some(scale) = found.scale {
             let close = compare_closely(&expected, &actual, &[1.0]);
             // A factor near 1 may have moved lost coefficients to four times the library's bound.
@@ -63,7 +63,7 @@ fn what_is_right_at_once_is_right() {
         }
     }
     assert!(answered > 15_000, "{answered}");
-    assert_eq!(is_clear(&parabola(), &parabola().map(|c| -c.value)), None);
+    assert_eq!(match_if_clear(&parabola(), &parabola().map(|c| -c.value)), None);
 }
 
 fn parabola() -> [BoundedValue; 3] {

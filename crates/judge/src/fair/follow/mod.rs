@@ -229,7 +229,7 @@ impl Observer for Follower<'_> {
         }
     }
 
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
 }

@@ -181,7 +181,7 @@ impl Random {
         self.0.wrapping_mul(0x2545_F491_4F6C_DD1D)
     }
 
-    fn below(&mut self, bound: u64) -> u64 {
+    fn draw_below(&mut self, bound: u64) -> u64 {
         (self.bits() >> 11) % bound
     }
 
@@ -204,12 +204,12 @@ impl Random {
     }
 
     fn grid(&mut self, reach: u64, unit: f64) -> Vec2 {
-        let mut coordinate = || (self.below(2 * reach + 1) as f64 - reach as f64) * unit;
+        let mut coordinate = || (self.draw_below(2 * reach + 1) as f64 - reach as f64) * unit;
         Vec2::new(coordinate(), coordinate())
     }
 
-    fn chance(&mut self, one_in: u64) -> bool {
-        self.below(one_in) == 0
+    fn draw_one_in(&mut self, one_in: u64) -> bool {
+        self.draw_below(one_in) == 0
     }
 }
 
@@ -230,7 +230,7 @@ type Make = fn(&mut Random) -> RandomMotion;
 
 /// Draws a detection: pair type, name of the distribution, polynomials.
 fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<BoundedValue>>) {
-    let pair = [0, 1, 1, 2, 3][random.below(5) as usize];
+    let pair = [0, 1, 1, 2, 3][random.draw_below(5) as usize];
     if pair == 3 {
         return (pair, "zeros on a grid", vec![product(random)]);
     }
@@ -238,13 +238,13 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<BoundedValue>>) {
         ("wide", draw_wide),
         ("grid", grid),
         ("near-rigid", near_rigid),
-        ("resting", resting),
+        ("resting", draw_resting_motion),
         ("grazing", grazing),
-        ("far", far),
+        ("far", draw_distant_motion),
         ("turning", turning),
         ("bulk", bulk),
     ];
-    let (name, make) = kinds[random.below(kinds.len() as u64) as usize];
+    let (name, make) = kinds[random.draw_below(kinds.len() as u64) as usize];
     let mut motion = make(random);
     // Rounds every displacement through end positions, like a simulation.
     for (x, d) in motion.x.iter().zip(&mut motion.d) {
@@ -261,19 +261,19 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<BoundedValue>>) {
 /// Returns a polynomial of degree three to five with zeros on a coarse grid, some of them exactly or nearly multiple,
 /// that is often negative within the step.
 fn product(random: &mut Random) -> Vec<BoundedValue> {
-    let unit = [1.0, 0.5, 0.25, 0.1][random.below(4) as usize];
-    let degree = 3 + random.below(3) as usize;
-    let noise = if random.chance(2) { 0.0 } else { random.log(-16.0, -3.0) };
+    let unit = [1.0, 0.5, 0.25, 0.1][random.draw_below(4) as usize];
+    let degree = 3 + random.draw_below(3) as usize;
+    let noise = if random.draw_one_in(2) { 0.0 } else { random.log(-16.0, -3.0) };
     let mut coefficients = [0.0; 6];
     coefficients[0] = random.uniform(-1.0, 1.0).signum() * random.log(-6.0, 3.0);
     let mut count = 0;
     while count < degree {
         // Places within the step are mostly avoided.
-        let place = (random.below(33) as f64 - 16.0) * unit;
-        if (0.0..=1.0).contains(&place) && !random.chance(16) {
+        let place = (random.draw_below(33) as f64 - 16.0) * unit;
+        if (0.0..=1.0).contains(&place) && !random.draw_one_in(16) {
             continue;
         }
-        let repeat = if random.chance(2) { 2.min(degree - count) } else { 1 };
+        let repeat = if random.draw_one_in(2) { 2.min(degree - count) } else { 1 };
         for _ in 0..repeat {
             let zero = place + noise * random.uniform(-1.0, 1.0);
             count += 1;
@@ -289,8 +289,8 @@ fn product(random: &mut Random) -> Vec<BoundedValue> {
 fn draw_wide(random: &mut Random) -> RandomMotion {
     let scale = random.log(-3.0, 4.0);
     let mut object = |spread: f64| {
-        let size = scale * if random.chance(3) { random.log(-3.0, 3.0) } else { spread };
-        let moves = if random.chance(4) { 0.0 } else { size * random.log(-12.0, 1.0) };
+        let size = scale * if random.draw_one_in(3) { random.log(-3.0, 3.0) } else { spread };
+        let moves = if random.draw_one_in(4) { 0.0 } else { size * random.log(-12.0, 1.0) };
         (random.point(size), random.direction() * moves)
     };
     let [a, b, c] = [object(1.0), object(1.0), object(1.0)];
@@ -299,9 +299,9 @@ fn draw_wide(random: &mut Random) -> RandomMotion {
 
 /// Makes a motion of integers or simple fractions, with frequent coincidences.
 fn grid(random: &mut Random) -> RandomMotion {
-    let unit = [1.0, 0.5, 0.25, 0.1, 1e-3][random.below(5) as usize];
-    let (reach, speed) = (1 + random.below(12), random.below(5));
-    let radius = unit * [0.5, 1.0, 1.5, 2.0, 3.0][random.below(5) as usize];
+    let unit = [1.0, 0.5, 0.25, 0.1, 1e-3][random.draw_below(5) as usize];
+    let (reach, speed) = (1 + random.draw_below(12), random.draw_below(5));
+    let radius = unit * [0.5, 1.0, 1.5, 2.0, 3.0][random.draw_below(5) as usize];
     let [a, b, c] = [(); 3].map(|()| random.grid(reach, unit));
     let [e, f, g] = [(); 3].map(|()| random.grid(speed, unit));
     RandomMotion { x: [a, b, c], d: [e, f, g], radius }
@@ -316,7 +316,7 @@ fn near_rigid(random: &mut Random) -> RandomMotion {
 }
 
 /// Makes a motion in which the particle touches, or nearly touches, and moves along the object or hardly moves.
-fn resting(random: &mut Random) -> RandomMotion {
+fn draw_resting_motion(random: &mut Random) -> RandomMotion {
     let mut motion = bulk(random);
     let along = motion.x[2] - motion.x[1];
     let length = length(along);
@@ -325,14 +325,14 @@ fn resting(random: &mut Random) -> RandomMotion {
     motion.x[0] = motion.x[1] + along * random.uniform(-0.2, 1.2) + normal * gap;
     let slide = along * (random.uniform(-1.0, 1.0) * random.log(-9.0, 0.0));
     let press = normal * (motion.radius * random.uniform(-1.0, 1.0) * random.log(-14.0, 0.0));
-    motion.d[0] = if random.chance(8) { motion.d[1] } else { motion.d[1] + slide + press };
+    motion.d[0] = if random.draw_one_in(8) { motion.d[1] } else { motion.d[1] + slide + press };
     motion
 }
 
 /// Makes a motion in which the particle passes at about the sum of the radii at some time before, within or after the
 /// step.
 fn grazing(random: &mut Random) -> RandomMotion {
-    let mut motion = if random.chance(2) { draw_wide(random) } else { turning(random) };
+    let mut motion = if random.draw_one_in(2) { draw_wide(random) } else { turning(random) };
     let time = random.uniform(-2.0, 4.0);
     let target = motion.x[1] + motion.d[1] * time;
     let other = motion.x[2] + motion.d[2] * time;
@@ -342,20 +342,20 @@ fn grazing(random: &mut Random) -> RandomMotion {
     let gap = motion.radius * (1.0 + random.uniform(-1.0, 1.0) * random.log(-16.0, 0.0));
     let meeting = target + along * random.uniform(-0.1, 1.1) + normal * gap;
     let speed = motion.radius * random.log(-6.0, 2.0);
-    let cross = normal * (speed * if random.chance(2) { 0.0 } else { random.log(-12.0, 0.0) });
+    let cross = normal * (speed * if random.draw_one_in(2) { 0.0 } else { random.log(-12.0, 0.0) });
     motion.d[0] = along * (speed / length) + cross + motion.d[1];
     motion.x[0] = meeting - motion.d[0] * time;
     motion
 }
 
 /// Returns a motion of bodies that are far apart compared with radii and motion.
-fn far(random: &mut Random) -> RandomMotion {
+fn draw_distant_motion(random: &mut Random) -> RandomMotion {
     let mut motion = draw_wide(random);
     let distance = motion.radius * random.log(0.0, 7.0);
     motion.x[0] = motion.x[1] + random.direction() * distance;
     for i in 0..3 {
-        let moves = if random.chance(3) { 0.0 } else { motion.radius * random.log(-13.0, 1.0) };
-        motion.d[i] = if random.chance(3) { Vec2::new(moves, 0.0) } else { random.direction() * moves };
+        let moves = if random.draw_one_in(3) { 0.0 } else { motion.radius * random.log(-13.0, 1.0) };
+        motion.d[i] = if random.draw_one_in(3) { Vec2::new(moves, 0.0) } else { random.direction() * moves };
     }
     motion
 }

@@ -97,7 +97,7 @@ fn try_scene(name: &str, scene: &Scene) -> (String, MilestoneTally, Vec<String>)
     for (number, arithmetic) in right::ALL.iter().enumerate() {
         // Programs whose step has no result are not right.
         let mut single = SingleSteps::new(scene);
-        let Ok(trace) = arithmetic.trace(scene, |state, contacts| single.hear(state, contacts)) else { continue };
+        let Ok(trace) = arithmetic.trace(scene, |state, contacts| single.visit(state, contacts)) else { continue };
         tally.room = [tally.room, single.room].into_iter().flatten().min();
         let outcome = judge(scene, &trace);
         let is_accepted = is_accepted(&outcome);
@@ -138,7 +138,7 @@ impl<'a> SingleSteps<'a> {
         Self { scene, one, before: right::start(scene), steps: 0, room: None }
     }
 
-    fn hear(&mut self, after: &State, contacts: &[Contact]) {
+    fn visit(&mut self, after: &State, contacts: &[Contact]) {
         let before = std::mem::replace(&mut self.before, after.clone());
         self.steps += 1;
         let is_tried = self.steps.is_multiple_of(self.scene.steps().div_ceil(Self::MAX_STEPS).max(1));

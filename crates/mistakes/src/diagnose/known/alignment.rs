@@ -41,12 +41,12 @@ fn aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: 
     let no_mid = row.mistake == Mistake::LogNoMid;
     let mut frames = opening.iter();
     if no_mid {
-        if !layout.polynomials {
+        if !layout.has_polynomials {
             return None;
         }
         before = frames.next()?.state.clone();
     }
-    let per_step = if layout.polynomials && !no_mid { 2 } else { 1 };
+    let per_step = if layout.has_polynomials && !no_mid { 2 } else { 1 };
     let mut steps = 0;
     while frames.len() >= per_step && steps < u64::from(layout.steps) {
         let mid = if per_step == 2 { frames.next().cloned() } else { None };

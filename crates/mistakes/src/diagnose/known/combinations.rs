@@ -34,7 +34,7 @@ pub(super) fn find_set(
     correct: ApproachForm,
 ) -> Option<SeveralRows> {
     let search = Search::new(reference, scene, scan, correct);
-    if !Layout::for_scene(scene).polynomials {
+    if !Layout::for_scene(scene).has_polynomials {
         return search.together();
     }
     let mut found = search.starts().into_iter().find_map(|start| search.complete(start))?;
@@ -68,7 +68,7 @@ impl<'a> Search<'a> {
     }
 
     #[expect(clippy::cast_precision_loss, reason = "a handful")]
-    fn goal(&self) -> f64 {
+    fn full_share(&self) -> f64 {
         self.probes.len() as f64 - 1e-9
     }
 
@@ -82,13 +82,13 @@ impl<'a> Search<'a> {
         // For each row of the set, the rows that were equally good when it was added.
         let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.progress(&set);
-        while best < self.goal() && set.iter().filter(|row| !is_empty_stage(row)).count() < MAX_MISTAKES {
+        while best < self.full_share() && set.iter().filter(|row| !is_empty_stage(row)).count() < MAX_MISTAKES {
             let (row, progress, others) = self.next(&set, best)?;
             set.push(row);
             best = progress;
             alike.push(others);
         }
-        if set.len() < 2 || best < self.goal() || !self.is_needed(&set) {
+        if set.len() < 2 || best < self.full_share() || !self.is_needed(&set) {
             return None;
         }
         let samples = self.count_confirmed(&set)?;
@@ -103,8 +103,9 @@ impl<'a> Search<'a> {
                 set
             };
             let is_last = index + 1 == set.len();
-            others
-                .retain(|other| !is_empty_stage(set[index]) && (is_last || self.progress(&with(other)) >= self.goal()));
+            others.retain(|other| {
+                !is_empty_stage(set[index]) && (is_last || self.progress(&with(other)) >= self.full_share())
+            });
         }
         Some(SeveralRows { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }
@@ -167,7 +168,7 @@ impl<'a> Search<'a> {
     fn explains(&self, set: &[&'static Row]) -> bool {
         let Some(probe) = self.probes.first() else { return false };
         self.trials.reproduced_share(&self.trials.program(set), probe) >= 1.0
-            && self.progress(set) >= self.goal()
+            && self.progress(set) >= self.full_share()
             && self.is_needed(set)
             && self.count_confirmed(set).is_some()
     }
@@ -269,7 +270,7 @@ impl<'a> Search<'a> {
         (0..set.len()).all(|index| {
             let without: Vec<&Row> =
                 set.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, row)| *row).collect();
-            self.progress(&without) < self.goal()
+            self.progress(&without) < self.full_share()
         })
     }
 

@@ -20,8 +20,8 @@ mod trials;
 
 pub use applicable_rows::can_show;
 pub(super) use combinations::is_empty_stage;
-pub use refute::shows;
-pub(super) use refute::shows_within;
+pub use refute::mistake_is_visible;
+pub(super) use refute::mistake_is_visible_within;
 
 use super::{
     Detail, Explanation,

@@ -18,12 +18,12 @@ const MAX_WORK: u64 = 200_000;
 /// round-off. Also false if the search would take too long, or if the course's library does that part of the work: in
 /// `simple` and `continuous-time` it responds, so a program's own impulses show only in `hybrid`.
 #[must_use]
-pub fn shows(scene: &Scene, key: &str) -> bool {
-    shows_within(scene, key, &Cell::new(0))
+pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
+    mistake_is_visible_within(scene, key, &Cell::new(0))
 }
 
 /// Returns whether the mistake shows; `work` limits all searches together.
-pub(in crate::diagnose) fn shows_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
+pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
     let Some(row) = find(key).filter(|row| can_show(scene, row)) else { return false };
     if row.area == Area::Response
         && matches!(scene.collision, Collision::ContinuousTime { .. } | Collision::Simple { .. })

@@ -1,5 +1,5 @@
 //! Traces with mistakes, made in memory, and what is said of them.
-use super::{find_known, shows};
+use super::{find_known, mistake_is_visible};
 use crate::diagnose::is_named_in;
 use crate::diagnose::{About, ExamplePlace, Explanation, explain, explain_together};
 use fosssim_judge::Role;
@@ -202,8 +202,8 @@ fn several_mistakes_are_named_together() {
 
 #[test]
 fn a_right_scene_speaks_against_what_it_would_show() {
-    assert!(shows(&scene(), "pp-no-two") && shows(&scene(), "pe-square-no-eh"));
-    assert!(!shows(&scene(), "geometric-empty") && !shows(&scene(), "no-such-mistake"));
+    assert!(mistake_is_visible(&scene(), "pp-no-two") && mistake_is_visible(&scene(), "pe-square-no-eh"));
+    assert!(!mistake_is_visible(&scene(), "geometric-empty") && !mistake_is_visible(&scene(), "no-such-mistake"));
     let explanations = explain(&scene(), &made(&scene(), &["pp-no-two"]));
     assert_eq!(explain_together([explanations.as_slice()], &[])[0].key, "pp-no-two");
     assert!(

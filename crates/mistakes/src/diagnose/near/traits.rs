@@ -109,7 +109,7 @@ traits! {
     NO_AXIS NO_NUMBER "the bodies were apart at the start of the scene, as if those positions were used"
         "The boxes at time 0 do not overlap" |pair, _, _| !pair.is_near(&pair.moment.start);
     NO_AXIS STEPS "the bodies were still apart shortly before, as if old positions were used"
-        "The boxes about {n} steps earlier do not overlap" |pair, _, n| !pair.is_near(&earlier(pair, n));
+        "The boxes about {n} steps earlier do not overlap" |pair, _, n| !pair.is_near(&extrapolate_back(pair, n));
     NO_AXIS NO_NUMBER "the pair with exchanged numbers of particle and edge is not near"
         "(edge, particle) is used instead of (particle, edge)" |pair, _, _| is_lost_when_exchanged(pair);
     NO_AXIS NO_NUMBER "the first body of its kind is involved" "i or j is 0" |pair, _, _| pair.numbers().contains(&0);
@@ -130,16 +130,16 @@ traits! {
     ANY_AXIS LENGTHS "a multiple of a round number is between the bodies {axis}"
         "A multiple of {n} is between their {axis}" |pair, axis, n| are_split(pair.points(), axis, n, 0.0);
     ANY_AXIS LENGTHS "the bodies begin in different cells of a grid with round borders {axis}"
-        "A multiple of {n} is between their smallest {axis}" |pair, axis, n| are_split(lows(pair), axis, n, 0.0);
+        "A multiple of {n} is between their smallest {axis}" |pair, axis, n| are_split(corners(pair), axis, n, 0.0);
     ANY_AXIS FACTORS "a multiple of the largest diameter is between the bodies {axis}"
         "A multiple of {n} times the largest diameter is between their {axis}"
         |pair, axis, n| are_split(pair.points(), axis, n * pair.moment.largest, 0.0);
     ANY_AXIS FACTORS "the bodies begin in different cells of a grid of the largest diameter {axis}"
         "A multiple of {n} times the largest diameter is between their smallest {axis}"
-        |pair, axis, n| are_split(lows(pair), axis, n * pair.moment.largest, 0.0);
+        |pair, axis, n| are_split(corners(pair), axis, n * pair.moment.largest, 0.0);
     ANY_AXIS FACTORS "the bodies begin in different cells of a grid from the lowest body on {axis}"
         "A multiple of {n} times the largest diameter from the smallest {axis} of all is between their smallest {axis}"
-        |pair, axis, n| are_split(lows(pair), axis, n * pair.moment.largest, pair.moment.corner[axis]);
+        |pair, axis, n| are_split(corners(pair), axis, n * pair.moment.largest, pair.moment.corner[axis]);
     ANY_AXIS LENGTHS "both bodies contain the same multiple of a round number {axis}"
         "Both hold a multiple of {n} on {axis}" |pair, axis, n| have_common_border(pair, axis, n);
     ANY_AXIS FACTORS "both bodies contain the same multiple of the largest diameter {axis}"
@@ -151,7 +151,7 @@ traits! {
         |pair, axis, n| pair.boxes().iter().any(|[low, high]| high[axis].max(-low[axis]) > n);
     ANY_AXIS FACTORS "neither body is among the first bodies of the scene {axis}"
         "Both are more than {n} times the largest diameter from the smallest {axis} of all"
-        |pair, axis, n| lows(pair).iter().all(|low| low[axis] - pair.moment.corner[axis] > n * pair.moment.largest);
+        |pair, axis, n| corners(pair).iter().all(|low| low[axis] - pair.moment.corner[axis] > n * pair.moment.largest);
     ONE_AXIS NO_NUMBER
         "a body apart from the first one begins between the two {axis}, where a sweep may end"
         "One between them on {axis} does not overlap the first one on the other axis"
@@ -159,9 +159,9 @@ traits! {
     ONE_AXIS COUNTS "many bodies begin between the two {axis}, as if a sweep ended early"
         "More than {n} begin between them on {axis}" |pair, axis, n| pair.boxes_between(axis).count() as f64 > n;
     ONE_AXIS NO_NUMBER "the particle begins after the other body {axis}" "Its smallest {axis} is greater"
-        |pair, axis, _| lows(pair)[0][axis] > lows(pair)[1][axis];
+        |pair, axis, _| corners(pair)[0][axis] > corners(pair)[1][axis];
     ONE_AXIS NO_NUMBER "the particle begins before the other body {axis}" "Its smallest {axis} is less"
-        |pair, axis, _| lows(pair)[0][axis] < lows(pair)[1][axis];
+        |pair, axis, _| corners(pair)[0][axis] < corners(pair)[1][axis];
     NO_AXIS NO_NUMBER "the particle's center is outside the other body's box" "The box lacks r1 on a side"
         |pair, _, _| {
             let (center, [_, [low, high]]) = (pair.center(), pair.boxes());
@@ -200,7 +200,7 @@ fn particles(pair: &PlacedPair<'_>) -> impl Iterator<Item = usize> {
 }
 
 /// Returns the positions of bodies a number of steps earlier, if they had moved with their current velocities.
-fn earlier(pair: &PlacedPair<'_>, steps: f64) -> Vec<f64> {
+fn extrapolate_back(pair: &PlacedPair<'_>, steps: f64) -> Vec<f64> {
     let State { positions, velocities } = pair.moment.before;
     let h = pair.moment.scene.time_step;
     positions.iter().zip(velocities).map(|(x, v)| x - steps * h * v).collect()
@@ -224,7 +224,7 @@ fn are_split([one, other]: [Vec2; 2], axis: usize, size: f64, start: f64) -> boo
     ((one[axis] - start) / size).floor() != ((other[axis] - start) / size).floor()
 }
 
-fn lows(pair: &PlacedPair<'_>) -> [Vec2; 2] {
+fn corners(pair: &PlacedPair<'_>) -> [Vec2; 2] {
     pair.boxes().map(|[low, _]| low)
 }
 

@@ -34,8 +34,10 @@ fn digits(case: &Case) -> usize {
 
 fn example_values(motion: &PairMotion) -> Vec<ExampleValue> {
     match motion {
-        PairMotion::Particles { centers, radii } => moving(centers, [Input::R1, Input::R2], radii),
-        PairMotion::Edge { center, ends, radii } => moving(&[*center, ends[0], ends[1]], [Input::R1, Input::Re], radii),
+        PairMotion::Particles { centers, radii } => motion_values(centers, [Input::R1, Input::R2], radii),
+        PairMotion::Edge { center, ends, radii } => {
+            motion_values(&[*center, ends[0], ends[1]], [Input::R1, Input::Re], radii)
+        }
         PairMotion::HalfPlane { center, radius, point, normal } => vec![
             vector(Input::X, center.start),
             vector(Input::Dx, center.shift),
@@ -46,7 +48,7 @@ fn example_values(motion: &PairMotion) -> Vec<ExampleValue> {
     }
 }
 
-fn moving(points: &[PointMotion], names: [Input; 2], radii: &[f64; 2]) -> Vec<ExampleValue> {
+fn motion_values(points: &[PointMotion], names: [Input; 2], radii: &[f64; 2]) -> Vec<ExampleValue> {
     let starts = [Input::X1, Input::X2, Input::X3].into_iter().zip(points.iter().map(|point| point.start));
     let moves = [Input::Dx1, Input::Dx2, Input::Dx3].into_iter().zip(points.iter().map(|point| point.shift));
     let vectors = starts.chain(moves).map(|(input, value)| vector(input, value));

@@ -63,8 +63,9 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     let mut explanations: Vec<Explanation> = open.iter().filter_map(nearly_right).collect();
     open.retain(|suspect| nearly_right(suspect).is_none());
     while let Some(key) = best_shared_key(&open) {
-        let (covered, rest): (Vec<Suspect>, Vec<Suspect>) =
-            open.into_iter().partition(|suspect| suspect.full().any(|candidate| candidate.guess.key() == key));
+        let (covered, rest): (Vec<Suspect>, Vec<Suspect>) = open
+            .into_iter()
+            .partition(|suspect| suspect.complete_guesses().any(|candidate| candidate.guess.key() == key));
         explanations.push(explain_shared(&covered, &key));
         open = rest;
     }
@@ -108,24 +109,24 @@ struct Suspect<'a> {
 
 impl Suspect<'_> {
     /// Returns the guesses that reproduce all samples.
-    fn full(&self) -> impl Iterator<Item = &Candidate> {
+    fn complete_guesses(&self) -> impl Iterator<Item = &Candidate> {
         self.candidates.iter().filter(|candidate| candidate.reproduced == self.study.cases.len())
     }
 
     /// Returns all claims that would explain the polynomial: those of `guesses`, and known mistakes. Without any, a
     /// single placeholder.
-    fn claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
+    fn list_claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
         let subject = self.study.subject;
-        let guesses = guesses.flat_map(|guess| claims(subject, guess)).take(MAX_CLAIMS);
+        let guesses = guesses.flat_map(|guess| list_claims(subject, guess)).take(MAX_CLAIMS);
         let all: Vec<String> = guesses.chain(known_makers(&self.study)).collect();
         if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
     }
 
     /// Returns the separate explanation of this polynomial, which must have a guess.
     fn explanation(&self) -> Explanation {
-        let (best, others) = (&self.candidates[0], self.full());
-        let first = claims(self.study.subject, best).swap_remove(0);
-        let claims = std::iter::once(first).chain(self.claims(others));
+        let (best, others) = (&self.candidates[0], self.complete_guesses());
+        let first = list_claims(self.study.subject, best).swap_remove(0);
+        let claims = std::iter::once(first).chain(self.list_claims(others));
         let samples = self.study.cases.len() as u64;
         let equal = |other: &&Candidate| {
             let is_likely = other.cost <= best.cost + AS_LIKELY;
@@ -149,7 +150,7 @@ impl Suspect<'_> {
 
 /// Returns the claims of a guess about a polynomial, one for each possible exact form ([`Explanation::claims`]). The
 /// digest covers the program's formula, not the right one.
-fn claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
+fn list_claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     if candidate.guess.is_general() {
         return vec![format!("{subject:?}/{}/", candidate.guess.word())];
     }
@@ -238,7 +239,7 @@ fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
 fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     let study = &suspect.study;
     let (error, samples) = (study.error(), study.cases.len() as u64);
-    (error < NEARLY_RIGHT_ERROR && suspect.full().next().is_none()).then(|| Explanation {
+    (error < NEARLY_RIGHT_ERROR && suspect.complete_guesses().next().is_none()).then(|| Explanation {
         details: vec![Detail::Polynomial(PolynomialDetail::RightUpTo(error))],
         samples,
         example: example::smallest(study).map(|(_, example)| example),
@@ -260,7 +261,7 @@ fn explain_none(hopeless: &[Suspect]) -> Option<Explanation> {
         details: distinct(hopeless.iter().flat_map(lines), MAX_OTHER_KEYS),
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
         example: example::smallest(&first.study).map(|(_, example)| example),
-        claims: distinct(hopeless.iter().flat_map(|suspect| suspect.claims(std::iter::empty())), usize::MAX),
+        claims: distinct(hopeless.iter().flat_map(|suspect| suspect.list_claims(std::iter::empty())), usize::MAX),
         ..Explanation::about(
             Explanation::UNEXPLAINED,
             About::Polynomials {
@@ -278,7 +279,7 @@ fn best_shared_key(open: &[Suspect]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
         let mut seen: Vec<&str> = Vec::new();
-        for candidate in suspect.full().filter(|candidate| candidate.guess.is_general()) {
+        for candidate in suspect.complete_guesses().filter(|candidate| candidate.guess.is_general()) {
             let key = candidate.guess.key();
             if !seen.contains(&key) {
                 seen.push(key);
@@ -293,12 +294,15 @@ fn best_shared_key(open: &[Suspect]) -> Option<String> {
 
 /// Returns one explanation for several polynomials.
 fn explain_shared(covered: &[Suspect], key: &str) -> Explanation {
-    let guesses: Vec<&Candidate> =
-        covered.iter().filter_map(|suspect| suspect.full().find(|candidate| candidate.guess.key() == key)).collect();
+    let guesses: Vec<&Candidate> = covered
+        .iter()
+        .filter_map(|suspect| suspect.complete_guesses().find(|candidate| candidate.guess.key() == key))
+        .collect();
     let subjects: Vec<Subject> = covered.iter().map(|suspect| suspect.study.subject).collect();
-    let likely = covered[0].full().filter(|candidate| candidate.cost <= guesses[0].cost + AS_LIKELY);
+    let likely = covered[0].complete_guesses().filter(|candidate| candidate.cost <= guesses[0].cost + AS_LIKELY);
     let others = likely.map(|candidate| candidate.guess.key()).filter(|other| {
-        *other != key && covered.iter().all(|suspect| suspect.full().any(|candidate| candidate.guess.key() == *other))
+        *other != key
+            && covered.iter().all(|suspect| suspect.complete_guesses().any(|candidate| candidate.guess.key() == *other))
     });
     let samples = covered.iter().map(|suspect| suspect.study.cases.len() as u64).sum();
     let examples = covered.iter().filter_map(|suspect| example::smallest(&suspect.study));
@@ -310,7 +314,10 @@ fn explain_shared(covered: &[Suspect], key: &str) -> Explanation {
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
         same_as: distinct(others.map(str::to_owned), MAX_OTHER_KEYS),
-        claims: distinct(covered.iter().flat_map(|suspect| suspect.claims(suspect.full())), usize::MAX),
+        claims: distinct(
+            covered.iter().flat_map(|suspect| suspect.list_claims(suspect.complete_guesses())),
+            usize::MAX,
+        ),
         ..Explanation::about(key, About::Polynomials { subjects, found })
     }
 }

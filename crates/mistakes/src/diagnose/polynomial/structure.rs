@@ -26,7 +26,7 @@ pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     found
 }
 
-fn general(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, reproduced: usize) -> Candidate {
+fn new_candidate(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, reproduced: usize) -> Candidate {
     let details = detail.into_iter().collect();
     Candidate { guess: Guess::List(guess), details, forms: Vec::new(), cost, reproduced }
 }
@@ -35,7 +35,7 @@ fn general(guess: ListGuess, detail: Option<PolynomialDetail>, cost: f64, reprod
 fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, detail, cost, holds: &dyn Fn(&Case) -> bool| {
         if let Some(reproduced) = study.count_if(holds) {
-            found.push(general(guess, detail, cost, reproduced));
+            found.push(new_candidate(guess, detail, cost, reproduced));
         }
     };
     check(ListGuess::AllZero, None, 1.0, &|case| case.logged.iter().all(|&value| value == 0.0));
@@ -94,7 +94,7 @@ fn predict(
     predict: impl Fn(&Case) -> Vec<BoundedValue>,
 ) -> Option<Candidate> {
     let (reproduced, scaled) = study.count(predict)?;
-    Some(general(guess, detail, cost + if scaled { 1.0 } else { 0.0 }, reproduced))
+    Some(new_candidate(guess, detail, cost + if scaled { 1.0 } else { 0.0 }, reproduced))
 }
 
 /// Adds guesses with the polynomial's own coefficients in another order or with another sign.

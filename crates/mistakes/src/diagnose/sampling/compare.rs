@@ -49,7 +49,7 @@ pub const ROUND_OFF: Tolerance = Tolerance {
 impl Tolerance {
     /// Returns the tolerance of round-off in steps of a scene.
     pub fn for_scene(scene: &Scene) -> Self {
-        let is_newton = scene.integrator == Integrator::ImplicitEuler && !Layout::for_scene(scene).polynomials;
+        let is_newton = scene.integrator == Integrator::ImplicitEuler && !Layout::for_scene(scene).has_polynomials;
         Self { state: if is_newton { KNOWN_NEWTON_STATE } else { KNOWN_STATE }, ..ROUND_OFF }
     }
 }

@@ -69,7 +69,7 @@ impl<'a> Detections<'a> {
     /// so far are kept.
     pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
         let is_full = self.kinds.values().all(|kind| kind.wrong >= MAX_WRONG);
-        if is_full || !Layout::for_scene(self.scene).polynomials {
+        if is_full || !Layout::for_scene(self.scene).has_polynomials {
             return;
         }
         let (mid, log) = (&frames.mid, &frames.end.polynomials);
@@ -148,7 +148,7 @@ impl Observer for Gatherer<'_> {
         };
     }
 
-    fn steers(&mut self) -> Option<&mut dyn Steer> {
+    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(self)
     }
 }

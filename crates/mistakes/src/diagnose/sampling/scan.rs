@@ -105,7 +105,7 @@ impl Scanner {
     /// Creates the scan for traces of a scene.
     pub fn new(scene: &Scene) -> Self {
         Self {
-            has_mid: Layout::for_scene(scene).polynomials,
+            has_mid: Layout::for_scene(scene).has_polynomials,
             round_off: Tolerance::for_scene(scene),
             capture: Capture::new(&scene.collision),
             scan: Scan::default(),
@@ -188,8 +188,8 @@ impl Scanner {
     fn context(&self, before: &LenientFrame, actual: &StepRecords, last: Option<&[f64]>) -> Context {
         let expected = &self.capture.records;
         let (ours, theirs) = (&expected.end.state, &actual.end.state);
-        let is_single = (single(&theirs.positions) && !single(&ours.positions))
-            || (single(&theirs.velocities) && !single(&ours.velocities));
+        let is_single = (are_single_precision(&theirs.positions) && !are_single_precision(&ours.positions))
+            || (are_single_precision(&theirs.velocities) && !are_single_precision(&ours.velocities));
         Context {
             polynomials_kept: self.right_without(before, actual, |records, previous| {
                 let kept = previous.polynomials.len();
@@ -243,7 +243,7 @@ impl KeptStep {
 }
 
 /// Returns whether all numbers have single precision.
-fn single(numbers: &[f64]) -> bool {
+fn are_single_precision(numbers: &[f64]) -> bool {
     #[expect(clippy::cast_possible_truncation, reason = "whether it loses anything is the question")]
     let exact = |value: &f64| f64::from(*value as f32).to_bits() == value.to_bits();
     numbers.iter().all(exact)

@@ -150,6 +150,6 @@ impl<'a> StepReader<'a> {
             std::mem::swap(before, end);
         }
         let mut read = |frame| self.outline.read(&mut self.reader, frame);
-        (!self.layout.polynomials || read(mid)) && read(end)
+        (!self.layout.has_polynomials || read(mid)) && read(end)
     }
 }

@@ -13,7 +13,7 @@ use fosssim_model::{
     scene::{Collision, Scene},
     sim::State,
 };
-use fosssim_num::vector::{Vec2, at, length, over};
+use fosssim_num::vector::{Vec2, at, divide, length};
 
 /// The angle below which a rotation counts as zero, in radians.
 const MIN_TURN: f64 = 1e-6;
@@ -278,7 +278,7 @@ impl MotionErrors {
     /// Compares velocities with the motion from the start to the end of the step.
     fn measure_velocities(&mut self, scene: &Scene, start: &State, end: &State, zone: &Group) {
         for &one in &zone.particles {
-            let motion = over(at(&end.positions, one) - at(&start.positions, one), scene.time_step);
+            let motion = divide(at(&end.positions, one) - at(&start.positions, one), scene.time_step);
             let velocity = at(&end.velocities, one);
             if length(motion) > SMALL {
                 let ratio = velocity.dot(&motion) / motion.dot(&motion);

@@ -8,7 +8,7 @@ use fosssim_model::{
 };
 use fosssim_num::{
     elementary,
-    vector::{Vec2, at, length, over, put},
+    vector::{Vec2, at, divide, length, put},
 };
 
 /// The relative size (to the numbers, and 1) below which differences are round-off.
@@ -196,7 +196,7 @@ impl<'a> FirstRound<'a> {
         if others.iter().any(|other| is_joined(&[zone, other])) || (others.len() > 1 && is_joined(&with_all)) {
             return Some(Fate::Wrong(WrongZones::Joined));
         }
-        let foreign = self.foreign();
+        let foreign = self.particles_moved_outside_zones();
         if zone.particles.len() > MAX_PARTICLES {
             return None;
         }
@@ -231,7 +231,7 @@ impl<'a> FirstRound<'a> {
     }
 
     /// Returns the particles of no zone that moved nevertheless.
-    fn foreign(&self) -> Vec<usize> {
+    fn particles_moved_outside_zones(&self) -> Vec<usize> {
         if self.rounds > 1 {
             return Vec::new();
         }
@@ -314,7 +314,7 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
         let across = Vec2::new(-arm.y, arm.x);
         let x = to + elementary::cos(angle) * arm + elementary::sin(angle) * across;
         put(&mut state.positions, one, x);
-        put(&mut state.velocities, one, over(x - at(&start.positions, one), scene.time_step));
+        put(&mut state.velocities, one, divide(x - at(&start.positions, one), scene.time_step));
     }
 }
 
@@ -336,7 +336,7 @@ pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -
 pub(super) fn center(scene: &Scene, group: &Group, state: &State) -> Vec2 {
     let mass = |one: usize| scene.particles[one].mass;
     let sum = group.particles.iter().map(|&one| mass(one) * at(&state.positions, one)).sum::<Vec2>();
-    over(sum, group.particles.iter().map(|&one| mass(one)).sum())
+    divide(sum, group.particles.iter().map(|&one| mass(one)).sum())
 }
 
 pub(super) fn are_near(one: Vec2, two: Vec2) -> bool {

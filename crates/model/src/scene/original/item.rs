@@ -42,7 +42,7 @@ impl<'e> Item<'e> {
     }
 
     /// Returns an integer; both messages contain `value of`.
-    pub(super) fn index(&self, name: &str) -> Result<i32, Refusal> {
+    pub(super) fn read_integer(&self, name: &str) -> Result<i32, Refusal> {
         self.require(name, "value of ", "integer", values::integer)
     }
 

@@ -126,7 +126,7 @@ impl<'e> RepeatedElements<'e> {
     fn edges(&mut self, particles: usize) -> Result<Vec<Edge>, Refusal> {
         let mut edges = Vec::new();
         for item in self.all("edge") {
-            let (i, j, radius) = (item.index("i")?, item.index("j")?, item.radius(0.015)?);
+            let (i, j, radius) = (item.read_integer("i")?, item.read_integer("j")?, item.radius(0.015)?);
             let first = self.check_index(&item, "particle", i, particles);
             let second = self.check_index(&item, "particle", j, particles);
             edges.push(Edge { first, second, radius });
@@ -146,7 +146,12 @@ impl<'e> RepeatedElements<'e> {
             // The original's messages call simple gravity a constant force as well.
             let called = if kind == ForceKind::SimpleGravity { ForceKind::Constant } else { kind };
             for item in Item::all(self.elements, kind.element(), called.element()) {
-                forces.push(kind.read(&mut ForceItem { item, scene: self, particles, edges })?);
+                forces.push(kind.read(&mut ForceItem {
+                    item,
+                    scene: self,
+                    particle_count: particles,
+                    edge_count: edges,
+                })?);
             }
         }
         Ok(forces)
@@ -158,7 +163,7 @@ impl<'e> RepeatedElements<'e> {
         let slack = usize::from(what != "particle");
         let mut colors = Vec::new();
         for item in self.all(name) {
-            let index = item.index("i")?;
+            let index = item.read_integer("i")?;
             if usize::try_from(index).ok().is_none_or(|index| index >= count + slack) {
                 // A count of zero wraps around in the original.
                 let last = (count as u64).wrapping_sub(1);
@@ -175,7 +180,7 @@ impl<'e> RepeatedElements<'e> {
     fn paths(&self, particles: usize) -> Result<Vec<ParticlePath>, Refusal> {
         let mut paths = Vec::new();
         for item in self.all("particlepath") {
-            let index = item.index("i")?;
+            let index = item.read_integer("i")?;
             let duration = item.text("duration").and_then(super::values::scalar).filter(|&duration| duration >= 0.0);
             let duration =
                 duration.ok_or_else(|| item.refusal("value of ", "duration", "Value must be positive scalar."))?;
@@ -192,21 +197,21 @@ impl<'e> RepeatedElements<'e> {
 struct ForceItem<'e, 's> {
     item: Item<'e>,
     scene: &'s mut RepeatedElements<'e>,
-    particles: usize,
-    edges: usize,
+    particle_count: usize,
+    edge_count: usize,
 }
 
 impl Source for ForceItem<'_, '_> {
     type Error = Refusal;
 
     fn edge(&mut self, name: &'static str) -> Result<usize, Refusal> {
-        let index = self.item.index(name)?;
-        Ok(self.scene.check_index(&self.item, "edge", index, self.edges))
+        let index = self.item.read_integer(name)?;
+        Ok(self.scene.check_index(&self.item, "edge", index, self.edge_count))
     }
 
     fn particle(&mut self, name: &'static str) -> Result<usize, Refusal> {
-        let index = self.item.index(name)?;
-        Ok(self.scene.check_index(&self.item, "particle", index, self.particles))
+        let index = self.item.read_integer(name)?;
+        Ok(self.scene.check_index(&self.item, "particle", index, self.particle_count))
     }
 
     fn number(&mut self, name: &'static str, default: Option<f64>, _: Option<&str>) -> Result<f64, Refusal> {

@@ -2,7 +2,7 @@
 use super::super::{bodies::Bodies, observer::Zone};
 use fosssim_num::{
     elementary::{cos, sin},
-    vector::{Vec2, at, over, put},
+    vector::{Vec2, at, divide, put},
 };
 
 /// Moves the particles of `zone` from `q_start` by the zone's mean displacement and rotation; `q` and `v` receive their
@@ -28,8 +28,8 @@ pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q
         shift += m * (at(q, particle) - start);
         mass += m;
     }
-    let center = over(center, mass);
-    let shift = over(shift, mass);
+    let center = divide(center, mass);
+    let shift = divide(shift, mass);
     let mut momentum = 0.0;
     let mut inertia = 0.0;
     for particle in members() {
@@ -46,7 +46,7 @@ pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q
         let arm = start - center;
         let end = ((center + shift) + c * arm) + s * Vec2::new(-arm.y, arm.x);
         put(q, particle, end);
-        put(v, particle, over(end - start, dt));
+        put(v, particle, divide(end - start, dt));
     }
 }
 

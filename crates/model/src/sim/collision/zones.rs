@@ -38,11 +38,11 @@ impl Zones {
         (0..self.len()).map(|index| self.get(index))
     }
 
-    /// Calls `hear` with the list of all zones; the list is built in `memory`.
-    pub fn show(&self, memory: &mut Vec<Zone<'static>>, hear: impl FnOnce(&[Zone<'_>])) {
+    /// Calls `visit` with the list of all zones; the list is built in `memory`.
+    pub fn show(&self, memory: &mut Vec<Zone<'static>>, visit: impl FnOnce(&[Zone<'_>])) {
         let mut list: Vec<Zone<'_>> = std::mem::take(memory);
         list.extend(self.iter());
-        hear(&list);
+        visit(&list);
         list.clear();
         // The list is empty now; collecting in place returns the allocation with the longer lifetime.
         *memory = list.into_iter().map(|_| Zone { particles: &[], half_plane: false }).collect();

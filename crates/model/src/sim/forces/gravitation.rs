@@ -1,14 +1,14 @@
 //! Newtonian attraction of two particles (simulation.md 3, gravitationalforce).
 use super::{add, subtract};
 use crate::sim::matrix::couple;
-use fosssim_num::vector::{at, length, over};
+use fosssim_num::vector::{at, divide, length};
 use nalgebra::{DMatrix, Matrix2};
 
 /// Adds `G m m' / r^2` along the line from the first to the second particle (NaN if they coincide).
 pub(super) fn add_gradient(masses: &[f64], [a, b]: [usize; 2], constant: f64, x: &[f64], gradient: &mut [f64]) {
     let d = at(x, b) - at(x, a);
     let r = length(d);
-    let n = over(d, r);
+    let n = divide(d, r);
     let s = constant * masses[b] * masses[a] / (r * r);
     subtract(gradient, a, s * n);
     add(gradient, b, s * n);
@@ -24,7 +24,7 @@ pub(super) fn add_position_hessian(
 ) {
     let d = at(x, b) - at(x, a);
     let r = length(d);
-    let n = over(d, r);
+    let n = divide(d, r);
     let s = constant * masses[b] * masses[a] / (r * r * r);
     let block = Matrix2::from_fn(|row, column| {
         let identity = if row == column { 1.0 } else { 0.0 };

@@ -1,14 +1,14 @@
 //! The damped spring on an edge (simulation.md 3, springforce).
 use super::{add, subtract};
 use crate::sim::matrix::{couple, decouple};
-use fosssim_num::vector::{Vec2, at, length, over};
+use fosssim_num::vector::{Vec2, at, divide, length};
 use nalgebra::{DMatrix, Matrix2};
 
 /// Returns the spring's length and its direction from the first to the second endpoint (NaN if they coincide).
 fn direction([a, b]: [usize; 2], x: &[f64]) -> (f64, Vec2) {
     let d = at(x, b) - at(x, a);
     let l = length(d);
-    (l, over(d, l))
+    (l, divide(d, l))
 }
 
 /// Adds `k (l - l0) n` and the damping `b (n . w) n` on the endpoints; both are always added.

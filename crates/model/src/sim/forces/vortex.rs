@@ -2,7 +2,7 @@
 //!
 //! The force has no Hessians; `Simulation::step` rejects it with an implicit integrator (scene-format.md 6).
 use super::{add, subtract};
-use fosssim_num::vector::{Vec2, at, length, over};
+use fosssim_num::vector::{Vec2, at, divide, length};
 
 /// Adds the gradient. `strength` is `kbs`, `coupling` is `kvc`.
 pub(super) fn add_gradient(
@@ -15,11 +15,11 @@ pub(super) fn add_gradient(
 ) {
     let d = at(x, b) - at(x, a);
     let r = length(d);
-    let n = over(d, r);
+    let n = divide(d, r);
     let along = strength * n;
     let turned = Vec2::new(-along.y, along.x);
     let slip = turned - (at(v, b) - at(v, a));
-    let force = coupling * over(slip, r * r);
+    let force = coupling * divide(slip, r * r);
     add(gradient, a, force);
     subtract(gradient, b, force);
 }

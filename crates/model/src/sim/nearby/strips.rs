@@ -107,9 +107,9 @@ impl Strips {
         }
     }
 
-    /// Calls `hear` for all pairs that may reach each other, each once, until it returns false. Returns the number of
+    /// Calls `visit` for all pairs that may reach each other, each once, until it returns false. Returns the number of
     /// tested pairs.
-    pub fn pairs(&self, mut hear: impl FnMut(&PlacedParticle, &PlacedParticle) -> bool) -> u64 {
+    pub fn pairs(&self, mut visit: impl FnMut(&PlacedParticle, &PlacedParticle) -> bool) -> u64 {
         // No distance is negative, and NaN reaches nothing.
         if !(self.reach > 0.0) {
             return 0;
@@ -124,7 +124,7 @@ impl Strips {
                     if n.x > self.width {
                         break;
                     }
-                    if !(n.dot(&n) > squared) && !hear(one, other) {
+                    if !(n.dot(&n) > squared) && !visit(one, other) {
                         return tested;
                     }
                 }
@@ -143,7 +143,7 @@ impl Strips {
                         if n.x > self.width {
                             break;
                         }
-                        if !(n.dot(&n) > squared) && !hear(one, other) {
+                        if !(n.dot(&n) > squared) && !visit(one, other) {
                             return tested;
                         }
                     }
@@ -164,7 +164,7 @@ impl Strips {
         [height(row.saturating_sub(2)), height(row.saturating_add(2))]
     }
 
-    /// Calls `hear` for all particles in a rectangle, until it returns false. Returns the number of checked particles.
+    /// Calls `visit` for all particles in a rectangle, until it returns false. Returns the number of checked particles.
     ///
     /// `narrow` may shorten a row: it receives the lowest and the highest y of a row, and returns the part of the
     /// rectangle's width that counts there.
@@ -172,7 +172,7 @@ impl Strips {
         &self,
         rectangle: Rectangle,
         narrow: impl Fn([f64; 2]) -> [f64; 2],
-        mut hear: impl FnMut(&PlacedParticle) -> bool,
+        mut visit: impl FnMut(&PlacedParticle) -> bool,
     ) -> u64 {
         let Rectangle { low, high } = rectangle;
         let (lowest, highest) = (row_of(low.y, self.density), row_of(high.y, self.density));
@@ -185,7 +185,7 @@ impl Strips {
             let first = entries.partition_point(|entry| entry.place.x < from);
             for entry in entries[first..].iter().take_while(|entry| entry.place.x <= to) {
                 seen += 1;
-                if !hear(entry) {
+                if !visit(entry) {
                     return seen;
                 }
             }

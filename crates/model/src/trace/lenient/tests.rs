@@ -1,7 +1,7 @@
 use super::*;
 use crate::trace::{Frame, Writer};
 
-const LAYOUT: Layout = Layout { particles: 0, impulses: true, polynomials: true, steps: 0 };
+const LAYOUT: Layout = Layout { particles: 0, has_impulses: true, has_polynomials: true, steps: 0 };
 
 #[test]
 fn a_record_may_hold_what_the_scenes_passes_log() {

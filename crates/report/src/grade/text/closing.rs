@@ -1,7 +1,7 @@
 //! The result of a submission's grading. It is short enough for a small terminal and comes last, so that it stays
 //! visible.
 use super::{Text, verdict_style};
-use crate::foreign::{one_line, plain};
+use crate::foreign::{one_line, strip_control_characters};
 use crate::{
     grade::{by_cause, change_lines, count_wrong, describe_speed, format_points, likely_mistakes, points, worth},
     number::format_count,
@@ -20,7 +20,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let style = options.style;
     let mut text = String::new();
     if alone {
-        text += &options.circumstances(grade);
+        text += &options.render_header(grade);
     }
     text += &render_groups(options, grade);
     for (number, (look, line)) in change_lines(grade).into_iter().enumerate() {
@@ -42,14 +42,14 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
             let _ = writeln!(text, "{}", style.paint(Look::Strong, heading));
         }
         let verb = if mistake.is_not_finite() || mistake.is_unexplained() { "in" } else { "explains" };
-        let what = plain(&words::explanation::what_or(mistake));
+        let what = strip_control_characters(&words::explanation::what_or(mistake));
         let worth = worth(grade, mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
         let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");
         if let Some(note) = grade.note(mistake) {
             let _ = writeln!(text, "    The course: {}", one_line(&note.to_string()));
         }
         for form in words::explanation::exact_forms(mistake) {
-            let _ = writeln!(text, "    {}", plain(&form));
+            let _ = writeln!(text, "    {}", strip_control_characters(&form));
         }
     }
     if grade.unfit().is_some() {

@@ -7,7 +7,7 @@ mod table;
 pub use table::{shorten_name, table};
 
 use super::{super::style::Style, no_points, points, score};
-use crate::foreign::{clean_output, one_line, plain};
+use crate::foreign::{clean_output, one_line, strip_control_characters};
 use crate::{number::format_count, smallest, style::Look, words};
 use fosssim_findings::{Grade, SceneGrade, SubmissionFault, Verdict};
 use fosssim_judge::Rules;
@@ -78,7 +78,7 @@ impl Text<'_> {
         let details = scenes::render(self, grade);
         if !details.is_empty() {
             let _ = writeln!(text, "{}", self.verdict(grade));
-            *text += &self.circumstances(grade);
+            *text += &self.render_header(grade);
             *text += &details;
             text.push('\n');
         }
@@ -113,10 +113,11 @@ impl Text<'_> {
     }
 
     /// Returns the suite, the weaknesses of the sandbox, and a failed build.
-    fn circumstances(&self, grade: &Grade) -> String {
+    fn render_header(&self, grade: &Grade) -> String {
         let mut text = format!("suite {}{}\n", one_line(&grade.suite), describe_rules(grade));
         for warning in &grade.warnings {
-            let _ = writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), plain(warning));
+            let _ =
+                writeln!(text, "{}: {}", self.style.paint(Look::Notice, "warning"), strip_control_characters(warning));
         }
         let build = grade.failed_build();
         if let (Some(unfit), None) = (self.unfit(grade), build) {
@@ -124,7 +125,12 @@ impl Text<'_> {
         }
         if let Some(build) = build {
             let most = if self.shown < TextDetail::Wrong { MAX_SHOWN_LINES } else { usize::MAX };
-            let _ = writeln!(text, "\n{}\n{}", plain(&words::build(&build.end)), quote_output(&build.output, most));
+            let _ = writeln!(
+                text,
+                "\n{}\n{}",
+                strip_control_characters(&words::build(&build.end)),
+                quote_output(&build.output, most)
+            );
         }
         text
     }

@@ -1,6 +1,6 @@
 //! Sentences about stages of a step that no known mistake explains.
 use super::capitalize;
-use crate::number::general;
+use crate::number::format_g;
 use fosssim_mistakes::diagnose::{
     Amount, ChangeCause, ChangedQuantity, LoopEnd, Quantity, Ratios, StageDetail, StageFault, WrongChange,
     WrongGeometric, WrongResponses,
@@ -213,7 +213,7 @@ fn is(ratio: f64, value: f64) -> bool {
 pub(super) fn times(ratios: Ratios) -> String {
     let short = |value: f64| {
         if value.abs() >= 1e6 {
-            return general(value);
+            return format_g(value);
         }
         let digits = if (value - 1.0).abs() < 5e-5 { 10 } else { 4 };
         let text = format!("{value:.digits$}");

@@ -139,9 +139,9 @@ impl Member {
     /// Checks that `size` further bytes may be stored.
     pub(in crate::domain) async fn check_quota(&self, transaction: &mut Transaction, size: u64) -> Result<(), Problem> {
         let [student, course, server] = self.shares(transaction).await?;
-        exceeds("your uploads and reports", student, size)?;
-        exceeds("the uploads and reports of this course", course, size)?;
-        exceeds("the uploads and reports on this server", server, size)
+        ensure_within("your uploads and reports", student, size)?;
+        ensure_within("the uploads and reports of this course", course, size)?;
+        ensure_within("the uploads and reports on this server", server, size)
     }
 }
 
@@ -171,7 +171,7 @@ impl RoomShare {
     }
 }
 
-fn exceeds(what: &str, RoomShare { bytes: kept, most }: RoomShare, size: u64) -> Result<(), Problem> {
+fn ensure_within(what: &str, RoomShare { bytes: kept, most }: RoomShare, size: u64) -> Result<(), Problem> {
     if most == 0 || kept.saturating_add(size) <= most {
         return Ok(());
     }

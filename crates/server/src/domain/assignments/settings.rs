@@ -168,7 +168,7 @@ impl Settings {
     /// # Errors
     ///
     /// When a field is unknown, or has the wrong type.
-    pub fn with(&self, changes: &Map<String, Value>) -> Result<Self, Problem> {
+    pub fn with_changes(&self, changes: &Map<String, Value>) -> Result<Self, Problem> {
         let Ok(Value::Object(mut fields)) = serde_json::to_value(self) else { return Err(Problem::fault()) };
         // A named suite replaces an uploaded one.
         if changes.contains_key("suite") {

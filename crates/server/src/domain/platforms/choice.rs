@@ -156,7 +156,7 @@ impl Person {
         let Some(wanted) = &arrival.deep_linking else {
             let resource = arrival.resource.as_ref().ok_or_else(Problem::fault)?;
             let link = launch::make_link(&mut transaction, place.id, &resource.id, assignment.id).await?;
-            launch::columns(&mut transaction, link, arrival).await?;
+            launch::store_score_columns(&mut transaction, link, arrival).await?;
             transaction.commit().await?;
             return Ok(LinkStep::Assignment(format!("/c/{}/a/{}#done", place.slug, assignment.slug)));
         };

@@ -201,7 +201,7 @@ async fn arrive(
         let statement = "UPDATE platform_course SET memberships = ? WHERE id = ?";
         transaction.execute(statement, values![memberships, id]).await?;
     }
-    enrol(transaction, platform.id, id, course, account, role).await?;
+    enroll(transaction, platform.id, id, course, account, role).await?;
     let Some(resource) = &arrival.resource else {
         ensure(staff, Problem::refused_launch("only teachers of the course can create links"))?;
         return choose(transaction, platform, arrival, account).await;
@@ -216,7 +216,7 @@ async fn arrive(
     };
     match link {
         Some((link, assignment)) => {
-            columns(transaction, link, arrival).await?;
+            store_score_columns(transaction, link, arrival).await?;
             if !staff {
                 score::note_arrival(transaction, link, account).await?;
             }
@@ -261,7 +261,7 @@ pub(in crate::domain) async fn make_link(
 }
 
 /// Stores the score columns of a link that the platform's message names. A column that this service created stays.
-pub(in crate::domain) async fn columns(
+pub(in crate::domain) async fn store_score_columns(
     transaction: &mut Transaction,
     link: i64,
     arrival: &Arrival,
@@ -321,7 +321,7 @@ pub(in crate::domain) async fn find_or_make(
 }
 
 /// Makes a person a member, as a platform requests, or changes their role; roles that staff set here stay.
-pub(in crate::domain) async fn enrol(
+pub(in crate::domain) async fn enroll(
     transaction: &mut Transaction,
     platform: i64,
     place: i64,

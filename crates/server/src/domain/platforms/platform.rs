@@ -2,7 +2,7 @@
 use crate::domain::{
     Admin, App, Staff,
     accounts::identity,
-    platforms::launch::{enrol, find_or_make},
+    platforms::launch::{enroll, find_or_make},
 };
 use crate::{
     db::{DbError, FromRow, Row, read_row},
@@ -203,7 +203,7 @@ impl Staff {
             if row.flag("is_admin")? || row.maybe_int("disabled_at")?.is_some() {
                 continue;
             }
-            enrol(&mut transaction, platform.id, place, course, account, role).await?;
+            enroll(&mut transaction, platform.id, place, course, account, role).await?;
         }
         // An empty answer comes from a filter, or an error.
         if present.is_empty() {

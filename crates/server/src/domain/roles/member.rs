@@ -138,7 +138,7 @@ impl Member {
             grade.created_at = shown::round_to_hour(grade.created_at);
             submission.is_withheld = true;
             grade.outcome.shown = Some(kept);
-            submission.overrule();
+            submission.apply_staff_points();
         }
         Ok(())
     }

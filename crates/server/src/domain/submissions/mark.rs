@@ -268,9 +268,9 @@ impl Member {
     /// # Errors
     ///
     /// When the database does not answer.
-    pub async fn due(&self, assignment: &Assignment) -> Result<Option<i64>, Problem> {
+    pub async fn due_date(&self, assignment: &Assignment) -> Result<Option<i64>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        Ok(due(&mut transaction, assignment, self.account.id).await?)
+        Ok(due_date(&mut transaction, assignment, self.account.id).await?)
     }
 }
 
@@ -281,7 +281,7 @@ async fn extension(transaction: &mut Transaction, assignment: i64, account: i64)
 }
 
 /// Returns an account's due date; an extension can only give more time.
-pub(in crate::domain) async fn due(
+pub(in crate::domain) async fn due_date(
     transaction: &mut Transaction,
     assignment: &Assignment,
     account: i64,

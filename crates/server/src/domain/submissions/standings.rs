@@ -193,10 +193,10 @@ async fn read(
     let statement = "SELECT mark.submission, mark.points FROM submission JOIN mark ON mark.submission = submission.id
         WHERE submission.assignment = ? AND mark.points IS NOT NULL";
     let rows = transaction.rows(statement, values![id]).await?;
-    let by_hand = map(&rows, |row| Ok((row.int("submission")?, row.text("points")?)))?;
+    let by_hand = collect_by_id(&rows, |row| Ok((row.int("submission")?, row.text("points")?)))?;
     let statement = "SELECT account, due_at FROM extension WHERE assignment = ?";
     let rows = transaction.rows(statement, values![id]).await?;
-    let own_due: HashMap<i64, i64> = map(&rows, |row| Ok((row.int("account")?, row.int("due_at")?)))?;
+    let own_due: HashMap<i64, i64> = collect_by_id(&rows, |row| Ok((row.int("account")?, row.int("due_at")?)))?;
     // The names of members, and of others who have submitted something.
     let statement = "SELECT account.id, account.login, account.name, coalesce(member.role, 'student') AS role
         FROM account LEFT JOIN member ON member.account = account.id AND member.course = ?
@@ -212,7 +212,7 @@ async fn read(
         WHERE submission.assignment = ? GROUP BY submission.account";
     let policy = assignment.settings.late_policy();
     let rows = transaction.rows(statement, values![id]).await?;
-    let attempts: HashMap<i64, (usize, Option<Best>)> = map(&rows, |row| {
+    let attempts: HashMap<i64, (usize, Option<Best>)> = collect_by_id(&rows, |row| {
         let account = row.int("account")?;
         let best = Best::from_list(&row.text("attempts")?, &by_hand, &policy, own_due.get(&account).copied());
         Ok((account, (usize::try_from(row.int("n")?).unwrap_or(0), best)))
@@ -222,7 +222,7 @@ async fn read(
         FROM {each} JOIN grade ON grade.submission = CAST(wanted.value AS {int})
         JOIN submission ON submission.id = grade.submission JOIN result ON result.id = grade.result";
     let rows = transaction.rows(statement, values![serde_json::to_string(&counted).unwrap_or_default()]).await?;
-    let grades: HashMap<i64, &Row> = map(&rows, |row| Ok((row.int("submission")?, row)))?;
+    let grades: HashMap<i64, &Row> = collect_by_id(&rows, |row| Ok((row.int("submission")?, row)))?;
     let mut standings = BTreeMap::new();
     for row in people.iter().filter(|row| row.int("id").is_ok_and(|id| !staff.contains(&id))) {
         let (submissions, best) = attempts.get(&row.int("id")?).cloned().unwrap_or_default();
@@ -244,7 +244,7 @@ async fn read(
     Ok(standings.into_values().collect())
 }
 
-fn map<'a, T>(
+fn collect_by_id<'a, T>(
     rows: &'a [Row],
     read: impl Fn(&'a Row) -> Result<(i64, T), DbError>,
 ) -> Result<HashMap<i64, T>, DbError> {

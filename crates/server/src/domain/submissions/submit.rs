@@ -171,7 +171,7 @@ impl Member {
             WHERE submission.assignment = ? AND submission.account = ? AND coalesce(result.code, '') <> 'JE'";
         let row =
             transaction.one(statement, values![came_at - HOUR, came_at - HOUR, assignment.id, self.account.id]).await?;
-        let due = mark::due(transaction, assignment, self.account.id).await?;
+        let due = mark::due_date(transaction, assignment, self.account.id).await?;
         if due.is_some_and(|due| came_at > settings.late_policy().closes_at(due)) {
             return Err(Problem::conflict("the due date has passed", "ask the course's staff"));
         }

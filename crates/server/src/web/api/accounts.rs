@@ -38,7 +38,7 @@ pub(super) struct AccountWish {
 /// Returns the account of the person who is signed in.
 #[utoipa::path(get, path = "/api/v1/me", tag = "accounts",
     responses((status = 200, body = Account)))]
-pub(super) async fn me(person: Person) -> Json<Account> {
+pub(super) async fn show_own_account(person: Person) -> Json<Account> {
     Json(person.account.clone())
 }
 

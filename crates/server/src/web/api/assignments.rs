@@ -190,7 +190,7 @@ answers! { OK:
     /// counts immediately.
     put "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         set_assignment(staff: Staff, { assignment }, wish: AssignmentWish) -> Assignment:
-            staff.set_assignment(&assignment, wish.change(), |before| before.with(&wish.settings));
+            staff.set_assignment(&assignment, wish.change(), |before| before.with_changes(&wish.settings));
     /// Lists the assignments of a course.
     get "/api/v1/courses/{course}/assignments" "assignments"
         assignments(member: Member) -> Vec<Assignment>: member.assignments();

@@ -64,7 +64,7 @@ macro_rules! operations {
 
 operations! {
     operations: health ready metrics openapi;
-    accounts: me tokens new_token revoke_token accounts set_account disable_account remove_person
+    accounts: show_own_account tokens new_token revoke_token accounts set_account disable_account remove_person
         worker_tokens new_worker_token revoke_worker_token queue audit;
     courses: courses new_course remove_course members import set_member remove_member member_link audit;
     assignments: assignments assignment set_assignment remove_assignment set_suite publish withhold standings export

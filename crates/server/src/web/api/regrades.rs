@@ -40,7 +40,7 @@ answers! { CREATED:
     /// Grades all submissions again, without replacing the grades. Nothing changes until the regrade is applied.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
         begin(staff: Staff, { assignment }, wish: RegradeWish) -> Regrade: async {
-            let settings = staff.assignment(&assignment).await?.settings.with(&wish.settings)?;
+            let settings = staff.assignment(&assignment).await?.settings.with_changes(&wish.settings)?;
             staff.regrade(&assignment, &wish.reason, &settings).await
         };
 }

@@ -62,7 +62,7 @@ pub(super) struct OwnWork {
 
 impl OwnWork {
     pub(super) async fn read(member: &Member, assignment: &Assignment) -> Result<Self, Problem> {
-        let due = member.due(assignment).await?;
+        let due = member.due_date(assignment).await?;
         let submissions = member.submissions(&assignment.slug).await?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
         let passed = |at: Option<i64>| at.is_some_and(|at| u128::try_from(at).is_ok_and(|at| at < now));

@@ -75,7 +75,7 @@ pub(super) struct GradesQuery {
 
 impl GradesQuery {
     /// Returns the students on the page, their number on all pages, and the addresses of the pages before and after.
-    fn at(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
+    fn page_of_students(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let words = self.q.trim().to_lowercase();
         let made = |one: &ShortStanding| one.counts.as_ref().and_then(statistics::mistake) == Some(&*self.mistake);
         let is_wanted = |one: &&ShortStanding| {
@@ -130,7 +130,7 @@ pub(super) async fn class(
     let assignment = staff.assignment(&assignment).await?;
     let standings = staff.short_standings(&assignment).await?;
     let statistics = Statistics::from_standings(&standings);
-    let (standings, found, [before, after]) = look.at(&standings);
+    let (standings, found, [before, after]) = look.page_of_students(&standings);
     let standings = staff.whole_standings(&standings).await?;
     let results: Vec<i64> =
         standings.iter().filter_map(|one| Some(one.counts.as_ref()?.grade.as_ref()?.result)).collect();
@@ -160,7 +160,7 @@ pub(super) async fn begin(
     AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewRegrade>,
 ) -> Result<Redirect, Problem> {
-    let settings = form.grading.over(&staff.assignment(&assignment).await?.settings)?;
+    let settings = form.grading.apply_to(&staff.assignment(&assignment).await?.settings)?;
     let regrade = staff.regrade(&assignment, form.reason.trim(), &settings).await?;
     Ok(redirect_to(&format!("/c/{slug}/a/{assignment}/regrades/{}", regrade.id)))
 }

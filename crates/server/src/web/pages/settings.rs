@@ -37,7 +37,7 @@ pub(super) type SuiteOption = (String, String, bool);
 pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<SuiteOption>, Problem> {
     let mut suites = Vec::new();
     for UploadedSuite { digest, name, uploaded_at } in staff.suites().await? {
-        let name = if name.is_empty() { text::short(&digest) } else { &name };
+        let name = if name.is_empty() { text::short_digest(&digest) } else { &name };
         let at = uploaded_at.map(|at| format!(" of {} UTC", calendar::format_minute(at))).unwrap_or_default();
         let is_this = settings.suite_archive.as_ref() == Some(&digest);
         suites.push((format!("{UPLOADED_PREFIX}{digest}"), format!("{name} (yours{at})"), is_this));
@@ -73,7 +73,7 @@ fn parse<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
 
 impl Grading {
     /// Returns the settings with the form's values.
-    pub(super) fn over(&self, before: &Settings) -> Result<Settings, Problem> {
+    pub(super) fn apply_to(&self, before: &Settings) -> Result<Settings, Problem> {
         let chosen = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
         let (suite, suite_archive) = match self.suite.strip_prefix(UPLOADED_PREFIX) {
             Some(digest) => (before.suite.clone(), Some(digest.to_owned())),
@@ -117,7 +117,7 @@ pub(super) struct NewSettings {
 }
 
 impl NewSettings {
-    fn over(&self, before: &Settings) -> Result<Settings, Problem> {
+    fn apply_to(&self, before: &Settings) -> Result<Settings, Problem> {
         let megabytes: f64 = parse("the largest upload", &self.megabytes)?;
         ensure((0.0..=1024.0).contains(&megabytes), Problem::invalid("the largest upload must be at most 1024 MiB"))?;
         let forms = [("program", &self.form_program), ("sources", &self.form_sources), ("traces", &self.form_traces)];
@@ -134,7 +134,7 @@ impl NewSettings {
                 "" => None,
                 name => Some(parse("the time zone, such as Europe/Berlin,", name)?),
             },
-            ..self.grading.over(before)?
+            ..self.grading.apply_to(before)?
         })
     }
 }
@@ -171,7 +171,7 @@ pub(super) async fn set(
     // A page of an earlier version has no revision, and is accepted.
     let revision = Some(form.revision.parse().unwrap_or(-1));
     let change = AssignmentChange { title, visible, revision, suite: None };
-    staff.set_assignment(&assignment.slug, change, |before| form.over(before)).await?;
+    staff.set_assignment(&assignment.slug, change, |before| form.apply_to(before)).await?;
     Ok(redirect_to(&format!("/c/{slug}/a/{}/settings#done", assignment.slug)))
 }
 

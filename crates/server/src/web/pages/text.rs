@@ -59,7 +59,7 @@ pub(super) fn score(score: &serde_json::Value) -> String {
 }
 
 /// Returns the beginning of a digest.
-pub(super) fn short(digest: &str) -> &str {
+pub(super) fn short_digest(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
 }
 

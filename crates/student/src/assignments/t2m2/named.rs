@@ -18,7 +18,7 @@ const PH: PairKind = PairKind::ParticleHalfPlane;
 const NOTHING: BoundedVector = BoundedVector { x: BoundedValue::exact(0.0), y: BoundedValue::exact(0.0) };
 
 /// Returns the positions at the end of the step.
-fn ends(inputs: &Inputs) -> [BoundedVector; 3] {
+fn end_positions(inputs: &Inputs) -> [BoundedVector; 3] {
     std::array::from_fn(|body| inputs.x[body] + inputs.d[body])
 }
 
@@ -57,10 +57,10 @@ macro_rules! named_edits {
 }
 
 named_edits! {
-    END_POSITIONS "end-positions" [PP, PE, PH] 4.0: OtherInputs(|inputs| inputs.x = ends(inputs))
+    END_POSITIONS "end-positions" [PP, PE, PH] 4.0: OtherInputs(|inputs| inputs.x = end_positions(inputs))
         => "The formulas use positions at the end of the step"
         => "the positions x are those at the end of the step instead of the start";
-    END_FOR_DISPLACEMENT "end-for-displacement" [PP, PE, PH] 4.0: OtherInputs(|inputs| inputs.d = ends(inputs))
+    END_FOR_DISPLACEMENT "end-for-displacement" [PP, PE, PH] 4.0: OtherInputs(|inputs| inputs.d = end_positions(inputs))
         => "Positions at the end of the step are used instead of displacements"
         => "the displacements dx are end positions instead of end minus start";
     DISPLACEMENT_REVERSED "displacement-reversed" [PP, PE, PH] 4.2:

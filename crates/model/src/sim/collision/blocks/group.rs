@@ -211,7 +211,7 @@ fn store_edges<S: Simd>(
     let ([f0, f1, f2], [s0, s1, s2]) = (beyond_first, before_second);
     // Code that needs all numbers precedes code with branches, across which few numbers stay in registers.
     let all = [o0, o1, o2, o3, o4, f0, f1, f2, s0, s1, s2, a0, a1, a2, a3, a4, a5];
-    let small = small(simd, &all);
+    let small = small_coefficient_bits(simd, &all);
     for lanes in &all {
         largest = largest.max(lanes.abs());
     }
@@ -235,7 +235,7 @@ fn store<S: Simd>(
     let excluded = excludes_two(overlap, approach);
     let ([a, b, c], [d, e]) = (overlap, approach);
     let all = [a, b, c, d, e];
-    let known = small(simd, &all) + (!excluded).or_zero(1.0);
+    let known = small_coefficient_bits(simd, &all) + (!excluded).or_zero(1.0);
     for lanes in &all {
         largest = largest.max(lanes.abs());
     }
@@ -245,7 +245,7 @@ fn store<S: Simd>(
 
 /// Returns the bits of small coefficients; see [`OPEN`].
 #[inline(always)]
-fn small<S: Simd, const COEFFICIENTS: usize>(simd: S, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
+fn small_coefficient_bits<S: Simd, const COEFFICIENTS: usize>(simd: S, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
     let mut known = Lanes::all(simd, NOTHING);
     for (number, coefficient) in all.iter().enumerate() {
         known = known + is_small(*coefficient).or_zero(f64::from(2_u32 << number));

@@ -52,9 +52,9 @@ impl PenaltyPairs {
         }
     }
 
-    /// Calls `hear` for all pairs that may be closer at positions `x` (2N) than their radii and the thickness, in the
+    /// Calls `visit` for all pairs that may be closer at positions `x` (2N) than their radii and the thickness, in the
     /// order in which they are summed. In large scenes few other pairs are included.
-    pub fn visit(&mut self, x: &[f64], mut hear: impl FnMut(Pair)) {
+    pub fn visit(&mut self, x: &[f64], mut visit: impl FnMut(Pair)) {
         let particles = self.radii.len();
         let edges = &self.edges;
         let objects = Objects { particles, edges: edges.len(), half_planes: self.half_planes };
@@ -62,11 +62,11 @@ impl PenaltyPairs {
         let edges_of = |i: usize| (0..edges.len()).filter(move |&edge| !is_end(edges[edge], i));
         if let Some(sweep) = &mut self.sweep {
             sweep.update(x);
-            sweep.visit_particles(|i, j| hear(pair(PairKind::ParticleParticle, i, j)));
-            sweep.visit_edges(|i, edge| hear(pair(PairKind::ParticleEdge, i, edge)));
+            sweep.visit_particles(|i, j| visit(pair(PairKind::ParticleParticle, i, j)));
+            sweep.visit_edges(|i, edge| visit(pair(PairKind::ParticleEdge, i, edge)));
             for i in 0..particles {
                 let [.., half_planes] = row(i);
-                half_planes.for_each(|half_plane| hear(pair(PairKind::ParticleHalfPlane, i, half_plane)));
+                half_planes.for_each(|half_plane| visit(pair(PairKind::ParticleHalfPlane, i, half_plane)));
             }
             return;
         }
@@ -75,20 +75,20 @@ impl PenaltyPairs {
             let [others, _, half_planes] = row(i);
             if let Some(found) = &mut found {
                 let [others, edges] = found.next(i);
-                others.for_each(|j| hear(pair(PairKind::ParticleParticle, i, j)));
-                edges.for_each(|edge| hear(pair(PairKind::ParticleEdge, i, edge)));
+                others.for_each(|j| visit(pair(PairKind::ParticleParticle, i, j)));
+                edges.for_each(|edge| visit(pair(PairKind::ParticleEdge, i, edge)));
             } else {
                 // Nearly all other pairs are out of reach, which is tested with as few instructions as possible.
                 let (own, radius) = (at(x, i), self.radii[i]);
                 let places = x.as_chunks::<2>().0[others.clone()].iter().zip(&self.radii[others.clone()]);
                 for (j, (&other, other_radius)) in others.zip(places) {
                     if !is_beyond(Vec2::from(other) - own, (radius + other_radius) + self.thickness) {
-                        hear(pair(PairKind::ParticleParticle, i, j));
+                        visit(pair(PairKind::ParticleParticle, i, j));
                     }
                 }
-                edges_of(i).for_each(|edge| hear(pair(PairKind::ParticleEdge, i, edge)));
+                edges_of(i).for_each(|edge| visit(pair(PairKind::ParticleEdge, i, edge)));
             }
-            half_planes.for_each(|half_plane| hear(pair(PairKind::ParticleHalfPlane, i, half_plane)));
+            half_planes.for_each(|half_plane| visit(pair(PairKind::ParticleHalfPlane, i, half_plane)));
         }
     }
 }

@@ -103,13 +103,13 @@ impl Sweep {
         }));
     }
 
-    /// Calls `hear` for all near pairs of particles, with the smaller number first.
-    pub fn visit_particles(&self, mut hear: impl FnMut(usize, usize)) {
+    /// Calls `visit` for all near pairs of particles, with the smaller number first.
+    pub fn visit_particles(&self, mut visit: impl FnMut(usize, usize)) {
         let boxes = &self.particle_boxes[..];
         let mut hear_if_near = |one: &BodyExtent, other: &BodyExtent| {
             if one.overlaps(other) {
                 let (one, other) = (one.body as usize, other.body as usize);
-                hear(one.min(other), one.max(other));
+                visit(one.min(other), one.max(other));
             }
         };
         let begins_behind = |other: &BodyExtent, one: &BodyExtent| other.low[0] > one.high[0];
@@ -148,14 +148,14 @@ impl Sweep {
         }
     }
 
-    /// Calls `hear` for all particles with their near edges, except edges that end in them.
-    pub fn visit_edges(&self, mut hear: impl FnMut(usize, usize)) {
+    /// Calls `visit` for all particles with their near edges, except edges that end in them.
+    pub fn visit_edges(&self, mut visit: impl FnMut(usize, usize)) {
         for one in &self.particle_boxes {
             let first = self.furthest.partition_point(|furthest| *furthest < one.low[0]);
             for other in self.edge_boxes[first..].iter().take_while(|other| !(other.low[0] > one.high[0])) {
                 let (particle, edge) = (one.body as usize, other.body as usize);
                 if one.overlaps(other) && !self.edges[edge].0.contains(&particle) {
-                    hear(particle, edge);
+                    visit(particle, edge);
                 }
             }
         }
@@ -179,7 +179,7 @@ fn sort(
     // Keys are integers in the order of the position on x, then of the previous search, so that each body is moved only
     // once.
     keys.clear();
-    keys.extend(boxes.iter().zip(0_u32..).map(|(one, rank)| u128::from(rising(one.low[0])) << 32 | u128::from(rank)));
+    keys.extend(boxes.iter().zip(0_u32..).map(|(one, rank)| u128::from(sort_key(one.low[0])) << 32 | u128::from(rank)));
     for part in keys.split_mut(|key| boxes[*key as u32 as usize].low[0].is_nan()) {
         part.sort_unstable();
     }
@@ -189,7 +189,7 @@ fn sort(
 }
 
 /// Returns an integer that increases with `number`, the same for both zeros.
-const fn rising(number: f64) -> u64 {
+const fn sort_key(number: f64) -> u64 {
     // Adding zero turns -0 into 0.
     let bits = (number + 0.0).to_bits();
     if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }

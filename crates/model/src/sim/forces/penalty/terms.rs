@@ -30,8 +30,8 @@ impl PenaltyTerms {
         })
     }
 
-    /// Calls `hear` for every pair that repels at positions `x` (2N), with the force on each of its particles.
-    pub fn visit(&mut self, x: &[f64], mut hear: impl FnMut(Pair, &[(usize, Vec2)])) {
+    /// Calls `visit` for every pair that repels at positions `x` (2N), with the force on each of its particles.
+    pub fn visit(&mut self, x: &[f64], mut visit: impl FnMut(Pair, &[(usize, Vec2)])) {
         let Self { bodies, penalty: Penalty { law, pairs }, gradient } = self;
         pairs.visit(x, |pair| {
             let count = match pair.kind {
@@ -45,7 +45,7 @@ impl PenaltyTerms {
             law.add(bodies, pair, x, gradient);
             terms.iter_mut().for_each(|(particle, force)| *force = -1.0 * at(gradient, *particle));
             if terms.iter().any(|(_, force)| *force != Vec2::zeros()) {
-                hear(pair, terms);
+                visit(pair, terms);
             }
         });
     }
