@@ -83,7 +83,7 @@ pub(super) fn width() -> Option<usize> {
 ///
 /// # Errors
 ///
-/// The errors of [`print`].
+/// Fails like [`print`].
 pub(super) fn report(text: &str) -> Result<()> {
     match width() {
         Some(width) => print(wrap::wrap(text, width)),
@@ -95,7 +95,7 @@ pub(super) fn report(text: &str) -> Result<()> {
 ///
 /// # Errors
 ///
-/// The errors of [`print`].
+/// Fails like [`print`].
 pub(super) fn show(format: TextOrJson, text: impl FnOnce() -> String, json: impl FnOnce() -> String) -> Result<()> {
     match format {
         TextOrJson::Text => report(&text()),
@@ -107,7 +107,7 @@ pub(super) fn show(format: TextOrJson, text: impl FnOnce() -> String, json: impl
 ///
 /// # Errors
 ///
-/// Another error, such as a full disk.
+/// Fails with other errors, such as a full disk.
 pub(super) fn print(text: impl AsRef<[u8]>) -> Result<()> {
     if is_quiet() {
         return Ok(());

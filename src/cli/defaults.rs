@@ -24,7 +24,7 @@ struct Defaults {
 ///
 /// # Errors
 ///
-/// When the file can't be read, or has an invalid content.
+/// Fails if the file can't be read, or has an invalid content.
 pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
     for folder in working.ancestors() {
         let text = match Place::new(folder, FILE).read(MAX_BYTES) {

@@ -40,7 +40,7 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// When the output can't be written, or is one of `inputs`.
+    /// Fails if the output can't be written, or is one of `inputs`.
     pub(super) fn create(name: &Path, inputs: &[Identity]) -> Result<Self> {
         if ["-", "/dev/stdout", "/dev/fd/1", "/proc/self/fd/1"].into_iter().any(|own| name == Path::new(own)) {
             return Ok(Self::Stdout);
@@ -105,7 +105,7 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// When it can't be written.
+    /// Fails if it can't be written.
     pub(super) fn finish_with(mut self, bytes: &[u8]) -> Result<()> {
         let name = self.name();
         self.write_all(bytes).with_context(|| format!("cannot write {name}"))?;
@@ -116,7 +116,7 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// When it can't be written.
+    /// Fails if it can't be written.
     pub(super) fn finish_and_tell(self, bytes: &[u8], is_page: bool) -> Result<()> {
         let file = match &self {
             Self::File(file) => Some(file.target()),
@@ -142,7 +142,7 @@ impl Output {
     ///
     /// # Errors
     ///
-    /// When the last bytes or the rename fail; the target is unchanged then.
+    /// Fails if the last bytes or the rename fail; the target is unchanged then.
     pub(super) fn finish(mut self) -> Result<()> {
         console::ignore_closed_pipe(self.flush())?;
         match self {
@@ -195,7 +195,7 @@ impl Write for Output {
 ///
 /// # Errors
 ///
-/// When it can't be written; an old file is unchanged then.
+/// Fails if it can't be written; an old file is unchanged then.
 pub(super) fn write(name: &Path, bytes: &[u8]) -> Result<()> {
     Output::create(name, &[])?.finish_with(bytes)
 }
@@ -204,7 +204,7 @@ pub(super) fn write(name: &Path, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 ///
-/// When it can't be written; an old file is unchanged then.
+/// Fails if it can't be written; an old file is unchanged then.
 pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
     write_whole(|| place.replacement(), |file| file.write_all(bytes))
         .with_context(|| format!("cannot write {}", place.path().display()))
@@ -214,7 +214,7 @@ pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
 ///
 /// # Errors
 ///
-/// The errors of [`write_at`], and when the reader fails.
+/// Fails like [`write_at`], and if the reader fails.
 pub(super) fn copy_at(place: &Place, from: &mut impl io::Read) -> io::Result<()> {
     write_whole(|| place.replacement(), |file| io::copy(from, file).map(drop))
 }
@@ -259,7 +259,7 @@ impl Folder {
     ///
     /// # Errors
     ///
-    /// When the path is not a folder, or the folder can't be created.
+    /// Fails if the path is not a folder, or the folder can't be created.
     pub(super) fn open(name: &Path) -> Result<Self> {
         match fs::create_dir(name) {
             Ok(()) => {}
@@ -292,7 +292,7 @@ impl Folder {
     ///
     /// # Errors
     ///
-    /// When it can't be written.
+    /// Fails if it can't be written.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
         write_whole(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
             .with_context(|| format!("cannot write {}", self.0.given_path().join(name).display()))

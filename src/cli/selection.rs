@@ -14,7 +14,7 @@ impl Selection {
     ///
     /// # Errors
     ///
-    /// A pattern that is invalid, or that matches no name.
+    /// Fails if a pattern is invalid or matches no name.
     pub(super) fn new(words: &[String], names: &[&str]) -> Result<Self> {
         let mut patterns = Vec::new();
         for word in words {

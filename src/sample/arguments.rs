@@ -62,7 +62,7 @@ impl Options {
     ///
     /// # Errors
     ///
-    /// A sentence about a mistake that does not exist.
+    /// Fails if there is no such mistake, with a sentence about it.
     pub fn student(&self, pinned: Option<&str>, program: Option<&OsString>) -> Result<Student, String> {
         student(pinned, self.mistake.clone(), program.map(Path::new))
     }

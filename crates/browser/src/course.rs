@@ -17,7 +17,7 @@ impl CourseSuite {
     /// Returns the groups of a plan that readers of the page may see, without any data of the other groups.
     ///
     /// # Errors
-    /// If there is no visible group, or if a name cannot be written into a suite.
+    /// Fails if there is no visible group, or if a name cannot be written into a suite.
     pub fn for_plan(plan: &Plan, reader: Audience) -> Result<Self, String> {
         let shows = |visibility| reader == Audience::Staff || visibility == Visibility::Visible;
         let groups: Vec<&PlannedGroup> = plan.groups.iter().filter(|group| shows(group.marking.visibility)).collect();

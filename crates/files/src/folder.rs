@@ -55,7 +55,7 @@ impl Folder {
     /// Opens the folder at `path`, to read its entries. The path itself may contain links.
     ///
     /// # Errors
-    /// If the folder does not exist, or access is denied.
+    /// Fails if the folder does not exist, or access is denied.
     pub fn open(path: &Path) -> io::Result<Self> {
         let folder = OpenOptions::new().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NONBLOCK).open(path)?;
         Ok(Self { fd: Arc::new(folder.into()), shown: path.to_owned() })
@@ -64,7 +64,7 @@ impl Folder {
     /// Opens a folder to write files into, which need not be readable.
     ///
     /// # Errors
-    /// If the folder does not exist, or access is denied.
+    /// Fails if the folder does not exist, or access is denied.
     pub fn to_write(path: &Path) -> io::Result<Self> {
         let flags = OFlags::PATH | OFlags::DIRECTORY | OFlags::CLOEXEC;
         Ok(Self { fd: Arc::new(openat(CWD, path, flags, Mode::empty())?), shown: path.to_owned() })
@@ -73,7 +73,7 @@ impl Folder {
     /// Opens a folder like [`Folder::to_write`], and creates missing folders on the path.
     ///
     /// # Errors
-    /// If it cannot be created or opened.
+    /// Fails if it cannot be created or opened.
     pub fn make(path: &Path) -> io::Result<Self> {
         std::fs::create_dir_all(path)?;
         Self::to_write(path)
@@ -88,7 +88,7 @@ impl Folder {
     /// Returns the names of the folder's entries.
     ///
     /// # Errors
-    /// If the folder cannot be read.
+    /// Fails if the folder cannot be read.
     pub fn names(&self) -> io::Result<Vec<OsString>> {
         let flags = OFlags::RDONLY | OFlags::DIRECTORY | SAFE_FLAGS;
         let mut names = Vec::new();
@@ -105,7 +105,7 @@ impl Folder {
     /// Opens an entry once and returns it.
     ///
     /// # Errors
-    /// If it cannot be opened; [`io::ErrorKind::NotFound`] if it was removed.
+    /// Fails if it cannot be opened; [`io::ErrorKind::NotFound`] if it was removed.
     pub fn entry(&self, name: &OsStr) -> io::Result<FolderEntry> {
         let file = match openat(&*self.fd, check_single_component(name)?, OFlags::RDONLY | SAFE_FLAGS, Mode::empty()) {
             Ok(fd) => File::from(fd),
@@ -123,7 +123,7 @@ impl Folder {
     /// Returns the subfolder `name`, to write into.
     ///
     /// # Errors
-    /// If it does not exist, or is a link.
+    /// Fails if it does not exist, or is a link.
     pub fn folder(&self, name: &OsStr) -> io::Result<Self> {
         let inner = step(self.as_fd(), check_single_component(name)?).map_err(|error| match error.raw_os_error() {
             Some(libc::ELOOP) => io::Error::other("it is a link, which is not followed; remove it"),
@@ -135,7 +135,7 @@ impl Folder {
     /// Opens a subfolder like [`Folder::folder`], and creates it if it does not exist.
     ///
     /// # Errors
-    /// If it cannot be created, or another kind of entry has its name.
+    /// Fails if it cannot be created, or another kind of entry has its name.
     pub fn make_folder(&self, name: &OsStr) -> io::Result<Self> {
         match mkdirat(&*self.fd, check_single_component(name)?, Mode::from_raw_mode(FOLDER_MODE)) {
             Ok(()) | Err(Errno::EXIST) => self.folder(name),
@@ -147,7 +147,7 @@ impl Folder {
     /// bytes.
     ///
     /// # Errors
-    /// If the file is missing, not a regular file, reached through a link, or longer than `max_bytes`.
+    /// Fails if the file is missing, not a regular file, reached through a link, or longer than `max_bytes`.
     pub fn file(&self, name: &OsStr, max_bytes: u64) -> Result<(File, u64), FileError> {
         let shown = || escape(name);
         let file = self.open_beneath(name).map_err(|error| FileError::not_opened(shown(), error))?;
@@ -161,7 +161,7 @@ impl Folder {
     /// Opens a file like [`Folder::file`]; the file must have no other name.
     ///
     /// # Errors
-    /// The errors of [`Folder::file`], and a second name.
+    /// Fails like [`Folder::file`], and if the file has a second name.
     pub fn regular_file(&self, name: &str, max_bytes: u64) -> Result<(File, u64), FileError> {
         let (file, length) = self.file(OsStr::new(name), max_bytes)?;
         let links = regular(&file, || escape(OsStr::new(name)))?.nlink();
@@ -174,7 +174,7 @@ impl Folder {
     /// Reads the contents of a regular file.
     ///
     /// # Errors
-    /// The errors of [`Folder::file`]; also if the file grows beyond `max_bytes` while it is read.
+    /// Fails like [`Folder::file`], and if the file grows beyond `max_bytes` while it is read.
     pub fn read(&self, name: &OsStr, max_bytes: u64) -> Result<Vec<u8>, FileError> {
         let (file, length) = self.file(name, max_bytes)?;
         let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or_default() + 1);
@@ -190,7 +190,7 @@ impl Folder {
     /// Opens a file of the grader to read and write in place, and creates it if it does not exist.
     ///
     /// # Errors
-    /// If another kind of entry has its name.
+    /// Fails if another kind of entry has its name.
     pub fn own_file(&self, name: &str) -> Result<File, FileError> {
         let flags = OFlags::RDWR | OFlags::CREATE | SAFE_FLAGS;
         let opened = openat(&*self.fd, name, flags, Mode::from_raw_mode(0o666));
@@ -203,7 +203,7 @@ impl Folder {
     /// Removes a file or link; does nothing if it does not exist.
     ///
     /// # Errors
-    /// If it cannot be removed.
+    /// Fails if it cannot be removed.
     pub fn remove(&self, name: &OsStr) -> io::Result<()> {
         match unlinkat(&*self.fd, check_single_component(name)?, AtFlags::empty()) {
             Ok(()) | Err(Errno::NOENT) => Ok(()),
@@ -304,7 +304,7 @@ pub(super) fn check_single_component(name: &OsStr) -> io::Result<&OsStr> {
 /// followed only with `follow`; the number of the file's names does not matter.
 ///
 /// # Errors
-/// If it is missing, not a regular file, or access is denied.
+/// Fails if it is missing, not a regular file, or access is denied.
 pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), FileError> {
     let shown = || escape(path.as_os_str());
     let no_link = if follow { 0 } else { libc::O_NOFOLLOW };

@@ -58,7 +58,7 @@ impl Identity {
 /// Opens a file, a directory or a pipe for reading, without waiting for a pipe's writer.
 ///
 /// # Errors
-/// If it cannot be opened.
+/// Fails if it cannot be opened.
 pub fn open_for_reading(name: &Path) -> io::Result<(File, Metadata)> {
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name);
     let file = file.map_err(|error| match error.raw_os_error() {
@@ -73,7 +73,7 @@ pub fn open_for_reading(name: &Path) -> io::Result<(File, Metadata)> {
 /// room.
 ///
 /// # Errors
-/// If it cannot be opened.
+/// Fails if it cannot be opened.
 pub fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> {
     let first = options.clone().custom_flags(libc::O_NONBLOCK).open(name)?;
     let kind = first.metadata()?.file_type();
@@ -87,7 +87,7 @@ pub fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> 
 /// Reads a whole file that a user names, with at most `limit` bytes. Pipes are read and links are followed.
 ///
 /// # Errors
-/// If it cannot be read, is a folder, or is larger.
+/// Fails if it cannot be read, is a folder, or is larger.
 pub fn read(name: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let (file, metadata) = open_for_reading(name)?;
     if metadata.is_dir() {
@@ -99,7 +99,7 @@ pub fn read(name: &Path, limit: u64) -> io::Result<Vec<u8>> {
 /// Reads text like [`read`].
 ///
 /// # Errors
-/// The errors of [`read`]; also if the bytes are not UTF-8.
+/// Fails like [`read`], and if the bytes are not UTF-8.
 pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
     String::from_utf8(read(name, limit)?)
         .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, format!("it is not text: {}", error.utf8_error())))
@@ -108,7 +108,7 @@ pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
 /// Reads an open file of at most `limit` bytes.
 ///
 /// # Errors
-/// If it cannot be read, or is larger.
+/// Fails if it cannot be read, or is larger.
 pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<Vec<u8>> {
     // One additional byte shows whether the file ends there.
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit)).unwrap_or_default() + 1);
@@ -126,7 +126,7 @@ const PIPE_PATIENCE: Duration = Duration::from_secs(5);
 /// Returns a reader that waits for the bytes of a pipe's writer, but not forever for a missing writer.
 ///
 /// # Errors
-/// If nothing is written within five seconds, or the pipe cannot be read.
+/// Fails if nothing is written within five seconds, or the pipe cannot be read.
 pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read + Send>> {
     if !metadata.file_type().is_fifo() {
         return Ok(Box::new(file));

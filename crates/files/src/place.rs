@@ -36,7 +36,7 @@ impl Place {
     /// Returns the open regular file at this place, with its length.
     ///
     /// # Errors
-    /// The errors of [`Folder::file`].
+    /// Fails like [`Folder::file`].
     pub fn file(&self, most: u64) -> Result<(File, u64), FileError> {
         self.base().and_then(|folder| folder.file(self.below.as_os_str(), most))
     }
@@ -44,7 +44,7 @@ impl Place {
     /// Reads the contents of the regular file at this place.
     ///
     /// # Errors
-    /// The errors of [`Folder::read`].
+    /// Fails like [`Folder::read`].
     pub fn read(&self, most: u64) -> Result<Vec<u8>, FileError> {
         self.base().and_then(|folder| folder.read(self.below.as_os_str(), most))
     }
@@ -58,7 +58,7 @@ impl Place {
     /// Opens this place as a folder, and creates missing folders on the path.
     ///
     /// # Errors
-    /// If it cannot be created, or another kind of entry (such as a link) has its name.
+    /// Fails if it cannot be created, or another kind of entry (such as a link) has its name.
     pub fn make_folder(&self) -> io::Result<Folder> {
         self.below.iter().try_fold(Folder::make(self.start())?, |folder, name| {
             let inner = folder.make_folder(name);
@@ -69,7 +69,7 @@ impl Place {
     /// Returns a file that will appear at this place when it is finished. Missing folders on the path are created.
     ///
     /// # Errors
-    /// The errors of [`Place::make_folder`], and if no file can be created there.
+    /// Fails like [`Place::make_folder`], and if no file can be created there.
     pub fn replacement(&self) -> io::Result<Replacement> {
         let above = Self::new(&self.folder, self.below.parent().unwrap_or(Path::new("")));
         above.make_folder()?.replacement(self.below.file_name().unwrap_or_default(), None)
@@ -78,7 +78,7 @@ impl Place {
     /// Writes a whole file by rename. Missing folders on the path are created.
     ///
     /// # Errors
-    /// The errors of [`Place::replacement`], and if the file cannot be written.
+    /// Fails like [`Place::replacement`], and if the file cannot be written.
     pub fn write(&self, bytes: &[u8]) -> io::Result<()> {
         let mut file = self.replacement()?;
         io::Write::write_all(&mut file, bytes)?;
@@ -88,7 +88,7 @@ impl Place {
     /// Removes the file or link at this place; does nothing if it does not exist.
     ///
     /// # Errors
-    /// If it cannot be removed.
+    /// Fails if it cannot be removed.
     pub fn remove(&self) -> io::Result<()> {
         let above = self.below.parent().unwrap_or(Path::new(""));
         match self.base().and_then(|folder| folder.beneath(above)) {
@@ -101,7 +101,7 @@ impl Place {
     /// Returns the names of the entries; empty if the folder does not exist.
     ///
     /// # Errors
-    /// If it cannot be read, or is reached by a link.
+    /// Fails if it cannot be read, or is reached by a link.
     pub fn names(&self) -> io::Result<Vec<std::ffi::OsString>> {
         match self.folder() {
             Ok(folder) => folder.names(),
@@ -113,7 +113,7 @@ impl Place {
     /// Returns the folder at this place.
     ///
     /// # Errors
-    /// If it does not exist, or is reached by a link.
+    /// Fails if it does not exist, or is reached by a link.
     pub fn folder(&self) -> Result<Folder, FileError> {
         self.base().and_then(|folder| folder.beneath(&self.below))
     }

@@ -75,7 +75,7 @@ impl Replacement {
     /// which the link leads.
     ///
     /// # Errors
-    /// If it cannot be renamed; a file with that name is then unchanged.
+    /// Fails if it cannot be renamed; a file with that name is then unchanged.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         renameat(&self.folder, &self.unfinished, &self.folder, &self.name)?;
@@ -86,7 +86,7 @@ impl Replacement {
     /// Finishes like [`Replacement::finish`], and returns the open file.
     ///
     /// # Errors
-    /// The errors of [`Replacement::finish`].
+    /// Fails like [`Replacement::finish`].
     pub fn finish_open(self) -> io::Result<File> {
         let file = self.file.try_clone()?;
         self.finish()?;
@@ -98,7 +98,7 @@ impl Folder {
     /// Returns a file that will get the name `name` when it is finished, and replace any entry with that name.
     ///
     /// # Errors
-    /// If no file can be created here.
+    /// Fails if no file can be created here.
     pub fn replacement(&self, name: &OsStr, mode: Option<u32>) -> io::Result<Replacement> {
         Replacement::new(self.clone(), check_single_component(name)?, mode)
     }
@@ -106,7 +106,7 @@ impl Folder {
     /// Writes a file atomically by rename. A file with the same name is replaced, and no link is followed.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// Fails if it cannot be written.
     pub fn write(&self, name: &OsStr, bytes: &[u8]) -> io::Result<()> {
         let mut file = self.replacement(name, None)?;
         file.write_all(bytes)?;

@@ -60,7 +60,7 @@ impl Cards<'_> {
     ///
     /// # Errors
     ///
-    /// When a card can't be written.
+    /// Fails if a card can't be written.
     pub fn keep(&self, judged: &JudgedTrace<'_>, students: Hints) -> io::Result<CardNames> {
         let card = self.keep_one(judged)?;
         if students >= judged.hints {
@@ -91,7 +91,7 @@ impl Cards<'_> {
 ///
 /// # Errors
 ///
-/// When the card can't be written.
+/// Fails if the card can't be written.
 pub fn store(folder: &Place, card: &str) -> io::Result<String> {
     let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
     let path = file(folder, &name);

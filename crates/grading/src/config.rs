@@ -205,7 +205,8 @@ pub struct SuiteError {
 /// Reads and validates a suite.
 ///
 /// # Errors
-/// Every problem with line and column: syntax, unknown keys, values out of range, groups without scenes.
+/// Fails with all problems, each with line and column: syntax, unknown keys, values out of range, groups without
+/// scenes.
 pub fn read(text: &str) -> Result<Suite, SuiteError> {
     let (suite, problems) = read_all(text);
     if problems.is_empty() { Ok(suite) } else { Err(SuiteError { problems }) }

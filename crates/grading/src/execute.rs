@@ -170,7 +170,7 @@ impl Runner<'_> {
     ///
     /// # Errors
     ///
-    /// An error of the grader or the machine, as text.
+    /// Fails if the grader or the machine fails, with the reason as text.
     pub fn collect(
         &self,
         program: &Path,

@@ -26,7 +26,7 @@ thread_local! {
 ///
 /// # Errors
 ///
-/// When `work` panics.
+/// Fails if `work` panics.
 pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
     install_hook();
     let outer = GUARDED.replace(true);

@@ -159,7 +159,7 @@ fn resolve(
 ///
 /// # Errors
 ///
-/// The errors of [`config::read`], patterns that match nothing, and scenes that can't be read or are invalid.
+/// Fails like [`config::read`], and if a pattern matches nothing, or a scene can't be read or is invalid.
 pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_all(text);
     // Scenes are searched even after other errors, so that all errors are reported together.

@@ -39,7 +39,7 @@ impl Recipe<'_> {
     /// the reason.
     ///
     /// # Errors
-    /// When the file can't be read for a fault of the machine, or the copy can't be written.
+    /// Fails if the file can't be read for a fault of the machine, or the copy can't be written.
     pub fn file(&self, path: &Path) -> Result<StagedProgram, String> {
         let why = match collect::open_file(path, true) {
             Ok((file, _)) => return self.stage_opened(file, path),
@@ -62,7 +62,7 @@ impl Recipe<'_> {
     /// the folder is the submission.
     ///
     /// # Errors
-    /// As for [`Recipe::file`].
+    /// Fails like [`Recipe::file`].
     pub fn file_in(&self, folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<StagedProgram, String> {
         let path = folder.join(name);
         let why = match open_in(folder, name) {

@@ -46,7 +46,7 @@ impl Recording {
     /// Simulates a scene given as XML.
     ///
     /// # Errors
-    /// When the scene has errors, or a step has no result.
+    /// Fails if the scene has errors, or a step has no result.
     pub fn for_scene(name: &str, xml: &[u8]) -> Result<Self, CannotRecord> {
         let scene = scene::read(name, xml)?.scene;
         let trace = simulate_trace(&scene)?;
@@ -63,7 +63,7 @@ impl Recording {
     /// Returns the contents of the recording's `.bin.zst` file.
     ///
     /// # Errors
-    /// When zstd fails.
+    /// Fails if zstd fails.
     pub fn pack(&self) -> io::Result<Vec<u8>> {
         zstd::encode_all(&self.trace[..], COMPRESSION_LEVEL)
     }

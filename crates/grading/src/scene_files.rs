@@ -20,7 +20,7 @@ pub struct SceneFile {
 /// other places, or with names that are not UTF-8, are left out.
 ///
 /// # Errors
-/// When a folder can't be read.
+/// Fails if a folder can't be read.
 pub fn list(folder: &Path, extension: &str) -> io::Result<Vec<SceneFile>> {
     let mut files = Vec::new();
     for first in folders(folder)? {

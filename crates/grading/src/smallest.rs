@@ -116,7 +116,7 @@ impl Shrinker<'_> {
     /// Returns the smallest scene for a cause; `None` if no part of a scene reproduces it.
     ///
     /// # Errors
-    /// Faults of ours or of the machine, in words.
+    /// Fails if the grader or the machine fails, with the reason as text.
     pub fn smallest(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
         tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));

@@ -91,7 +91,7 @@ pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
 ///
 /// # Errors
 ///
-/// When the program can't be read or copied.
+/// Fails if the program can't be read or copied.
 pub fn reference(path: &Path) -> Result<StagedProgram, String> {
     let (file, _) = collect::open_file(path, true).map_err(|error| at(path)(io::Error::other(error)))?;
     copy_as(OsStr::new("FOSSSimOracle"), file, path, &mut { MAX_FOLDER_BYTES }).map_err(|error| match error {

@@ -98,7 +98,7 @@ pub enum ArchiveError {
 /// Reads an archive to its end and returns the paths of its files.
 ///
 /// # Errors
-/// The fault of the archive.
+/// Fails if the archive is rejected, with the reason.
 pub fn look_through(archive: File, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, None)
 }
@@ -107,7 +107,7 @@ pub fn look_through(archive: File, limits: ArchiveLimits) -> Result<Vec<PathBuf>
 /// executable, whatever the archive's permission bits are, because archives from Windows and many web pages lack them.
 ///
 /// # Errors
-/// The first fault of the archive; the folder may then hold a part of it.
+/// Fails if the archive is rejected, with the first reason. The folder may then contain a part of it.
 pub fn unpack(archive: File, folder: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, Some(folder))
 }

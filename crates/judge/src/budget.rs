@@ -65,7 +65,7 @@ impl<'a> Budget<'a> {
     /// Simulates one more step from the trace's own state.
     ///
     /// # Errors
-    /// [`StepError`] of kind `Work`, if no work remains.
+    /// Fails with a [`StepError`] of kind `Work` if no work remains.
     pub fn step(&mut self, simulation: &mut Simulation, observer: &mut dyn Observer) -> Result<(), StepError> {
         if self.rest < (FLOOR.saturating_add(self.at_least)) / 2 {
             self.widen();

@@ -33,7 +33,7 @@ impl OverlapStudy {
     /// Examines a pair in a step that starts from `before`; `None` if the scene never checks the pair.
     ///
     /// # Errors
-    /// [`StepError`], if the step has no result.
+    /// Fails with a [`StepError`] if the step has no result.
     pub fn for_pair(scene: &Scene, step: u32, before: &State, pair: Pair) -> Result<Option<Self>, StepError> {
         let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         let mut run = |seed| {

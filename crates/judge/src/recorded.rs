@@ -33,7 +33,7 @@ pub struct RecordingError {
 /// remarks.
 ///
 /// # Errors
-/// When the recording is damaged or cut short.
+/// Fails if the recording is damaged or cut short.
 pub fn judge<T: Read, R: Read>(
     scene: &Scene,
     mut trace: T,

@@ -132,7 +132,7 @@ impl Study {
     /// Examines a pair with the given motion.
     ///
     /// # Errors
-    /// [`NoAnswer`], if the original hangs.
+    /// Fails with [`NoAnswer`] if the original hangs.
     pub fn for_motion(motion: &PairMotion) -> Result<Self, NoAnswer> {
         let kind = motion.kind();
         let polynomials = motion.polynomials();

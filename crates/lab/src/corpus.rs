@@ -23,7 +23,7 @@ pub struct CorpusRow {
 /// Returns all rows of a corpus.
 ///
 /// # Errors
-/// If the folder is not a corpus.
+/// Fails if the folder is not a corpus.
 pub fn rows(corpus: &Path) -> anyhow::Result<Vec<CorpusRow>> {
     let text = std::fs::read_to_string(corpus.join("verdicts.jsonl")).context("the folder has no verdicts.jsonl")?;
     Ok(text.lines().map(serde_json::from_str).collect::<Result<_, _>>()?)
@@ -33,7 +33,7 @@ impl CorpusRow {
     /// Reads the scene and the trace, if the trace exists.
     ///
     /// # Errors
-    /// If one of them cannot be read.
+    /// Fails if one of them cannot be read.
     pub fn read(&self, corpus: &Path) -> anyhow::Result<Option<(Scene, Vec<u8>)>> {
         let Some(file) = &self.trace_file else { return Ok(None) };
         let scene = std::fs::read(corpus.join("scenes").join(format!("{}.xml", self.scene)))?;

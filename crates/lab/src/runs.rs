@@ -46,7 +46,7 @@ impl WatchedScene {
     /// Returns the scenes in the groups of a folder.
     ///
     /// # Errors
-    /// If one cannot be read, or there are none.
+    /// Fails if one cannot be read, or there are none.
     pub fn from_folder(folder: &Path) -> anyhow::Result<Vec<Self>> {
         let files =
             scene_files::list(folder, ".xml").with_context(|| format!("{}: can't be read", folder.display()))?;

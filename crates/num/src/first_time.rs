@@ -18,10 +18,11 @@ use super::{
 /// `+inf`, and so does a list with an empty polynomial or one of the form `c z^m`, whatever the others are.
 ///
 /// # Errors
-/// [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.
+/// Fails with [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.
 ///
 /// # Panics
-/// With more than ten polynomials whose sets have the maximum number of intervals; a detection has at most four.
+/// Panics if more than ten polynomials have sets with the maximum number of intervals. A detection has at most four
+/// polynomials.
 #[inline]
 pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
     first_time_counted(polynomials, &mut 0)
@@ -30,10 +31,10 @@ pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
 /// Returns the time of [`first_time`], and adds the steps of the root searches to `steps` ([`Zeros::steps`]).
 ///
 /// # Errors
-/// [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.
+/// Fails with [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.
 ///
 /// # Panics
-/// The panics of [`first_time`].
+/// Panics like [`first_time`].
 #[inline]
 pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result<f64, DoesNotTerminate> {
     let lists = polynomials.iter().map(Polynomial::coefficients);
@@ -49,10 +50,10 @@ pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result
 /// [`MAX_DEGREE`].
 ///
 /// # Errors
-/// [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.
+/// Fails with [`DoesNotTerminate`] if the search for one polynomial's zeros would never end.
 ///
 /// # Panics
-/// With more than ten lists whose sets have the maximum number of intervals.
+/// Panics if more than ten lists have sets with the maximum number of intervals.
 pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
     intersected::<32>(lists.into_iter(), &mut 0)
 }
@@ -81,10 +82,10 @@ pub type PositiveSet = Intervals<{ MAX_DEGREE + 1 }>;
 /// (root-finder.md 15.3).
 ///
 /// # Errors
-/// [`DoesNotTerminate`] if the search for its zeros would never end.
+/// Fails with [`DoesNotTerminate`] if the search for the polynomial's zeros would never end.
 ///
 /// # Panics
-/// With more than [`MAX_DEGREE`]` + 1` coefficients.
+/// Panics if there are more than [`MAX_DEGREE`]` + 1` coefficients.
 pub fn positive_set(coefficients: &[f64]) -> Result<PositiveSet, DoesNotTerminate> {
     counted(coefficients, &mut 0)
 }

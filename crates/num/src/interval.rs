@@ -48,7 +48,7 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// Appends an interval without merging it.
     ///
     /// # Panics
-    /// If the list already holds `CAPACITY` intervals.
+    /// Panics if the list already holds `CAPACITY` intervals.
     #[inline]
     pub fn push(&mut self, interval: Interval) {
         self.list[self.length] = interval;
@@ -86,7 +86,7 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// Returns the times in both lists (root-finder.md 16.1). Intervals that only touch give a single point.
     ///
     /// # Panics
-    /// If the result would hold more than `CAPACITY` intervals.
+    /// Panics if the result would hold more than `CAPACITY` intervals.
     #[inline]
     #[must_use]
     pub fn intersection<const OTHER: usize>(&self, other: &Intervals<OTHER>) -> Self {

@@ -160,7 +160,7 @@ impl<S: Simd> Lanes<S> {
     /// Reads the first numbers of a slice.
     ///
     /// # Panics
-    /// If the slice has too few numbers.
+    /// Panics if the slice has too few numbers.
     #[inline(always)]
     pub fn load(simd: S, numbers: &[f64]) -> Self {
         Self { simd, values: S::as_simd_f64s(&numbers[..Self::COUNT]).0[0] }
@@ -169,7 +169,7 @@ impl<S: Simd> Lanes<S> {
     /// Writes the lanes to the front of a slice.
     ///
     /// # Panics
-    /// If the slice is too short.
+    /// Panics if the slice is too short.
     #[inline(always)]
     pub fn store(self, numbers: &mut [f64]) {
         S::as_mut_simd_f64s(&mut numbers[..Self::COUNT]).0[0] = self.values;
@@ -179,7 +179,7 @@ impl<S: Simd> Lanes<S> {
     /// later.
     ///
     /// # Panics
-    /// If the slice is too short.
+    /// Panics if the slice is too short.
     #[inline(always)]
     pub fn store_by_lane<const FOURS: usize>(numbers: &[[Self; 4]; FOURS], stride: usize, rows: &mut [f64]) {
         for (four, [a, b, c, d]) in numbers.iter().enumerate() {
@@ -364,7 +364,7 @@ impl<S: Simd> Not for Mask<S> {
 /// Writes numbers as little-endian bytes, in one copy if the machine stores them in that form.
 ///
 /// # Panics
-/// If there is too little room for all numbers.
+/// Panics if there is too little room for all numbers.
 #[inline(always)]
 pub fn copy_little_endian(numbers: &[f64], room: &mut [u8]) {
     let room = &mut room[..8 * numbers.len()];

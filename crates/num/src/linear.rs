@@ -27,7 +27,7 @@ pub struct Workspace {
 /// or panic.
 ///
 /// # Panics
-/// Unless `matrix` has the square of `rhs`'s length.
+/// Panics if the length of `matrix` is not the square of that of `rhs`.
 pub fn solve(matrix: &mut [f64], rhs: &mut [f64], workspace: &mut Workspace) {
     let n = rhs.len();
     assert_eq!(matrix.len(), n * n, "the matrix must be square and fit the right-hand side");

@@ -35,7 +35,7 @@ impl Polynomial {
     /// dropping). The result may be empty.
     ///
     /// # Panics
-    /// With more than [`MAX_COEFFICIENTS`] coefficients.
+    /// Panics if there are more than [`MAX_COEFFICIENTS`] coefficients.
     #[inline]
     #[must_use]
     pub fn trimmed(coefficients: &[f64]) -> Self {
@@ -60,7 +60,7 @@ impl Polynomial {
     /// Creates a polynomial from an unchanged list (the non-dropping build of later milestones).
     ///
     /// # Panics
-    /// With more than [`MAX_COEFFICIENTS`] coefficients.
+    /// Panics if there are more than [`MAX_COEFFICIENTS`] coefficients.
     #[inline]
     #[must_use]
     pub fn untrimmed(coefficients: &[f64]) -> Self {

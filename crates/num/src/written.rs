@@ -110,7 +110,7 @@ impl<T: WrittenNumbers> WrittenNumbers for Option<T> {
 /// Serializes a value, for serde's `with`.
 ///
 /// # Errors
-/// The errors of the serializer.
+/// Fails if the serializer fails.
 pub fn serialize<T: WrittenNumbers, S: Serializer>(value: &T, serializer: S) -> Result<S::Ok, S::Error> {
     value.write().serialize(serializer)
 }
@@ -118,7 +118,7 @@ pub fn serialize<T: WrittenNumbers, S: Serializer>(value: &T, serializer: S) -> 
 /// Deserializes a value, for serde's `with`.
 ///
 /// # Errors
-/// The errors of the deserializer, and texts that are not numbers.
+/// Fails if the deserializer fails, or the text is not a number.
 pub fn deserialize<'de, T: WrittenNumbers, D: Deserializer<'de>>(deserializer: D) -> Result<T, D::Error> {
     T::Form::deserialize(deserializer).map(T::read)
 }

@@ -31,7 +31,7 @@ pub(crate) struct Ending {
 /// Parses the words after the program's name.
 ///
 /// # Errors
-/// The text to print, and the exit code: help, version, or a parse error.
+/// Fails with a text to print and an exit code: help, version, or a parse error.
 pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Ending> {
     let mut values: [Option<&[u8]>; FLAGS.len()] = [None; FLAGS.len()];
     let mut words = words.iter().map(Vec::as_slice);

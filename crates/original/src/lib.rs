@@ -75,7 +75,7 @@ fn parse_call(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
 /// Runs the replacement, if the command line requests it.
 ///
 /// # Errors
-/// The words of the command line for other commands, with the program's own name first.
+/// Fails with the arguments for other commands, beginning with the program's own name.
 pub fn run_if_meant(outside: &dyn Services) -> Result<ExitCode, Vec<OsString>> {
     let words: Vec<OsString> = env::args_os().collect();
     match parse_call(&words) {
@@ -95,7 +95,7 @@ pub trait Services {
     /// Returns a drawer of pictures: PNG for `-g 1`, SVG in the folder of `-m DIR`.
     ///
     /// # Errors
-    /// The text to print, if a folder is missing.
+    /// Fails if a folder is missing, with the text to print.
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String>;
 }
 
@@ -105,7 +105,7 @@ pub trait Pictures {
     /// [`State`](fosssim_model::sim::State).
     ///
     /// # Errors
-    /// The text to print, if a picture cannot be written.
+    /// Fails if a picture cannot be written, with the text to print.
     fn step(&mut self, step: u32, positions: &[f64]) -> Result<(), String>;
 }
 

@@ -132,7 +132,7 @@ impl<'a, W: Write> Transcript<'a, W> {
     /// Flushes and returns the stream.
     ///
     /// # Errors
-    /// The first error of the stream.
+    /// Fails with the first error of the stream.
     pub(crate) fn finish(mut self) -> io::Result<W> {
         if let Some(error) = self.error {
             return Err(error);

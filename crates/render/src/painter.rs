@@ -130,7 +130,7 @@ impl Painter {
     /// Pictures must be requested in the order of the steps, because particles have trails.
     ///
     /// # Panics
-    /// If there are fewer positions than the scene has particles.
+    /// Panics if there are fewer positions than the scene has particles.
     #[must_use]
     pub fn picture(&mut self, step: u32, positions: &[f64], overlay: Option<&[f64]>) -> Vec<Shape> {
         let time = f64::from(step) * self.time_step;

@@ -25,7 +25,7 @@ impl Raster {
     /// Creates an empty picture, which can be drawn on repeatedly.
     ///
     /// # Panics
-    /// Never; a pixmap can have every [`Size`].
+    /// Never panics, because a pixmap can have every [`Size`].
     #[must_use]
     pub fn new(size: Size) -> Self {
         let pixels = Pixmap::new(size.width(), size.height()).expect("sizes are checked");

@@ -29,7 +29,7 @@ impl Size {
     /// Creates a size.
     ///
     /// # Errors
-    /// If a side is below [`MIN_SIDE`] or above [`MAX_SIDE`].
+    /// Fails if a side is below [`MIN_SIDE`] or above [`MAX_SIDE`].
     pub const fn new(width: u32, height: u32) -> Result<Self, BadSize> {
         if width < MIN_SIDE || width > MAX_SIDE || height < MIN_SIDE || height > MAX_SIDE {
             return Err(BadSize::OutOfRange(width, height));

@@ -181,8 +181,8 @@ impl Backend {
     ///
     /// # Errors
     ///
-    /// [`SandboxError::Missing`] below the required set: no new privileges, limits, reaper, system call filter, and
-    /// file rules (or, for root, a user per program). In this case nothing can be run; see
+    /// Fails with [`SandboxError::Missing`] if a required layer is missing: no new privileges, limits, reaper, system
+    /// call filter, and file rules (or, for root, a user per program). Then nothing can be run; see
     /// [`Backend::without_sandbox`].
     pub fn best(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
@@ -207,7 +207,7 @@ impl Backend {
     ///
     /// # Errors
     ///
-    /// [`SandboxError::Missing`] if the layer is required on this host.
+    /// Fails with [`SandboxError::Missing`] if the layer is required on this host.
     pub fn without(&self, layer: Layer) -> Result<Self, SandboxError> {
         self.with(layers::without(&self.layers, layer), 0)
     }
@@ -217,7 +217,7 @@ impl Backend {
     ///
     /// # Errors
     ///
-    /// The errors of [`Backend::without`].
+    /// Fails like [`Backend::without`].
     pub fn with_landlock(&self, version: u8) -> Result<Self, SandboxError> {
         self.with(layers::with_landlock(&self.layers, version), version)
     }
@@ -227,8 +227,8 @@ impl Backend {
     ///
     /// # Errors
     ///
-    /// [`SandboxError::Missing`] if the grader is root and cannot become another user, because a program is never run
-    /// as root. Also if the supervisor does not start.
+    /// Fails with [`SandboxError::Missing`] if the grader is root and cannot become another user, because a program is
+    /// never run as root; and if the supervisor does not start.
     pub fn without_sandbox(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::available_layers(&reports).map_err(missing_layers)?;
@@ -273,7 +273,7 @@ impl Backend {
     ///
     /// # Errors
     ///
-    /// Errors of the grader or the host.
+    /// Fails if the grader or the host fails.
     pub fn start(&self, job: &Job) -> Result<RunningProgram, SandboxError> {
         let (supervisor, walls, keepers) = match &self.kind {
             Kind::Launcher { supervisor, walls, keepers } => (supervisor, *walls, keepers),

@@ -21,7 +21,7 @@ use super::supervisor::open_up;
 ///
 /// # Errors
 ///
-/// If something cannot be removed. A missing folder is not an error.
+/// Fails if something cannot be removed. A missing folder is not an error.
 pub fn remove_folder(path: &Path) -> io::Result<()> {
     let gone = |error: io::Error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) };
     if std::fs::remove_dir_all(path).or_else(gone).is_ok() {

@@ -50,7 +50,7 @@ pub(super) struct Script {
 ///
 /// # Errors
 ///
-/// The reason why the file cannot be started on this machine.
+/// Fails if the file cannot be started on this machine, with the reason.
 pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProblem> {
     let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::PermissionDenied => StartProblem::NotPermitted,

@@ -83,7 +83,7 @@ impl RunningProgram {
     ///
     /// # Errors
     ///
-    /// Errors of the grader or the host.
+    /// Fails if the grader or the host fails.
     pub fn wait(self) -> Result<RunOutcome, SandboxError> {
         self.wait_with_folder().map(|(outcome, _)| outcome)
     }
@@ -92,7 +92,7 @@ impl RunningProgram {
     ///
     /// # Errors
     ///
-    /// The errors of [`RunningProgram::wait`].
+    /// Fails like [`RunningProgram::wait`].
     pub fn wait_with_folder(mut self) -> Result<(RunOutcome, LeftFolder), SandboxError> {
         let (outcome, keeper) = match std::mem::replace(&mut self.state, State::Taken) {
             State::Supervised(supervised) => self.conclude(*supervised)?,
@@ -165,7 +165,7 @@ impl LeftFolder {
     ///
     /// # Errors
     ///
-    /// If there is no such regular file.
+    /// Fails if there is no such regular file.
     pub fn regular_file(&self, name: &str, longest: u64) -> Result<(File, u64), CollectError> {
         if let Some(folder) = &self.in_memory {
             return folder.regular_file(name, longest);

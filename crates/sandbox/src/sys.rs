@@ -58,7 +58,7 @@ pub(super) struct SingleThread(());
 ///
 /// # Errors
 ///
-/// If the process has more than one thread, because its child could find locks that are held forever.
+/// Fails if the process has more than one thread, because its child could find locks that are held forever.
 pub(super) fn single_thread() -> io::Result<SingleThread> {
     match std::fs::read_dir("/proc/self/task")?.count() {
         1 => Ok(SingleThread(())),
@@ -245,7 +245,7 @@ pub(super) struct ReapedProcess {
 ///
 /// # Errors
 ///
-/// `ECHILD` if there is no child at all.
+/// Fails with `ECHILD` if there is no child at all.
 pub(super) fn reap() -> io::Result<Option<ReapedProcess>> {
     let ended = rustix::process::wait(WaitOptions::NOHANG)?;
     Ok(ended.map(|(pid, status)| ReapedProcess { pid: pid.as_raw_pid(), status: status.as_raw() }))

@@ -1,4 +1,4 @@
-//! Times as people and other programs write them, in UTC.
+//! Formats and reads times for people and for other programs, in UTC.
 use chrono::DateTime;
 use std::ops::RangeInclusive;
 
@@ -17,7 +17,7 @@ pub fn format_iso(milliseconds: i64) -> String {
     format(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
 }
 
-/// The ranges of plausible times in milliseconds. Numbers between them are probably seconds.
+/// The ranges of plausible times in milliseconds. A number between the ranges is probably in seconds.
 pub const MILLISECOND_RANGES: [RangeInclusive<i64>; 2] = [0..=99_999_999, 100_000_000_000..=253_402_300_799_999];
 
 /// Returns whether a number is a plausible time in milliseconds.

@@ -1,5 +1,5 @@
-//! The health of workers and suites. Faults of the grader count for both: a failing worker leaves the work to others,
-//! and a suite by which nothing can be graded waits for staff.
+//! The health of workers and suites. A fault of the grader may be caused by the worker or by the suite: a worker that
+//! keeps failing leaves jobs to others, and a suite that keeps failing waits for staff.
 use crate::{
     db::{DbError, Transaction},
     queue::{Claimant, QueuePolicy, millis},
@@ -14,7 +14,7 @@ const MAX_FAULTS: i64 = 3;
 /// The maximum pause of a worker; it starts at a second and doubles.
 const MAX_PAUSE: Duration = Duration::from_secs(60);
 
-/// Returns the time after the last sign of life for which a worker counts as alive, in milliseconds.
+/// Returns how long a worker counts as alive after its last report, in milliseconds.
 pub fn recent(policy: &QueuePolicy) -> i64 {
     millis(policy.lease * 2)
 }
@@ -23,7 +23,7 @@ pub fn recent(policy: &QueuePolicy) -> i64 {
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn note_sign_of_life(
     transaction: &mut Transaction,
     (worker, version): (&str, &str),
@@ -49,12 +49,12 @@ pub async fn note_sign_of_life(
     Ok(())
 }
 
-/// Returns whether a worker may claim a job: it holds fewer jobs than its token has slots, and it does not fail while
+/// Returns whether a worker may claim a job: it has fewer jobs than its token has slots, and it is not failing while
 /// others succeed.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn may_claim(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -62,7 +62,7 @@ pub async fn may_claim(
 ) -> Result<bool, DbError> {
     let recent = recent(policy);
     if let Some(token) = claimant.token {
-        // Requests of one token are handled one after another, so that the count is right.
+        // Requests of one token are handled one after another, so that the number of its jobs is exact.
         transaction.row("SELECT id FROM token WHERE id = ? {for update}", values![token]).await?;
         let statement = "SELECT CAST(coalesce(sum(slots), 0) AS {int}) AS slots,
                (SELECT count(*) FROM job WHERE token = ? AND state = 'running') AS held
@@ -77,7 +77,7 @@ pub async fn may_claim(
     let Some(row) = row else { return Ok(true) };
     let steps = u32::try_from(row.int("in_a_row")? - MAX_FAULTS).unwrap_or(0).min(16);
     let aside = Duration::from_secs(1).saturating_mul(1 << steps).min(MAX_PAUSE);
-    // A fault in the future is from a clock that was set back.
+    // A fault with a future time was recorded before the clock was set back.
     let since = row.maybe_int("since")?.and_then(|since| u64::try_from(since).ok());
     if since.is_none_or(|since| Duration::from_millis(since) >= aside) {
         return Ok(true);
@@ -88,7 +88,7 @@ pub async fn may_claim(
     Ok(better.is_none())
 }
 
-/// Records that the grader failed in a worker that reported that it can grade.
+/// Records that the grader failed in a worker that had reported itself able to grade.
 pub(crate) async fn note_failure(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
         WHERE name = ?";
@@ -102,7 +102,7 @@ pub(crate) async fn note_result(transaction: &mut Transaction, worker: &str) -> 
     Ok(())
 }
 
-/// Returns a message without the folders of its machine: absolute paths are reduced to their last part.
+/// Removes the machine's folders from a message: absolute paths are reduced to their last part.
 pub fn without_paths(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut rest = text;

@@ -10,7 +10,7 @@ use std::time::Duration;
 /// Upper bounds of the histogram of latencies, in seconds: from a page to an upload over a slow line.
 const BUCKETS: [f64; 12] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0];
 
-/// The counters of requests. Clones are cheap and share the counters.
+/// The server's counters. Clones are cheap and share the counters.
 #[derive(Debug, Clone)]
 pub struct Instruments {
     requests: IntCounterVec,
@@ -33,7 +33,7 @@ impl Instruments {
     ///
     /// # Errors
     ///
-    /// When Prometheus does not allow a name.
+    /// Fails if Prometheus does not allow a name.
     pub fn new() -> Result<Self, prometheus::Error> {
         let of_requests = ["method", "route", "status"];
         let duration = HistogramOpts::new(
@@ -65,7 +65,7 @@ impl Instruments {
     ///
     /// # Errors
     ///
-    /// When they can't be written as text.
+    /// Fails if they can't be written as text.
     pub fn show(&self, storage: &Storage, queue: Option<&Metrics>) -> Result<String, prometheus::Error> {
         let page = MetricsPage(Registry::new());
         page.0.register(Box::new(self.requests.clone()))?;
@@ -98,7 +98,7 @@ pub struct Metrics {
     pub workers: i64,
     /// The total number of the workers' slots.
     pub slots: i64,
-    /// The number of workers that take no jobs because they can't grade.
+    /// The number of workers that claim no jobs because they can't grade.
     pub aside: i64,
     /// The number of workers that are grading.
     pub working: i64,

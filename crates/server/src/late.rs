@@ -39,7 +39,7 @@ impl LatePolicy {
             let due = DateTime::from_timestamp_millis(due)?.with_timezone(&zone);
             Some(due.checked_add_days(Days::new(u64::try_from(days).ok()?))?.timestamp_millis())
         });
-        // There is no calendar, or the clocks skip that time.
+        // This zone has no calendar, or its clocks skip that time.
         by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY_MILLIS)))
     }
 
@@ -47,8 +47,8 @@ impl LatePolicy {
     /// `None` for a submission in time, or if the assignment has no rule for late ones.
     pub(crate) fn lateness(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
-        // The delay is capped at the allowed late days, because an extension may have been withdrawn. If late uploads
-        // are no longer accepted, earlier ones keep their deduction.
+        // The delay is at most the allowed late days, even if an extension was withdrawn. If late uploads are no longer
+        // accepted, earlier ones keep their deduction.
         let most = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
         let mut days = ((came_at - due) / DAY_MILLIS - 1).max(0);
         while self.days_after(due, days) < came_at {
@@ -68,7 +68,7 @@ impl Lateness {
         Ok(policy.lateness(row.maybe_int("own_due")?, row.int("created_at")?))
     }
 
-    /// Returns the remaining points of the grader's.
+    /// Returns the points that remain of the grader's after the deduction.
     pub(crate) fn left_of(self, points: &str) -> String {
         let left = |points: f64| (points * (100 - self.percent) as f64 / 100.0).to_string();
         points.parse().map_or_else(|_| points.to_owned(), left)

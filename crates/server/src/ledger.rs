@@ -13,7 +13,7 @@ use std::time::Duration;
 ///
 /// # Errors
 ///
-/// An error of the database; nothing is written then unless the caller commits anyway.
+/// An error of the database; the caller must not commit then.
 pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outcome) -> Result<Completion, DbError> {
     let completion = queue::complete(transaction, lease).await?;
     match completion {
@@ -31,7 +31,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn fail(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -50,17 +50,17 @@ pub async fn fail(
     } else {
         note(transaction, &row, "failed try", fault).await?;
     }
-    // The worker's row is locked last, as when a job is finished, so that no deadlock is possible.
+    // The worker's row is locked last, as in `finish`, so that no deadlock is possible.
     health::note_failure(transaction, &row.worker, fault).await?;
     Ok(failure)
 }
 
-/// Finds silent workers, and writes the judge errors of jobs that were tried too often. It uses its own transaction,
-/// because it locks jobs of other workers, and must not wait then for anything that they hold.
+/// Finds silent workers, and writes the judge errors of jobs that were tried too often. It uses its own transaction: it
+/// locks jobs of other workers, so it must not wait for locks that they hold.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbError> {
     let mut transaction = database.begin().await?;
     let tick = queue::tick(&mut transaction, policy).await?;
@@ -78,7 +78,7 @@ pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbErr
     Ok(())
 }
 
-/// The row of a job, with its submission.
+/// A job, with the facts about its submission.
 struct JobFacts {
     job: i64,
     submission: Option<i64>,
@@ -86,7 +86,7 @@ struct JobFacts {
     assignment: Option<i64>,
     course: Option<i64>,
     worker: String,
-    /// The person who requested the regrading.
+    /// The account that requested the regrade.
     asked_by: Option<i64>,
     task: String,
     seconds: i64,
@@ -118,7 +118,7 @@ async fn note(transaction: &mut Transaction, about: &JobFacts, kind: &str, text:
     Ok(())
 }
 
-/// Records and counts a message of a worker that came too late, and changes nothing. A message about a job that does
+/// Records and counts a worker's message that came too late; it has no other effect. A message about a job that does
 /// not exist is not counted.
 async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
     let known =
@@ -153,7 +153,7 @@ async fn write_result(
     outcome: &Outcome,
 ) -> Result<JobFacts, DbError> {
     let about = find_job(transaction, job).await?;
-    // Jobs of other lanes have no result.
+    // Only jobs of the grading lane have a result.
     let Some(submission) = about.submission else { return Ok(about) };
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
     let statement =
@@ -199,7 +199,7 @@ async fn write_result(
         let change = GradeChange { submission, result, by: about.asked_by, campaign: None, reason };
         set_grade(transaction, &change).await?;
     }
-    // Judge errors are reported when jobs are given up.
+    // Judge errors are recorded when their jobs are given up.
     if outcome.code == JUDGE_ERROR {
         return Ok(about);
     }
@@ -232,7 +232,7 @@ pub struct GradeChange<'a> {
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn set_grade(transaction: &mut Transaction, change: &GradeChange<'_>) -> Result<(), DbError> {
     let statement = "SELECT result FROM grade WHERE submission = ? {for update}";
     let old = transaction.row(statement, values![change.submission]).await?;

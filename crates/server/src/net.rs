@@ -7,16 +7,16 @@ use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use ureq::Agent;
 
-/// The time for open connections when the server stops.
+/// The time that open connections have to finish when the server stops.
 const GRACE_PERIOD: Duration = Duration::from_secs(20);
 
 /// Serves until `stop` is canceled and the requests that have arrived are answered.
 ///
 /// # Errors
 ///
-/// When connections can no longer be accepted.
+/// Fails if connections can no longer be accepted.
 pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToken) -> io::Result<()> {
-    // Each connection may need a file in addition, so use as many as the kernel allows.
+    // Each connection may also need a file, so raise the limit of open files as far as the kernel allows.
     let maximum = getrlimit(Resource::Nofile).maximum;
     if let Err(error) = setrlimit(Resource::Nofile, Rlimit { current: maximum, maximum }) {
         tracing::debug!(%error, "the limit of open files stays");

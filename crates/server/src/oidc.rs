@@ -19,7 +19,7 @@ use tokio::sync::Mutex;
 use ureq::Agent;
 use url::Url;
 
-/// The time for which the provider's configuration is used without reading it again.
+/// The time for which the provider's configuration is used before it is read again.
 const CONFIGURATION_LIFETIME: Duration = Duration::from_secs(3600);
 
 /// The minimum time between two readings, for an unknown key or after a failure.
@@ -83,7 +83,7 @@ pub struct SignInWords {
     pub verifier: String,
 }
 
-/// The used claims about a person.
+/// The claims about a person that this service uses.
 struct SaidClaims {
     name: Option<String>,
     nickname: Option<String>,
@@ -91,7 +91,7 @@ struct SaidClaims {
     is_confirmed: bool,
 }
 
-/// Reads the claims of a token or an answer; both have the methods, but no common trait.
+/// Reads the claims from a token or from an answer. Both types have the same methods, but no common trait.
 macro_rules! said {
     ($claims:ident) => {
         SaidClaims {
@@ -128,7 +128,7 @@ impl Provider {
     ///
     /// # Errors
     ///
-    /// When the issuer is not an HTTPS address; on this machine HTTP is accepted, for tests.
+    /// Fails if the issuer is not an HTTPS address; on this machine HTTP is accepted, for tests.
     pub fn new(
         issuer: String,
         client: String,
@@ -190,7 +190,7 @@ impl Provider {
     ///
     /// # Errors
     ///
-    /// When the provider does not answer.
+    /// Fails if the provider does not answer.
     pub async fn address(&self, redirect: &str, words: SignInWords) -> Result<Url, ProviderFault> {
         let client = self.client(CONFIGURATION_LIFETIME, redirect).await?;
         let SignInWords { state, nonce, verifier } = words;
@@ -208,7 +208,7 @@ impl Provider {
     ///
     /// # Errors
     ///
-    /// When the provider does not answer or rejects the code, or its answer is not trusted.
+    /// Fails if the provider does not answer or rejects the code, or its answer is not trusted.
     pub async fn person(
         &self,
         redirect: &str,
@@ -226,7 +226,7 @@ impl Provider {
         let token = answer.id_token().ok_or_else(|| untrusted_answer(anyhow!("the provider returned no ID token")))?;
         let nonce = Nonce::new(words.nonce);
         let claims = match verify_token(&client, token, &nonce) {
-            // Providers change their keys.
+            // The provider may have changed its keys, so read its configuration again.
             Err(ClaimsVerificationError::SignatureVerification(SignatureVerificationError::NoMatchingKey)) => {
                 verify_token(&self.client(MIN_PAUSE, redirect).await?, token, &nonce)
             }
@@ -242,7 +242,7 @@ impl Provider {
         self.read(claims.subject().to_string(), more.unwrap_or(said))
     }
 
-    /// Returns further claims about a person, if the provider has an address for them.
+    /// Returns further claims about a person, if the provider offers them.
     async fn ask_for_claims(
         &self,
         client: &Client,

@@ -80,7 +80,7 @@ problems! {
     platform_failed(detail: impl Into<String>): 502, "platform-failed", "The learning platform failed",
         detail,
         "try again later; if it happens again, tell the server's administrator";
-    /// The thing does not exist, or the sender may not know of it.
+    /// The thing does not exist, or the sender must not learn whether it exists.
     not_found(what: &str): 404, "not-found", "Not found",
         format!("there is no such {what}, or you may not see it"),
         "check the address";
@@ -112,7 +112,7 @@ problems! {
     too_large(most: u64): 413, "too-large", "Too large",
         format!("more than the {} that are allowed", size(most)),
         "send less: leave out build folders, and traces in an archive of sources";
-    /// Another request has more bytes than allowed.
+    /// A request other than an upload is too large.
     too_long(most: usize): 413, "too-large", "Too large",
         format!("more than the {} that are allowed", size(most as u64)),
         "send less in one request";
@@ -129,7 +129,7 @@ problems! {
         detail,
         "ask the course's staff: the server's administrator can increase the limit, or remove old uploads; nothing \
                       was stored";
-    /// The body arrived too slowly.
+    /// The request's body arrived too slowly.
     too_slow(): 408, "too-slow", "Too slow",
         "the rest of the request did not arrive in time",
         "send it again";
@@ -150,7 +150,7 @@ problems! {
 /// Returns an error unless a condition holds.
 ///
 /// # Errors
-/// `otherwise`.
+/// Fails with `otherwise` if the condition does not hold.
 pub(crate) fn ensure<E>(holds: bool, otherwise: E) -> Result<(), E> {
     if holds { Ok(()) } else { Err(otherwise) }
 }

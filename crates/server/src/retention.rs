@@ -1,6 +1,5 @@
-//! The time for which uploads and reports are kept. Grades and their history stay forever; bytes without references are
-//! removed. The work is done in batches, so that memory is the same for ten submissions and for a million, and no
-//! request waits for long.
+//! Removes old uploads and reports, and bytes without references. Grades and their history stay forever. The work is
+//! done in batches, so that memory is the same for ten submissions and for a million, and no request waits for long.
 use crate::{
     db::{Database, DbError, Transaction},
     queue::millis,
@@ -10,13 +9,13 @@ use crate::{
 use std::{collections::HashSet, time::Duration};
 use thiserror::Error;
 
-/// The minimum age for a removal; younger artifacts may get a reference soon.
+/// The minimum age of a removed artifact. A younger one may still be referenced by a running transaction.
 pub const MIN_AGE: Duration = Duration::from_secs(24 * 3600);
 
 /// The number of submissions that expire in one transaction.
 const BATCH_SIZE: i64 = 500;
 
-/// The reason why nothing was removed, or not everything.
+/// The reason why the removal is incomplete.
 #[derive(Debug, Error)]
 pub enum RetentionError {
     /// The database reported an error.
@@ -41,7 +40,7 @@ pub struct RemovalCounts {
 ///
 /// # Errors
 ///
-/// An error of database or store; the rest is removed the next time.
+/// Fails if the database or the store fails. The next call removes the rest.
 pub async fn give_up(
     database: &Database,
     store: &Store,

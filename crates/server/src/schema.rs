@@ -1,5 +1,5 @@
-//! Text types of the API's description. Clients that follow their patterns are not rejected because of them. The
-//! checks, with messages for people, are at the places of use.
+//! Text types of the API's description. A client that follows the patterns sends only accepted names. The checks with
+//! readable messages are where the values are used.
 use utoipa::{
     PartialSchema, ToSchema,
     openapi::{
@@ -52,7 +52,7 @@ texts! {
     /// A host, with a port if it is not 443.
     Host, r"^[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?(\.[a-z][a-z0-9]{0,30}(-[a-z0-9]{1,20})?){0,5}(:([1-9][0-9]{3}|[1-5][0-9]{4}))?$",
         255, "lms.example.org";
-    /// A number of at least 0, with exactly the grader's digits.
+    /// A nonnegative number, with exactly the grader's digits.
     Decimal, r"^[0-9]{1,9}(\.[0-9]{1,20})?$", 30, "97.5";
     /// The name of a report.
     ReportName, r"^(grade\.json|report\.(txt|html)|(staff|published)\.html)$", 20, "grade.json";

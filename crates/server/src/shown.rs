@@ -1,5 +1,5 @@
-//! The part of a grade that students see while groups that its suite hides are withheld. It looks as if there were no
-//! such groups.
+//! The part of a grade that students see while groups that its suite hides are withheld. To students, the grade looks
+//! as if there were no such groups.
 use crate::{
     grade_file::{GradeFile, GradeInFile, GroupInFile, SceneInFile},
     store::{Store, StoreError},
@@ -11,8 +11,8 @@ use serde_json::Number;
 use std::io;
 use tokio_util::io::{StreamReader, SyncIoBridge};
 
-/// The verdicts from the best to the worst, with their codes and texts; the worst of the scenes is the grade's. The
-/// letters are those of scenes in a row.
+/// The verdicts from best to worst, each with its code, its text, and its letter in a row of scenes. The worst verdict
+/// of all scenes is the grade's.
 const VERDICTS: [(&str, &str, char); 14] = [
     ("AC", "accepted", 'r'),
     ("--", "not run", 'n'),
@@ -72,7 +72,7 @@ pub struct GradeParts {
 /// Reads the scenes of an outcome.
 ///
 /// # Errors
-/// When the store fails.
+/// Fails if the store fails.
 pub async fn read_texts(store: &Store, files: &[OutputFile]) -> Result<KeptTexts, StoreError> {
     let Some(file) = files.iter().find(|file| file.name == "grade.json") else { return Ok(KeptTexts::default()) };
     let opened = store.open(&file.artifact.digest).await?;
@@ -95,7 +95,7 @@ fn read(grade: impl io::Read) -> Option<GradeFile> {
 /// Returns the scenes that are not accepted, including hidden ones.
 fn list_failed(report: &GradeFile) -> String {
     let scenes = report.grades.iter().flat_map(GradeInFile::scenes).filter(|scene| scene.code != "AC");
-    // A name with a line break would make two lines.
+    // A name with a line break would be read as two lines.
     scenes.map(|scene| format!("{} {}\n", scene.code, scene.scene.replace('\n', " "))).collect()
 }
 
@@ -118,7 +118,7 @@ fn text(shown: &ShownGrade) -> String {
     serde_json::to_string(shown).unwrap_or_default()
 }
 
-/// Returns a grade without any shown group.
+/// Returns the grade that students see if all groups are withheld.
 fn empty_grade() -> ShownGrade {
     ShownGrade {
         verdict: "graded".to_owned(),
@@ -178,7 +178,8 @@ impl ShownGrade {
         (self.code, self.points)
     }
 
-    /// Reduces an outcome to its shown part. Digests, sizes and times of withheld parts would reveal when they change.
+    /// Reduces an outcome to the part that students see. Digests, sizes and exact times are removed as well, because
+    /// they would reveal changes of the withheld parts.
     pub fn cover(self, outcome: &mut Outcome, page: &str) {
         (outcome.verdict, outcome.code, outcome.summary) = (self.verdict, self.code, self.summary);
         (outcome.points, outcome.max_points) = (self.points, self.max_points);

@@ -45,7 +45,7 @@ impl Storage {
     ///
     /// # Errors
     ///
-    /// When one can't: 503, with the part.
+    /// Fails with status 503 if one of them can't be written, and names it.
     pub async fn prove(&self) -> Result<(), Problem> {
         let proved = tokio::time::timeout(CHECK_TIMEOUT, self.prove_now()).await;
         proved.unwrap_or_else(|_| Err(Problem::unavailable("the database or the store does not answer in time")))
@@ -87,7 +87,7 @@ impl Storage {
 
     async fn write_to_database(&self) -> Result<(), DbError> {
         let mut transaction = self.database.begin().await?;
-        // The row does not change, but the commit has to write it.
+        // The row gets the value that it has, but the commit must write it.
         transaction.execute("UPDATE pulse SET beat_at = beat_at WHERE id = 1", values![]).await?;
         transaction.commit().await
     }
@@ -102,7 +102,7 @@ impl Storage {
     ///
     /// # Errors
     ///
-    /// When less than the low-water mark is free: 507. Nothing was written.
+    /// Fails with status 507 if less than the low-water mark is free.
     pub fn ensure_room(&self) -> Result<(), Problem> {
         // If a disk does not report its free space, uploads are accepted.
         if self.disk().is_some_and(|(free, _)| free < self.low_water) {

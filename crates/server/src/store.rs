@@ -34,7 +34,7 @@ const KEPT_FOLDER: &str = "sha256";
 const TRASH: &str = "aside";
 
 /// The age above which an artifact is written again if it is stored again. The removal of unreferenced artifacts checks
-/// their age, and must not take one that gets a reference soon.
+/// their age, and must not remove one that is about to be referenced.
 const FRESH_AGE: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artifact's bytes, in lower-case hexadecimal.
@@ -58,7 +58,7 @@ pub enum StoreError {
     /// There is no artifact with this digest.
     #[error("the store has no artifact {0}")]
     Missing(Digest),
-    /// The bytes differ from those that were stored, because the disk is damaged or the file was changed.
+    /// The artifact's bytes differ from those that were stored, because the disk is damaged or the file was changed.
     #[error("the artifact {0} is damaged in the store")]
     Damaged(Digest),
     /// The store can't be used: no space, no permission, or not reachable.
@@ -139,7 +139,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// When the folder can't be created.
+    /// Fails if the folder can't be created.
     pub fn folder(folder: &Path) -> Result<Self, StoreError> {
         std::fs::create_dir_all(folder)
             .map_err(|error| StoreError::Failed(format!("cannot make {}: {error}", folder.display())))?;
@@ -152,7 +152,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// When the address is invalid, or this program was built without buckets.
+    /// Fails if the address is invalid, or this program was built without buckets.
     pub fn bucket(address: &str) -> Result<Self, StoreError> {
         let place = address.strip_prefix("s3://").unwrap_or_default();
         let (bucket, prefix) = place.split_once('/').unwrap_or((place, ""));
@@ -180,7 +180,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// When the store fails.
+    /// Fails if the store fails.
     pub async fn prove(&self) -> Result<(), StoreError> {
         let key = Key::from(format!("{TRASH}/proof-{}", std::process::id()));
         self.objects.put(&key, PutPayload::from_static(b"proof")).await?;
@@ -192,7 +192,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// When the file can't be read or changes during the upload, or the store fails.
+    /// Fails if the file can't be read or changes during the upload, or the store fails.
     pub async fn put_file(&self, file: &Path) -> Result<Artifact, StoreError> {
         let artifact = digest_of_file(file).await?;
         if self.find_fresh(&artifact.digest).await? {
@@ -218,7 +218,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// When the store fails.
+    /// Fails if the store fails.
     pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
         Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some() || self.age(&digest.key(TRASH)).await?.is_some())
     }
@@ -228,7 +228,7 @@ impl Store {
         Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some_and(|age| age < FRESH_AGE))
     }
 
-    /// Returns the age of an object; `None` if it does not exist.
+    /// Returns the age of a stored object; `None` if it does not exist.
     async fn age(&self, key: &Key) -> Result<Option<Duration>, StoreError> {
         match self.objects.head(key).await {
             Ok(meta) => Ok(Some(age(&meta))),
@@ -247,7 +247,7 @@ fn age(meta: &object_store::ObjectMeta) -> Duration {
 /// Returns the digest and size of a file.
 ///
 /// # Errors
-/// When it can't be read.
+/// Fails if it can't be read.
 pub async fn digest_of_file(file: &Path) -> io::Result<Artifact> {
     let (mut pieces, mut hasher, mut size) = (pieces(file).await?, Sha256::new(), 0);
     while let Some(piece) = pieces.try_next().await? {

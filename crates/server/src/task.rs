@@ -6,7 +6,7 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// The complete description of one grading. It can be repeated with this and the artifacts that it refers to.
+/// The complete description of one grading. With the artifacts that it refers to, the grading can be repeated.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Task {
     /// The uploaded file, as stored.
@@ -66,7 +66,7 @@ macro_rules! forms {
 forms! {
     /// A program that can be run.
     Program "program" "a program for Linux";
-    /// An archive of sources; the suite has the commands to build it.
+    /// An archive of sources; the suite contains the commands to build it.
     Sources "sources" "an archive of sources";
     /// An archive of traces, one for each scene.
     Traces "traces" "an archive of traces";
@@ -99,7 +99,7 @@ impl Suite {
     }
 }
 
-/// The result of a grading, which the grader makes, a worker reports and the service shows.
+/// The result of a grading: the grader writes it, a worker reports it, and the service shows it.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Outcome {
     /// The verdict as text.
@@ -108,7 +108,7 @@ pub struct Outcome {
     /// The verdict's code: AC, WA, ...; JE means that the grader failed, and gives no points instead of zero.
     #[schema(value_type = Code)]
     pub code: String,
-    /// The points, with exactly the grader's digits; none after a judge error.
+    /// The points, with exactly the grader's digits; `None` after a judge error.
     #[schema(value_type = Option<Decimal>)]
     pub points: Option<String>,
     /// The maximum number of points.
@@ -142,8 +142,8 @@ pub struct Outcome {
 }
 
 impl Outcome {
-    /// Returns the outcome of a job that was tried too often. It is the service's fault, so it gives no points instead
-    /// of zero. Only staff see the reason, which is in the job.
+    /// Returns the outcome of a job that was tried too often. The service is at fault, so the outcome has no points
+    /// instead of zero. Only staff see the reason, which is in the job.
     pub fn judge_error() -> Self {
         Self {
             verdict: "judge error".to_owned(),
@@ -165,7 +165,7 @@ pub fn round_points(number: impl ToString) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The code of the verdict that gives no points instead of zero.
+/// The code of the verdict for failures of the grader, which gives no points instead of zero.
 pub const JUDGE_ERROR: &str = "JE";
 
 /// A file that the grader wrote: a report or a log.

@@ -46,7 +46,7 @@ pub struct Manners {
 /// The state of a lease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct LeaseAnswer {
-    /// Whether the lease is still valid. Otherwise another worker has the job, and nothing was changed.
+    /// Whether the lease is still valid. If not, another worker has the job, and the request changed nothing.
     pub held: bool,
 }
 

@@ -75,7 +75,7 @@ impl Record {
 /// Returns the whole trace of this student's program, in memory, up to a failing step.
 ///
 /// # Errors
-/// The bytes written, and the reason why there are no more.
+/// Fails with the bytes written so far, and the reason why there are no more.
 pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     write_trace(scene, student, StepLog::default())
 }
@@ -83,7 +83,7 @@ pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepF
 /// Returns the trace of a program that may run forever, up to the first step with more than `most` polynomials.
 ///
 /// # Errors
-/// The bytes written, and the reason why there are no more.
+/// Fails with the bytes written so far, and the reason why there are no more.
 pub fn trace_within(scene: &Scene, student: Student, most: usize) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     let guard = |index: usize, _: &[f64]| index < most;
     write_trace(scene, student, StepLog { guard: Some(&guard), ..StepLog::default() })

@@ -16,8 +16,8 @@ const HERE: &[Area] = &[Area::Trace];
 /// and the end record (trace-format.md 2).
 ///
 /// # Errors
-/// [`StepFailure`] if the course's program would never end. `state` and `log` are then unspecified, and the end record
-/// was not written.
+/// Fails with a [`StepFailure`] if the course's program would never end. `state` and `log` are then unspecified, and
+/// the end record is not written.
 pub fn step(
     world: &World,
     state: &mut State,

@@ -101,7 +101,7 @@ impl fmt::Display for Need {
 /// Reports that the calling test can't run, and why; the test returns then.
 ///
 /// # Panics
-/// When `FOSSSIM_REQUIRE` names the need, or holds an unknown word.
+/// Panics if `FOSSSIM_REQUIRE` names the need, or holds an unknown word.
 pub fn skip(need: Need, why: impl fmt::Display) {
     let why = why.to_string().replace(['\n', '\t'], " ");
     let required = std::env::var(REQUIRE).unwrap_or_default();

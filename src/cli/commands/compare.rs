@@ -25,7 +25,7 @@ struct GradesFile {
 ///
 /// # Errors
 ///
-/// When the file can't be read, or contains no grade.
+/// Fails if the file can't be read, or contains no grade.
 pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     let file = if place.is_dir() { Place::new(place, FILE) } else { Place::new("", place) };
     let shown = input::printable_name(&file.path()).to_string();

@@ -103,7 +103,7 @@ impl Counter {
     ///
     /// # Errors
     ///
-    /// When the file can't be written.
+    /// Fails if the file can't be written.
     pub(super) fn new(file: &Path, submissions: usize, counts: Vec<bool>) -> io::Result<Self> {
         let all = submissions * counts.iter().filter(|counts| **counts).count();
         let place = Place::new(file.parent().unwrap_or(Path::new("")), file.file_name().unwrap_or_default());

@@ -41,7 +41,7 @@ use anyhow::Result;
 ///
 /// # Errors
 ///
-/// The reason why it can't run: wrong usage, bad input, or an error of this program.
+/// Fails with the reason why the command can't run: wrong usage, bad input, or an error of this program.
 pub(super) fn run(command: &Command) -> Result<u8> {
     console::be_quiet(is_quiet(command));
     let done = match command {

@@ -30,7 +30,7 @@ pub(super) struct Report {
 ///
 /// # Errors
 ///
-/// An unknown format, or two formats for one destination.
+/// Fails if a format is unknown, or two formats have the same destination.
 pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
     let mut reports = Vec::new();
     for word in words {
@@ -62,7 +62,7 @@ pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
 ///
 /// # Errors
 ///
-/// When such a format was requested; `of_html` is added to the message for HTML.
+/// Fails if such a format was requested; `of_html` is added to the message for HTML.
 pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &str) -> Result<()> {
     match reports.iter().find(|report| submissions > 1 && !report.format.takes_several()) {
         Some(Report { format, name, .. }) => {
@@ -77,7 +77,7 @@ pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &s
 ///
 /// # Errors
 ///
-/// When their folder can't be created.
+/// Fails if their folder can't be created.
 pub(super) fn wanted_pages(
     arguments: &Arguments,
     folder: Option<&Path>,
@@ -117,7 +117,7 @@ impl Results<'_> {
     ///
     /// # Errors
     ///
-    /// The first error; the other files are still written.
+    /// Fails with the first error. The other files are still written.
     pub(super) fn write(&self, reports: &[Report], text: impl Fn(&[Grade]) -> String) -> Result<()> {
         let (grades, passed_over) = (self.grades, self.passed_over);
         // An error of one file must not prevent the others.

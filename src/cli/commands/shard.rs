@@ -79,7 +79,7 @@ impl Part {
     ///
     /// # Errors
     ///
-    /// When the file can't be read, or is from another version.
+    /// Fails if the file can't be read, or is from another version.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
         let file = folder.join(SHARD_FILE);
         let opened = match Place::new(folder, SHARD_FILE).file(MAX_BYTES) {
@@ -163,7 +163,7 @@ impl Sharding {
     ///
     /// # Errors
     ///
-    /// When the folder can't be created.
+    /// Fails if the folder can't be created.
     pub(super) fn begin(&self) -> Result<()> {
         self.begun.make_folder().with_context(|| format!("cannot make {}", self.folder.display()))?;
         let place = Place::new(&self.folder, SHARD_FILE);
@@ -174,7 +174,7 @@ impl Sharding {
     ///
     /// # Errors
     ///
-    /// When they can't be written.
+    /// Fails if they can't be written.
     pub(super) fn end(&self, grades: &[Grade], passed_over: &[PassedOver]) -> Result<()> {
         let (common, number, passed_over) = (self.common.clone(), self.shard.number, passed_over.to_vec());
         let part = Part { common, number, grades: grades.to_vec(), passed_over };

@@ -64,7 +64,7 @@ impl<'a> Search<'a> {
     ///
     /// # Errors
     ///
-    /// A missing path, or a folder without submissions.
+    /// Fails if a path is missing, or a folder has no submissions.
     pub(super) fn run(&self) -> Result<FoundSubmissions> {
         let (mut found, mut passed_over) = (Vec::new(), Vec::new());
         for path in &self.arguments.programs {

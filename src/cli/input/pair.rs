@@ -11,7 +11,7 @@ use anyhow::{Context, Result, anyhow, bail};
 ///
 /// # Errors
 ///
-/// When the text is not such a pair.
+/// Fails if the text is not such a pair.
 pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMotion> {
     let mut points = word.split(':').collect::<Vec<_>>();
     let word = points.remove(0);
@@ -52,7 +52,7 @@ pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMoti
 ///
 /// # Errors
 ///
-/// When the scene has no such pair, or detection never checks it.
+/// Fails if the scene has no such pair, or detection never checks it.
 pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     let (kind, indices) = word.split_once(':').context("write pp:I,J, pe:I,J or ph:I,J")?;
     let kind = kind_of(kind)?;
@@ -101,7 +101,7 @@ fn kind_of(word: &str) -> Result<PairKind> {
 ///
 /// # Errors
 ///
-/// When the text has none of these forms.
+/// Fails if the text has none of these forms.
 fn parse_moving(word: &str) -> Result<PointMotion> {
     if let Some((start, end)) = word.split_once("..") {
         // The displacement is the difference of the ends, computed as in the course's code.
@@ -123,7 +123,7 @@ fn parse_moving(word: &str) -> Result<PointMotion> {
 ///
 /// # Errors
 ///
-/// When the text is not a point with finite coordinates.
+/// Fails if the text is not a point with finite coordinates.
 fn vector(word: &str) -> Result<Vec2> {
     let advice = || format!("`{word}` is not a point; write X,Y as in 3,-1.5");
     let (x, y) = word.split_once(',').with_context(advice)?;

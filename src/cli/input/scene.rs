@@ -25,7 +25,7 @@ pub(in crate::cli) struct SceneInput {
 ///
 /// # Errors
 ///
-/// When the scene can't be read or has errors: all of them, with their places.
+/// Fails if the scene can't be read or has errors: all of them, with their places.
 pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     let shown = printable_name(name);
     if name == Path::new("-") {

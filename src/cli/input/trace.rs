@@ -39,7 +39,7 @@ impl TraceInput {
     ///
     /// # Errors
     ///
-    /// The error of [`TraceInput::failure`].
+    /// Fails with the error of [`TraceInput::failure`].
     pub(in crate::cli) fn ensure_not_failed(&self) -> Result<()> {
         match self.failure() {
             Some(message) => bail!("cannot read the trace {}: {message}", self.name),
@@ -72,7 +72,7 @@ impl Failure {
 ///
 /// # Errors
 ///
-/// When it can't be opened. Damage is detected only while it is read.
+/// Fails if it can't be opened. Damage is detected only while it is read.
 pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let shown = printable_name(name);
     let failure = Failure::default();
@@ -167,7 +167,7 @@ fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure)
 ///
 /// # Errors
 ///
-/// When the file can't be read.
+/// Fails if the file can't be read.
 pub(in crate::cli) fn unpack(file: impl Read + Send + 'static, most: u64) -> io::Result<Result<Vec<u8>, String>> {
     let failure = Failure::default();
     let mut bytes = Vec::new();

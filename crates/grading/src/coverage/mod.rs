@@ -76,7 +76,7 @@ impl Coverage {
     ///
     /// # Errors
     ///
-    /// When the scene can't be simulated to its end.
+    /// Fails if the scene can't be simulated to its end.
     pub fn for_scene(scene: &Scene) -> Result<Self, StepError> {
         let mut coverage = Self::default();
         if scene.assignment() == Assignment::T2M2 {

@@ -40,7 +40,7 @@ fn describe_errors(name: &str, SuiteError { problems }: &SuiteError) -> String {
 ///
 /// # Errors
 ///
-/// When there is no such suite, or with all of its problems.
+/// Fails if there is no such suite, or with all of its problems.
 pub fn find(name: &str) -> Result<Plan, FindError> {
     let path = Path::new(name);
     let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -68,7 +68,7 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
 ///
 /// # Errors
 ///
-/// The errors of [`load_by`].
+/// Fails like [`load_by`].
 pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
     let mut room = FileBudget { scenes: MAX_SCENES, bytes: MAX_SCENE_BYTES };
     load_by(text, &mut |pattern| find_files(pattern, folder, &mut room))

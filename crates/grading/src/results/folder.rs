@@ -47,7 +47,7 @@ impl FolderResults {
     ///
     /// # Errors
     ///
-    /// When another grader has locked the folder, or files can't be read or written.
+    /// Fails if another grader has locked the folder, or files can't be read or written.
     pub fn open(folder: &Path, fresh: bool) -> io::Result<Self> {
         let at = |name: &str| {
             let path = folder.join(name);
@@ -114,7 +114,7 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
 ///
 /// # Errors
 ///
-/// When the journal can't be read or has a line longer than any result, and the errors of `take`.
+/// Fails if the journal can't be read or has a line longer than any result, and the errors of `take`.
 pub fn for_each_line<E: From<io::Error>>(
     mut journal: impl BufRead,
     mut take: impl FnMut(&[u8]) -> Result<(), E>,

@@ -19,7 +19,7 @@ pub trait Results: Sync {
     ///
     /// # Errors
     ///
-    /// When the result can't be stored, for example because the disk is full. Earlier results stay.
+    /// Fails if the result can't be stored, for example because the disk is full. Earlier results stay.
     fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError>;
 }
 

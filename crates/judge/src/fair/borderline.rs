@@ -15,7 +15,7 @@ use fosssim_model::{
 /// among them.
 ///
 /// # Errors
-/// When a step has no result.
+/// Fails if a step has no result.
 pub fn borderline(scene: &Scene) -> Result<Vec<Borderline>, StepError> {
     let mut observer = BorderlineObserver { scene, step: 0, found: Vec::new() };
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);

@@ -70,8 +70,8 @@ impl Arithmetic {
     /// the contacts after every step.
     ///
     /// # Errors
-    /// The steps so far, if a step has no result because of a vortex force in an implicit step, or because Newton's
-    /// method does not converge.
+    /// Fails with the steps so far if a step has no result, because of a vortex force in an implicit step, or because
+    /// Newton's method does not converge.
     pub fn trace(self, scene: &Scene, mut visit: impl FnMut(&State, &[Contact])) -> Result<Vec<u8>, Vec<u8>> {
         let mut state = start(scene);
         let mut forces = ForceTerms::new(scene, self);

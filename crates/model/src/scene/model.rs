@@ -110,7 +110,7 @@ impl Collision {
     /// Returns the handling that the scene's assignment requires of a program.
     ///
     /// # Panics
-    /// Never; a test checks that every type is handled by its assignment.
+    /// Never panics: a test checks that every type is handled by its assignment.
     #[must_use]
     pub fn handling(&self) -> &'static Handling {
         let kind = self.kind();

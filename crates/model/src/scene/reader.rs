@@ -25,8 +25,8 @@ pub struct LoadedScene {
 ///
 /// # Errors
 ///
-/// All problems found, up to [`super::MAX_PROBLEMS`] of each severity, if at least one is an error. The spans refer to
-/// `text` as given.
+/// Fails if at least one problem is an error, with all problems found, up to [`super::MAX_PROBLEMS`] of each severity.
+/// The spans refer to `text` as given.
 pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
     if text.len() > MAX_SCENE_BYTES {
         let message = format!("the file has {} bytes", text.len());

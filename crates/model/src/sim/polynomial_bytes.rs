@@ -78,7 +78,7 @@ impl PolynomialBytes {
     /// Appends one polynomial, highest power first.
     ///
     /// # Panics
-    /// If there are more than [`MAX_COEFFICIENTS`] coefficients.
+    /// Panics if there are more than [`MAX_COEFFICIENTS`] coefficients.
     #[inline]
     pub fn push(&mut self, coefficients: &[f64]) {
         assert!(coefficients.len() <= MAX_COEFFICIENTS, "detection polynomials are of degree five at most");

@@ -29,7 +29,7 @@ impl Simulation {
     /// Creates the simulation of a scene at its initial state.
     ///
     /// # Panics
-    /// If an edge names a particle that does not exist; the strict reader rejects such scenes.
+    /// Panics if an edge names a particle that does not exist; the strict reader rejects such scenes.
     #[must_use]
     pub fn new(scene: &Scene, root_search: RootSearch) -> Self {
         let state = State::for_scene(scene);
@@ -71,10 +71,11 @@ impl Simulation {
     /// Advances the state by one time step and sends `observer` all events (simulation.md 1).
     ///
     /// # Errors
-    /// [`StepError`], naming the step. The state is unspecified afterwards, and the step does not count as done.
+    /// Fails with a [`StepError`] that names the step. The state is unspecified afterwards, and the step does not count
+    /// as done.
     ///
     /// # Panics
-    /// If the lengths of the state are not 2N, or a force names an object that the scene does not have.
+    /// Panics if the lengths of the state are not 2N, or a force names an object that the scene does not have.
     pub fn step(&mut self, mut observer: &mut dyn Observer) -> Result<(), StepError> {
         // One compiled copy of the step serves all observers: their calls per pair and pass cost less than compiling
         // more copies.

@@ -26,7 +26,7 @@ pub(crate) fn append_state(out: &mut Vec<u8>, state: &State) {
 /// Appends a list's count. The format has no room for counts above the 32-bit range.
 ///
 /// # Panics
-/// If the count exceeds `i32::MAX`.
+/// Panics if the count exceeds `i32::MAX`.
 #[inline]
 pub(crate) fn count(out: &mut Vec<u8>, count: usize) {
     let count = i32::try_from(count).expect("a list has fewer than 2^31 entries");

@@ -186,7 +186,7 @@ impl PolynomialLog {
     /// Returns the coefficients of polynomial `index`.
     ///
     /// # Panics
-    /// If there is no such polynomial.
+    /// Panics if there is no such polynomial.
     #[inline]
     #[must_use]
     pub fn get(&self, index: usize) -> &[f64] {

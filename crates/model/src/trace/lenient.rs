@@ -192,7 +192,7 @@ impl<R: Read> Lenient<R> {
     /// Replaces `frame` by the next record, whether or not the scene has that many records.
     ///
     /// # Errors
-    /// [`ReadStop`]; `frame` is then unspecified.
+    /// Fails with the [`ReadStop`] after the last readable record. `frame` is unspecified then.
     pub fn next(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
         self.begin = self.source.offset();
         self.notes.clear();

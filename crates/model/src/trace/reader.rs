@@ -87,7 +87,7 @@ impl<R: Read> Reader<R> {
     /// Replaces `frame` by the next record. Returns false after the scene's last record.
     ///
     /// # Errors
-    /// [`TraceError`]; reading then ends, and every later call returns the same error.
+    /// Fails with a [`TraceError`] if the trace is invalid. Every later call returns the same error.
     pub fn next(&mut self, frame: &mut Frame) -> Result<bool, TraceError> {
         if let Some(error) = &self.stopped {
             return Err(error.clone());
@@ -156,7 +156,7 @@ impl<R: Read> Reader<R> {
     /// Reads to the end of the stream, in bounded memory, and returns the number of bytes after the last record read.
     ///
     /// # Errors
-    /// An error of the stream, or [`Malformation::Endless`] if more than [`TRAILING_LIMIT`] bytes follow.
+    /// Fails if the stream fails, or with [`Malformation::Endless`] if more than [`TRAILING_LIMIT`] bytes follow.
     pub fn trailing(&mut self) -> Result<u64, TraceError> {
         let (offset, record) = (self.offset(), self.records());
         let source = &mut self.records.source;

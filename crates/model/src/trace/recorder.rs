@@ -45,7 +45,7 @@ impl<W: Write> Recorder<W> {
     /// Writes the rest, flushes, and returns the stream.
     ///
     /// # Errors
-    /// The first error that the stream reported, now or earlier.
+    /// Fails with the first error that the stream reported, now or earlier.
     pub fn finish(mut self) -> io::Result<(W, WrittenTrace)> {
         self.writer.write_collected(self.log.polynomials.all());
         self.writer.finish()

@@ -69,7 +69,7 @@ impl<R: Read> Source<R> {
     /// the end.
     ///
     /// # Panics
-    /// If `wanted` exceeds [`WINDOW`] bytes.
+    /// Panics if `wanted` exceeds [`WINDOW`] bytes.
     pub(crate) fn ensure(&mut self, wanted: usize) -> usize {
         assert!(wanted <= WINDOW, "the window is smaller");
         if self.end - self.start < wanted && !self.ended {

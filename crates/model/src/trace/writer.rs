@@ -120,7 +120,7 @@ impl<W: Write> Writer<W> {
     /// Writes the rest, flushes, and returns the stream.
     ///
     /// # Errors
-    /// The first error that the stream reported, now or earlier.
+    /// Fails with the first error that the stream reported, now or earlier.
     pub fn finish(mut self) -> io::Result<(W, WrittenTrace)> {
         self.write_collected(&[]);
         if let Some(error) = self.error {

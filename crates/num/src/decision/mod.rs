@@ -107,7 +107,8 @@ pub struct CertifiedDecision {
 /// and which is so close to the limit that only integers could decide, because they might take a tenth of a second.
 ///
 /// # Panics
-/// With more than [`MAX_POLYNOMIALS`] polynomials, or more than [`MAX_COEFFICIENTS`] coefficients in one of them.
+/// Panics if there are more than [`MAX_POLYNOMIALS`] polynomials, or one of them has more than [`MAX_COEFFICIENTS`]
+/// coefficients.
 #[must_use]
 pub fn decide(polynomials: &[&[BoundedValue]], units: f64) -> CertifiedDecision {
     let upper = Problem::new(polynomials, units, Ends::Upper);

@@ -61,7 +61,7 @@ impl Problem {
     /// Creates the choice at the ends `ends`, rounded outward; coefficients without error are unchanged.
     ///
     /// # Panics
-    /// With too many polynomials or coefficients.
+    /// Panics if there are too many polynomials or coefficients.
     #[inline]
     pub(crate) fn new(polynomials: &[&[BoundedValue]], units: f64, ends: Ends) -> Self {
         assert!(polynomials.len() <= MAX_POLYNOMIALS, "more polynomials than a detection has");

@@ -9,7 +9,8 @@ const MAX_NEWTON_STEPS: usize = 1000;
 /// Returns the bound for a polynomial of degree `N`; 0 if its constant term is 0. Its steps are added to `steps`.
 ///
 /// # Errors
-/// [`DoesNotTerminate`] if a coefficient is not finite, or if the Newton iteration cycles among subnormal numbers.
+/// Fails with [`DoesNotTerminate`] if a coefficient is not finite, or if the Newton iteration cycles among subnormal
+/// numbers.
 #[inline]
 pub(super) fn lower_bound<const N: usize>(polynomial: &Coefficients, steps: &mut u32) -> Result<f64, DoesNotTerminate> {
     if !polynomial[..=N].iter().all(|coefficient| coefficient.is_finite()) {

@@ -92,10 +92,10 @@ enum SearchResult {
 /// zeros are then the infinities and NaN of the formulas.
 ///
 /// # Errors
-/// [`DoesNotTerminate`] for inputs with which the original hangs.
+/// Fails with [`DoesNotTerminate`] if the original hangs with this input.
 ///
 /// # Panics
-/// Unless there are 2 to [`MAX_DEGREE`]` + 1` coefficients.
+/// Panics if there are fewer than 2 or more than [`MAX_DEGREE`]` + 1` coefficients.
 #[inline]
 pub fn zeros(coefficients: &[f64]) -> Result<Zeros, DoesNotTerminate> {
     assert!((2..=MAX_DEGREE + 1).contains(&coefficients.len()), "degrees 1 to 6 are supported");

@@ -28,7 +28,7 @@ impl<'a> Gif<'a> {
     /// Begins a film that repeats forever, in the given colors, with the background first.
     ///
     /// # Errors
-    /// If `out` cannot be written, or the pictures are larger than a GIF allows.
+    /// Fails if `out` cannot be written, or the pictures are larger than a GIF allows.
     pub fn new(out: &'a mut dyn Write, size: Size, rate: Rate, colors: &[Rgb]) -> io::Result<Self> {
         let palette = palette(colors);
         let bytes: Vec<u8> = palette.iter().flat_map(|color| color.0).collect();
@@ -40,7 +40,7 @@ impl<'a> Gif<'a> {
     /// Appends a picture.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// Fails if it cannot be written.
     pub fn write_picture(&mut self, raster: &Raster) -> io::Result<()> {
         let (palette, known) = (&self.palette, &mut self.known);
         let after: Vec<u8> = raster
@@ -74,7 +74,7 @@ impl<'a> Gif<'a> {
     /// Ends the film.
     ///
     /// # Errors
-    /// If it cannot be written.
+    /// Fails if it cannot be written.
     pub fn finish(self) -> io::Result<()> {
         self.encoder.into_inner().map_err(error)?.flush()
     }

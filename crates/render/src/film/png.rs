@@ -5,7 +5,7 @@ use std::io::{self, Write};
 /// Writes a picture as the bytes of a PNG file, without transparency.
 ///
 /// # Errors
-/// If `out` cannot be written.
+/// Fails if `out` cannot be written.
 pub fn write_png(raster: &Raster, out: impl Write) -> io::Result<()> {
     let size = raster.size();
     let mut encoder = ::png::Encoder::new(out, size.width(), size.height());

@@ -96,8 +96,8 @@ impl PromiseTable {
 ///
 /// # Errors
 ///
-/// [`SandboxError::Missing`] if the backend does not filter system calls, because the attacks are never run without
-/// layers. Also if `folder` cannot be used. A broken promise is not an error.
+/// Fails with [`SandboxError::Missing`] if the backend does not filter system calls, because the attacks are never run
+/// without layers; and if `folder` cannot be used. A broken promise is not an error.
 pub fn run(
     backend: &Backend,
     cc: &Path,
@@ -111,7 +111,7 @@ pub fn run(
 ///
 /// # Errors
 ///
-/// The errors of [`run`].
+/// Fails like [`run`].
 pub fn run_some(
     backend: &Backend,
     cc: &Path,

@@ -55,8 +55,8 @@ impl Group {
     ///
     /// # Errors
     ///
-    /// If no hierarchy has a permitted place, or only version 2 has one on a kernel before 5.14, which cannot end a
-    /// group.
+    /// Fails if no hierarchy has a permitted place, or only version 2 has one on a kernel before 5.14, which cannot end
+    /// a group.
     pub(super) fn make(order: &RunOrder) -> io::Result<Self> {
         let mounts = std::fs::read_to_string("/proc/self/mountinfo")?;
         let groups = std::fs::read_to_string("/proc/self/cgroup")?;
@@ -253,7 +253,7 @@ fn value_of(text: &str, key: &str) -> Option<u64> {
 ///
 /// # Errors
 ///
-/// `NotFound` if it was removed before it was locked.
+/// Fails with `NotFound` if the group was removed before it was locked.
 fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
     // In process namespaces, others may have the same process number.
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();

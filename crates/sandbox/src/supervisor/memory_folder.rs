@@ -49,7 +49,7 @@ pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
 ///
 /// # Errors
 ///
-/// If a name leads out of the folder, or writing fails.
+/// Fails if a name leads out of the folder, or writing fails.
 pub(super) fn add(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()> {
     for (name, content) in files {
         let plain = wire::plain_name(name).ok_or(io::ErrorKind::InvalidInput)?;
@@ -62,7 +62,7 @@ pub(super) fn add(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()
 ///
 /// # Errors
 ///
-/// `OutOfMemory` if the blocks take more than `most` bytes.
+/// Fails with `OutOfMemory` if the blocks take more than `most` bytes.
 pub(super) fn copy_blocks(from: &File, to: &mut File, most: u64) -> io::Result<()> {
     let mut buffer = vec![0; BYTES_PER_COPY];
     let (mut at, mut copied) = (0, 0);

@@ -30,7 +30,7 @@ pub(super) fn concerns(call: i64) -> bool {
 ///
 /// # Errors
 ///
-/// The error number for the caller.
+/// Fails with the error number for the caller.
 pub(super) fn change(announced: &PendingCall, folder: BorrowedFd<'_>, root: &Path) -> Result<(), i32> {
     let [first, second, third, ..] = announced.arguments;
     let thread = announced.thread;

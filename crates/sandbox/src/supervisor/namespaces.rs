@@ -27,7 +27,7 @@ pub(super) enum Side {
 ///
 /// # Errors
 ///
-/// The step that failed. The process is then between the namespaces and must end.
+/// Fails with the name of the step that failed. The process is then between the namespaces and must end.
 pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
     match fork_into_namespaces()? {
         Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(stage("wait"))?)),
@@ -45,7 +45,7 @@ pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
 ///
 /// # Errors
 ///
-/// The errors of [`enter`].
+/// Fails like [`enter`].
 pub(super) fn fork_into_namespaces() -> Result<Fork, Failure> {
     let (user, group) = (sys::user(), sys::group());
     if user == 0 {

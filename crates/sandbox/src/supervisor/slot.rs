@@ -31,7 +31,7 @@ const PATIENCE: Duration = Duration::from_secs(3600);
 ///
 /// # Errors
 ///
-/// If no id becomes free for an hour, the grader has ended, or the folder of locks has another owner.
+/// Fails if no id becomes free for an hour, the grader has ended, or the folder of locks has another owner.
 pub(super) fn take() -> io::Result<Slot> {
     take_of(&folder()?, FIRST_USER..FIRST_USER + COUNT, PATIENCE)
 }

@@ -47,7 +47,7 @@ enum Access {
 ///
 /// # Errors
 ///
-/// The step that failed. The process then has an incomplete root and must end.
+/// Fails with the name of the step that failed. The process then has an incomplete root and must end.
 pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
     let view = begin(order)?;
     let folder = wire::path(&order.folder);
@@ -68,7 +68,7 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
 ///
 /// # Errors
 ///
-/// The errors of [`build`].
+/// Fails like [`build`].
 pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
     begin(order)?;
     hide_own(order, Path::new("/"))?;
@@ -85,7 +85,7 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
 ///
 /// # Errors
 ///
-/// The errors of [`build`].
+/// Fails like [`build`].
 pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBytes, Vec<u8>)]) -> Result<(), Failure> {
     add_processes(order)?;
     if sys::user() != 0 {

@@ -180,7 +180,7 @@ pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCr
 ///
 /// # Errors
 ///
-/// Also if the kernel accepted the rules without enforcing any.
+/// Fails if the kernel rejects the rules, or accepts them without enforcing any.
 pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
     let status = ruleset.restrict_self().map_err(from_ruleset_error)?;
     if status.ruleset == RulesetStatus::NotEnforced {

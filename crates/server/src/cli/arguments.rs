@@ -52,7 +52,7 @@ pub(super) struct StorageArguments {
     pub(super) store: Option<String>,
 }
 
-/// The settings of workers.
+/// The settings of the server's own workers.
 #[derive(Debug, Args)]
 pub(super) struct WorkloadArguments {
     /// The number of scenes that run in parallel in one grading.
@@ -69,7 +69,7 @@ pub(super) struct WorkloadArguments {
     pub(super) tries: u32,
 }
 
-/// Runs the server: receives submissions, shows grades, and grades with its own workers.
+/// Runs the server: it receives submissions, shows grades, and grades with its own workers.
 #[derive(Debug, Args)]
 pub(super) struct ServiceArguments {
     #[command(flatten)]
@@ -82,7 +82,7 @@ pub(super) struct ServiceArguments {
     /// HTTPS.
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
     pub(super) public_url: Option<String>,
-    /// The number of parallel gradings in this process; 0 leaves them to other workers. One per core by default.
+    /// The number of parallel gradings in this process; with 0, only other workers grade. One per core by default.
     #[arg(long, value_name = "N", env = "FOSSSIM_WORKERS")]
     pub(super) workers: Option<usize>,
     /// The number of requests that an account may send per minute.
@@ -94,8 +94,8 @@ pub(super) struct ServiceArguments {
     /// The number of parallel uploads and downloads of an account.
     #[arg(long, value_name = "N", default_value_t = 32, value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) transfers: u32,
-    /// The header in which the proxy in front names a client's address, such as XRealIp or RightmostXForwardedFor.
-    /// Without it, limits by address apply to the proxy.
+    /// The header in which the proxy states a client's address, such as XRealIp or RightmostXForwardedFor. Without it,
+    /// limits by address apply to the proxy.
     #[arg(long, value_name = "HEADER", env = "FOSSSIM_CLIENT_ADDRESS")]
     pub(super) client_address: Option<ClientIpSource>,
     /// The limit in MiB for the uploads and reports of a person, in all courses; 0 for no limit.
@@ -107,8 +107,8 @@ pub(super) struct ServiceArguments {
     /// The limit in MiB for all uploads and reports; 0 for no limit.
     #[arg(long, value_name = "MIB", default_value_t = 0)]
     pub(super) keep_in_all: u64,
-    /// The number of free MiB on the data folder's disk below which uploads are rejected, so that accepted ones can be
-    /// graded.
+    /// The minimum free space on the data folder's disk, in MiB. Below it uploads are rejected, so that accepted ones
+    /// can be graded.
     #[arg(long, value_name = "MIB", default_value_t = 512)]
     pub(super) low_water: u64,
     #[command(flatten)]
@@ -116,7 +116,7 @@ pub(super) struct ServiceArguments {
     /// The number of days for which uploads and reports are kept; 0 for no limit. Grades and their history always stay.
     #[arg(long, value_name = "DAYS", default_value_t = 0, env = "FOSSSIM_KEEP_DAYS")]
     pub(super) keep_days: u32,
-    /// Allow learning platforms without HTTPS, for tests on one machine.
+    /// Allows learning platforms without HTTPS, for tests on one machine.
     #[arg(long)]
     pub(super) lti_over_http: bool,
     /// On a new server, creates a course with an assignment and a student, and writes a program with a mistake to
@@ -143,8 +143,8 @@ pub(super) struct ProviderArguments {
     /// The provider's name on the sign-in page. Its host by default.
     #[arg(long, value_name = "NAME", env = "FOSSSIM_OIDC_LABEL", requires = "oidc_issuer")]
     pub(super) oidc_label: Option<String>,
-    /// Only people with a confirmed mail address in this domain can sign in. An account that staff made belongs to the
-    /// person whose address has the account's login before the @.
+    /// Only people with a confirmed mail address in this domain can sign in. An account that staff created belongs to
+    /// the person whose mail address has the account's login before the @.
     #[arg(long, value_name = "DOMAIN", env = "FOSSSIM_OIDC_DOMAIN", requires = "oidc_issuer")]
     pub(super) oidc_domain: Option<String>,
 }
@@ -159,7 +159,7 @@ fn public_url(text: &str) -> Result<String, String> {
     Ok(text.trim_end_matches('/').to_owned())
 }
 
-/// Prints a link that signs an administrator in once, for administrators who cannot sign in otherwise.
+/// Prints a link that signs in an administrator once, if the administrator cannot sign in otherwise.
 #[derive(Debug, Args)]
 pub(super) struct AdminLinkArguments {
     #[command(flatten)]
@@ -167,7 +167,7 @@ pub(super) struct AdminLinkArguments {
     /// The administrator's login.
     #[arg(default_value = "admin")]
     pub(super) login: String,
-    /// The address that people know the server by. By default the one with which the server was started last.
+    /// The server's public address. By default the one with which the server was last started.
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
     pub(super) public_url: Option<String>,
 }
@@ -240,7 +240,7 @@ pub(super) struct WorkerArguments {
     /// The number of parallel gradings. One per core by default.
     #[arg(long, value_name = "N")]
     pub(super) slots: Option<NonZeroUsize>,
-    /// The address of the server to work for, on another machine; then the worker needs no database.
+    /// The address of a server on another machine for which this worker grades. The worker then needs no database.
     #[arg(long, value_name = "URL", conflicts_with = "database", value_parser = public_url)]
     pub(super) server: Option<String>,
     /// The file with the worker's token, which an administrator creates on the page "Administration".

@@ -15,7 +15,7 @@ use std::{
 /// The age after which an unfinished upload or job is removed.
 const LEFTOVER_AGE: Duration = Duration::from_secs(24 * 3600);
 
-/// The data folder's parts.
+/// The paths in the data folder.
 #[derive(Debug, Clone)]
 pub(super) struct ServiceFolders {
     /// The folder of database and store, readable only by the server's user.
@@ -35,7 +35,7 @@ impl ServiceFolders {
         Self::find_database(place)
     }
 
-    /// Finds the folder for commands that need only the database, which may be elsewhere.
+    /// Finds the folder of the database, for commands that need nothing else from it.
     pub(super) fn find_database(place: &StorageArguments) -> Result<Self> {
         if place.database.is_none() && !place.data.exists() {
             return Err(missing_error("data folder", &place.data));
@@ -75,7 +75,7 @@ impl ServiceFolders {
         })
     }
 
-    /// Returns the requested store, or the one in the data folder.
+    /// Opens the store that the options name, or the one in the data folder.
     pub(super) fn store(&self, place: &StorageArguments) -> Result<Store> {
         match &place.store {
             Some(address) => Store::bucket(address).with_context(|| format!("store {address}")),
@@ -101,14 +101,14 @@ impl ServiceFolders {
         self.data.join("work").join(worker)
     }
 
-    /// Opens the requested database, or the one in the data folder.
+    /// Opens the database that the options name, or the one in the data folder.
     pub(super) async fn open_database(&self, place: &StorageArguments) -> Result<(Database, Address)> {
         let address = self.database(place);
         let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
         Ok((database, address))
     }
 
-    /// Returns the requested database, or the one in the data folder.
+    /// Returns the address of the database that the options name, or the one in the data folder.
     pub(super) fn database(&self, place: &StorageArguments) -> Address {
         database(place, &self.data)
     }

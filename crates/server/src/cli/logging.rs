@@ -1,5 +1,5 @@
 //! The log, on standard error. Messages are constant, and variable parts are in fields. The log contains no secrets,
-//! because types that hold one do not show it.
+//! because types that contain a secret do not show it.
 use super::arguments::LogFormat;
 use tracing_subscriber::{Layer, filter::LevelFilter, fmt, layer::SubscriberExt, util::SubscriberInitExt};
 

@@ -33,7 +33,7 @@ const DAY_SECONDS: u64 = 24 * 3600;
 /// The number of bytes of a mebibyte.
 const MIB: u64 = 1 << 20;
 
-/// The file in the data folder with the server's public address.
+/// The name of the file in the data folder that contains the server's public address.
 const ADDRESS: &str = "address";
 
 /// The maximum time to wait for the grader's answer.
@@ -44,7 +44,7 @@ const CLEANUP_INTERVAL: Duration = Duration::from_secs(DAY_SECONDS / 4);
 
 pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     let stop = until_signalled()?;
-    // Listen first, so that a server that can't listen changes nothing.
+    // Listen before anything else, so that a server that can't listen changes nothing.
     let listener = tokio::net::TcpListener::bind(arguments.listen).await.with_context(|| {
         format!("cannot listen on {}; choose another address with --listen ADDRESS:PORT", arguments.listen)
     })?;
@@ -196,7 +196,7 @@ async fn run_grader(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
     Ok(said.stdout)
 }
 
-/// Updates the tables. A SQLite database with data is copied before.
+/// Updates the tables. A copy of a SQLite database with data is made first.
 async fn update_tables(database: &Database, folders: &ServiceFolders, address: &Address) -> Result<()> {
     let version = db::version(database).await?;
     if version > 0 && version < db::LATEST && matches!(address, Address::Sqlite(_)) {

@@ -1,4 +1,4 @@
-//! The address of the database, which is always printed without its password.
+//! The address of the database, which is printed only without its password.
 use std::{fmt, path::PathBuf, str::FromStr};
 
 /// A database's address as given: `sqlite:FILE` or `postgres://USER:PASSWORD@HOST/NAME`.
@@ -21,7 +21,7 @@ impl FromStr for Address {
             text.strip_prefix("sqlite://").or_else(|| text.strip_prefix("sqlite:")).filter(|file| !file.is_empty());
         match file {
             Some(file) => Ok(Self::Sqlite(file.into())),
-            // The text may hold a password, so the error does not repeat it.
+            // The text may contain a password, so the error does not repeat it.
             None => Err("a database must be sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME".to_owned()),
         }
     }
@@ -35,7 +35,7 @@ impl fmt::Display for Address {
                 // The password may contain an @; the host can't.
                 let rest = url.split_once("://").map_or("", |(_, rest)| rest);
                 let place = rest.rsplit_once('@').map_or(rest, |(_, place)| place);
-                // A query may contain `password=...`, too.
+                // The query may also contain the password, as `password=...`.
                 write!(f, "postgres://{}", place.split('?').next().unwrap_or_default())
             }
         }

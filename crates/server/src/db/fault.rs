@@ -7,10 +7,10 @@ pub enum DbError {
     /// The database can't be reached or is shutting down; a retry may succeed.
     #[error("the database can't be reached: {0}")]
     Unavailable(String),
-    /// Another transaction is in conflict; a retry may succeed.
+    /// A concurrent transaction conflicts; a retry may succeed.
     #[error("the database is busy: {0}")]
     Busy(String),
-    /// A similar row exists already; the statement's author knows which.
+    /// A row with the same key exists already. The statement's caller knows which row.
     #[error("it exists already: {0}")]
     Conflict(String),
     /// A statement is wrong, or a value has an unexpected form.
@@ -41,16 +41,16 @@ impl From<sqlx::Error> for DbError {
                 // SQLite's codes are numbers; the lower byte is the kind.
                 let kind = if code.len() < 5 { code.parse::<u32>().ok().map(|code| code & 0xff) } else { None };
                 match (kind, code.as_ref()) {
-                    // BUSY and LOCKED.
+                    // SQLITE_BUSY and SQLITE_LOCKED.
                     (Some(5 | 6), _) => Self::Busy(text),
-                    // READONLY, IOERR, FULL, CANTOPEN.
+                    // SQLITE_READONLY, SQLITE_IOERR, SQLITE_FULL and SQLITE_CANTOPEN.
                     (Some(8 | 10 | 13 | 14), _) => Self::Unavailable(text),
                     // PostgreSQL: serialization failure, deadlock, lock not available.
                     (None, "40001" | "40P01" | "55P03") => Self::Busy(text),
-                    // Read-only, for example during a failover; or a statement timeout.
+                    // PostgreSQL: the database is read-only, for example during a failover, or a statement timed out.
                     (None, "25006" | "57014") => Self::Unavailable(text),
-                    // Connection lost, shutting down, starting up; disk or memory full, too many connections; unusable
-                    // files; internal errors.
+                    // PostgreSQL: the connection was lost; the server is shutting down, starting up, or out of disk
+                    // space, memory or connections; a file is unusable; or an internal error occurred.
                     (None, code) if ["08", "53", "57P", "58", "XX"].iter().any(|class| code.starts_with(class)) => {
                         Self::Unavailable(text)
                     }

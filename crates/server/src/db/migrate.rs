@@ -56,7 +56,7 @@ pub enum MigrateError {
         /// The version of the database's tables.
         found: i64,
     },
-    /// A change differs from the applied one.
+    /// An applied change differs from the one in this program.
     #[error("change {number} ({name}) was applied with other contents: this program was built from changed sources")]
     Changed {
         /// The number of the change, from 1.
@@ -72,7 +72,7 @@ pub enum MigrateError {
 /// Returns the version of the tables; 0 for an empty database.
 ///
 /// # Errors
-/// When the database does not answer.
+/// Fails if the database does not answer.
 pub async fn version(database: &Database) -> Result<i64, DbError> {
     let mut transaction = database.read().await?;
     let there = match transaction.dialect() {
@@ -87,11 +87,11 @@ pub async fn version(database: &Database) -> Result<i64, DbError> {
     transaction.one("SELECT coalesce(max(number), 0) AS n FROM schema_change", values![]).await?.int("n")
 }
 
-/// Applies the missing changes and returns their number. Several servers may do so in parallel.
+/// Applies the missing changes and returns their number. Several servers may call this at the same time.
 ///
 /// # Errors
 ///
-/// When a newer program has used the database, or the database fails; nothing has changed then.
+/// Fails if a newer program has used the database, or the database fails; nothing has changed then.
 pub async fn migrate(database: &Database) -> Result<usize, MigrateError> {
     let mut transaction = database.begin().await?;
     if transaction.dialect() == Dialect::Postgres {

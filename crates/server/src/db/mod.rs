@@ -1,5 +1,5 @@
-//! The database: PostgreSQL or SQLite behind one type, with the same statements. It runs statements; the modules that
-//! use it write them.
+//! The database: PostgreSQL or SQLite behind one type, with the same statements. This module only runs statements; its
+//! callers write them.
 //!
 //! Every statement runs inside a transaction, and leaves nothing behind in the session, so that the service works
 //! behind a pooler that gives every transaction another connection (PgBouncer). All times are milliseconds since 1970
@@ -101,7 +101,7 @@ impl Database {
     ///
     /// # Errors
     ///
-    /// When the database can't be reached within half a minute.
+    /// Fails if the database can't be reached within half a minute.
     pub async fn open(address: &Address) -> Result<Self, DbError> {
         let turns = match address {
             // The writer's queue stays short, so that a request with priority waits for at most one other.
@@ -112,14 +112,14 @@ impl Database {
         let good = faults.clone();
         let engine = match address {
             Address::Sqlite(file) => {
-                // FULL: a confirmed commit survives a power cut.
+                // With `FULL`, a confirmed commit survives a power cut.
                 let options = SqliteConnectOptions::new()
                     .filename(file)
                     .create_if_missing(true)
                     .journal_mode(SqliteJournalMode::Wal)
                     .synchronous(SqliteSynchronous::Full)
                     .foreign_keys(true)
-                    // Overwrite removed rows.
+                    // Overwrite removed rows, so that their data cannot be recovered.
                     .pragma("secure_delete", "ON")
                     .busy_timeout(WAIT_LIMIT)
                     .disable_statement_logging();
@@ -153,8 +153,8 @@ impl Database {
         Ok(Self { engine, faults, is_outdated: Arc::default(), turns, goes_first: false })
     }
 
-    /// Returns the database with priority, for callers that other requests must not delay, such as workers, whose
-    /// leases expire. Grades are stored and waiting jobs are claimed even during many uploads.
+    /// Returns a handle to the same database with priority, for callers such as workers, whose leases expire. Grades
+    /// are stored and waiting jobs are claimed even during many uploads.
     #[must_use]
     pub fn first(&self) -> Self {
         Self { goes_first: true, ..self.clone() }
@@ -177,18 +177,18 @@ impl Database {
         }
     }
 
-    /// Begins a transaction that writes. It sees earlier commits, and has no effect unless [`Transaction::commit`]
-    /// succeeds.
+    /// Begins a transaction that writes. The transaction sees earlier commits, and has no effect unless
+    /// [`Transaction::commit`] succeeds.
     ///
     /// # Errors
     ///
-    /// When the database can't be reached, or is busy for half a minute.
+    /// Fails if the database can't be reached, or is busy for half a minute.
     pub async fn begin(&self) -> Result<Transaction, DbError> {
         if self.is_outdated.load(Ordering::Relaxed) {
             return Err(DbError::Unavailable("a newer program has changed its tables".to_owned()));
         }
         match &self.engine {
-            // A transaction that begins as a reader could not become the writer after another commit.
+            // A transaction that begins as a reader could not become the writer if another one has committed since.
             Engine::Sqlite { writer, .. } => {
                 self.limit_wait(Inner::Sqlite, || writer.begin_with("BEGIN IMMEDIATE"), true).await
             }
@@ -200,7 +200,7 @@ impl Database {
     ///
     /// # Errors
     ///
-    /// The errors of [`Database::begin`], at the latest after `patience`.
+    /// Fails like [`Database::begin`], after at most `patience`.
     pub async fn begin_within(&self, patience: Duration) -> Result<Transaction, DbError> {
         let begun = Instant::now();
         loop {
@@ -212,8 +212,8 @@ impl Database {
         }
     }
 
-    /// Returns whether the database answers and has no tables of a newer program. If it has, nothing is written from
-    /// then on.
+    /// Returns whether the database answers and has no tables of a newer program. If a newer program has changed the
+    /// tables, nothing is written from then on.
     pub async fn is_healthy(&self) -> bool {
         let version = version(self).await;
         if version.as_ref().is_ok_and(|version| *version > LATEST) {
@@ -226,7 +226,7 @@ impl Database {
     ///
     /// # Errors
     ///
-    /// When the database can't be reached.
+    /// Fails if the database can't be reached.
     pub async fn read(&self) -> Result<Transaction, DbError> {
         match &self.engine {
             Engine::Sqlite { readers, .. } => self.limit_wait(Inner::Sqlite, || readers.begin(), false).await,
@@ -256,7 +256,7 @@ impl Database {
     ///
     /// # Errors
     ///
-    /// When the file exists or can't be written, or the database is PostgreSQL.
+    /// Fails if the file exists or can't be written, or the database is PostgreSQL.
     pub async fn copy_to(&self, file: &std::path::Path) -> Result<(), DbError> {
         match &self.engine {
             Engine::Sqlite { readers, .. } => {

@@ -22,8 +22,8 @@ pub(super) fn parts(script: &str, dialect: Dialect) -> String {
 
 /// Renders the statement for an engine. `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of table
 /// definitions, and `{each}` are the rows of a JSON array that is a value, `wanted.value`. `{strpos}` gives the place
-/// of a text in another, `{quoted}` makes JSON of a text, and PostgreSQL numbers its placeholders. Statements hold no
-/// other braces or question marks: values are never part of a statement's text.
+/// of a text in another, `{quoted}` makes JSON of a text, and PostgreSQL numbers its placeholders. Statements contain
+/// no other braces or question marks: values are never part of a statement's text.
 pub(super) fn text(statement: &str, dialect: Dialect) -> String {
     let words: [(&str, &str); 11] = match dialect {
         Dialect::Sqlite => [

@@ -28,7 +28,7 @@ impl Faults {
         last.is_none_or(|last| last.elapsed() > age)
     }
 
-    /// Records a failure, unless it only says that all connections are in use.
+    /// Records a failure, unless it only means that all connections are in use.
     pub(super) fn note(&self, error: sqlx::Error) -> DbError {
         let is_of_pool = matches!(error, sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed);
         let error = DbError::from(error);
@@ -39,7 +39,7 @@ impl Faults {
     }
 }
 
-/// A turn, if one was needed.
+/// A request's turn; `None` if the request has priority and needs no turn.
 pub(super) type Turn = Option<OwnedSemaphorePermit>;
 
 #[derive(Debug)]
@@ -79,7 +79,7 @@ impl Transaction {
     /// Runs a statement and returns the number of rows that it changed.
     ///
     /// # Errors
-    /// An error of the database.
+    /// Fails if the database fails.
     pub async fn execute(&mut self, statement: &'static str, values: &[Value]) -> Result<u64, DbError> {
         let text = statement::text(statement, self.dialect());
         let done = match &mut self.inner {
@@ -96,7 +96,7 @@ impl Transaction {
     /// Runs a statement and returns its rows.
     ///
     /// # Errors
-    /// An error of the database.
+    /// Fails if the database fails.
     pub async fn rows(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<Row>, DbError> {
         let text = statement::text(statement, self.dialect());
         let rows = match &mut self.inner {
@@ -116,7 +116,7 @@ impl Transaction {
     ///
     /// # Errors
     ///
-    /// An error of the database or of a row.
+    /// Fails if the database fails, or a row cannot be read.
     pub async fn all<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Vec<T>, DbError> {
         self.rows(statement, values).await?.iter().map(T::from_row).collect()
     }
@@ -125,7 +125,7 @@ impl Transaction {
     ///
     /// # Errors
     ///
-    /// An error of the database or of the row.
+    /// Fails if the database fails, or the row cannot be read.
     pub async fn find<T: FromRow>(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<T>, DbError> {
         self.row(statement, values).await?.as_ref().map(T::from_row).transpose()
     }
@@ -134,7 +134,7 @@ impl Transaction {
     ///
     /// # Errors
     ///
-    /// An error of the database.
+    /// Fails if the database fails.
     pub async fn row(&mut self, statement: &'static str, values: &[Value]) -> Result<Option<Row>, DbError> {
         Ok(self.rows(statement, values).await?.into_iter().next())
     }
@@ -143,7 +143,7 @@ impl Transaction {
     ///
     /// # Errors
     ///
-    /// An error of the database, or no row.
+    /// Fails if the database fails or returns no row.
     pub async fn one(&mut self, statement: &'static str, values: &[Value]) -> Result<Row, DbError> {
         self.row(statement, values).await?.ok_or_else(|| DbError::Other(format!("no row: {statement}")))
     }
@@ -159,11 +159,11 @@ impl Transaction {
         Ok(())
     }
 
-    /// Commits the transaction. After an error the result is uncertain, and must be queried.
+    /// Commits the transaction. After an error it is unknown whether the transaction was committed.
     ///
     /// # Errors
     ///
-    /// An error of the database.
+    /// Fails if the database fails.
     pub async fn commit(self) -> Result<(), DbError> {
         let committed = match self.inner {
             Inner::Sqlite(inner) => inner.commit().await,

@@ -1,5 +1,5 @@
-//! The values of statements and of their answers. Two types are sufficient: integers (numbers, times, booleans) and
-//! text (names, digests, JSON). Points are text, too, so that they stay exact.
+//! The values of statements and of their answers. There are two types: integers (numbers, times, booleans) and text
+//! (names, digests, JSON). Points are text, too, so that they stay exact.
 use super::DbError;
 use sqlx::{Row as _, postgres::PgRow, sqlite::SqliteRow};
 
@@ -57,7 +57,7 @@ impl Row {
     ///
     /// # Errors
     ///
-    /// When the column is NULL or has another type.
+    /// Fails if the column is NULL or has another type.
     pub fn int(&self, column: &str) -> Result<i64, DbError> {
         self.maybe_int(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
     }
@@ -66,7 +66,7 @@ impl Row {
     ///
     /// # Errors
     ///
-    /// When the column has another type.
+    /// Fails if the column has another type.
     pub fn maybe_int(&self, column: &str) -> Result<Option<i64>, DbError> {
         Ok(match &self.0 {
             Inner::Sqlite(row) => row.try_get(column)?,
@@ -78,7 +78,7 @@ impl Row {
     ///
     /// # Errors
     ///
-    /// When the column is NULL or has another type.
+    /// Fails if the column is NULL or has another type.
     pub fn text(&self, column: &str) -> Result<String, DbError> {
         self.maybe_text(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
     }
@@ -87,7 +87,7 @@ impl Row {
     ///
     /// # Errors
     ///
-    /// When the column has another type.
+    /// Fails if the column has another type.
     pub fn maybe_text(&self, column: &str) -> Result<Option<String>, DbError> {
         Ok(match &self.0 {
             Inner::Sqlite(row) => row.try_get(column)?,
@@ -99,7 +99,7 @@ impl Row {
     ///
     /// # Errors
     ///
-    /// When the column has another type.
+    /// Fails if the column has another type.
     pub fn flag(&self, column: &str) -> Result<bool, DbError> {
         Ok(self.int(column)? != 0)
     }
@@ -111,7 +111,7 @@ pub trait Column: Sized {
     ///
     /// # Errors
     ///
-    /// When the column has another type.
+    /// Fails if the column has another type.
     fn read(row: &Row, column: &str) -> Result<Self, DbError>;
 }
 
@@ -139,7 +139,7 @@ pub trait FromRow: Sized {
     ///
     /// # Errors
     ///
-    /// When a column is missing or has another type.
+    /// Fails if a column is missing or has another type.
     fn from_row(row: &Row) -> Result<Self, DbError>;
 }
 

@@ -1,4 +1,5 @@
-//! Numbers for monitors, which are counted by indexes. Simultaneous requests share one answer and one connection.
+//! The numbers for monitors. The database counts them with indexes. Simultaneous requests share one answer and one
+//! connection.
 use crate::{
     db::{Database, DbError},
     health,
@@ -12,12 +13,12 @@ use tokio::sync::Mutex;
 /// The time for which an answer is reused.
 const MAX_AGE: Duration = Duration::from_secs(1);
 
-/// The last answer.
+/// The latest numbers for monitors, with the time at which they were read.
 #[derive(Debug, Default)]
 pub struct Counts(Mutex<Option<(Instant, Metrics)>>);
 
 impl Counts {
-    /// Returns the present numbers, or those of a moment ago.
+    /// Returns the present numbers, or those of at most a second ago.
     pub(super) async fn read(&self, database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
         let mut last = self.0.lock().await;
         if let Some((at, metrics)) = last.as_ref()
@@ -34,13 +35,14 @@ impl Counts {
 async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
     let mut transaction = database.read().await?;
     let mut metrics = Metrics::default();
-    // Numbers are assigned only once, even if rows are removed.
+    // Submission numbers are assigned only once, even if rows are removed, so the highest number
+    // counts all submissions so far.
     let statement = "SELECT (SELECT coalesce(max(id), 0) FROM submission) AS submissions,
         (SELECT coalesce(max(id), 0) FROM result) AS results";
     let row = transaction.one(statement, values![]).await?;
     metrics.submissions = row.int("submissions")?;
     let mut graded = row.int("results")?;
-    // These results are rare, and each job that was given up has a result, too.
+    // These events are rare. A job that was given up has a result, too, but was not graded.
     for kind in ["failed try", "late answer", "buried"] {
         let n = transaction.one("SELECT count(*) AS n FROM event WHERE kind = ?", values![kind]).await?.int("n")?;
         graded -= if kind == "buried" { n } else { 0 };

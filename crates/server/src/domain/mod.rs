@@ -1,5 +1,5 @@
 //! Roles and their rights. Requests reach the database only through a role, and each offers only what it allows. The
-//! roles are a [`Visitor`] who is not signed in, a [`Person`] who is, a [`Member`] of a course with their own
+//! roles are a [`Visitor`] who is not signed in, a [`Person`] who is signed in, a [`Member`] of a course with their own
 //! submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with its jobs. The type that a handler takes names
 //! the role that it serves; a handler without such a type cannot read data.
 
@@ -51,7 +51,7 @@ use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
 use submissions::standings::SharedStandings;
 use tokio::sync::OnceCell;
 
-/// The parts of the service. Only this module uses those that hold data; all modules may read the others.
+/// The parts of the service. Only this module uses the parts that contain data; all modules may read the others.
 #[derive(Debug, Clone)]
 pub struct App(Arc<Parts>);
 
@@ -91,7 +91,7 @@ pub struct Options {
     pub low_water: u64,
     /// The public address of the service.
     pub public: String,
-    /// The source of a client's address: the other end of the connection, or a header of the proxy.
+    /// The place where a client's address is found: the connection itself, or a header of the proxy.
     pub client_address: Option<ClientIpSource>,
     /// The maximum pause within a request's body.
     pub patience: Duration,
@@ -163,7 +163,7 @@ impl App {
     ///
     /// # Errors
     ///
-    /// When the disk is nearly full.
+    /// Fails if the disk is nearly full.
     pub fn ensure_room(&self) -> Result<(), crate::problem::Problem> {
         self.0.storage.ensure_room()
     }

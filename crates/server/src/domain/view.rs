@@ -82,7 +82,7 @@ pub struct Submission {
     pub size: i64,
     /// The time of the upload, in milliseconds since 1970.
     pub created_at: i64,
-    /// The time when its bytes and reports were removed; the grade and its history stay.
+    /// The time when the upload and the reports were removed; the grade and its history stay.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub removed_at: Option<i64>,
     /// The submission's state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `canceled`.
@@ -93,7 +93,7 @@ pub struct Submission {
     /// The expected number of seconds until the grade, while the submission waits and there are workers.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_seconds: Option<u64>,
-    /// Whether it waits and no worker is connected that could grade it.
+    /// Whether the submission waits although no worker is connected that could grade it.
     #[serde(default, skip_serializing_if = "std::ops::Not::not")]
     pub lacks_worker: bool,
     /// The progress of the grading, while it runs.
@@ -129,7 +129,7 @@ pub struct Mark {
     /// The points that count instead of the grader's.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<String>,
-    /// The reason for other points, or another comment.
+    /// The reason for the points, or a comment on the submission.
     pub comment: String,
     /// The author of the mark.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -190,7 +190,7 @@ pub struct History {
     pub grader: String,
     /// The rules, the suite and the upload, as one line.
     pub by_what: String,
-    /// The complete task (rules, suite, digests), by which the grading can be repeated. For staff.
+    /// The complete task (rules, suite, digests), with which the grading can be repeated. Only for staff.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub task: String,
 }
@@ -267,7 +267,7 @@ pub struct QueueWorker {
     pub running: i64,
     /// The time of the last sign of life, in milliseconds since 1970.
     pub seen_at: i64,
-    /// The time since which the worker takes no jobs because it can't grade, in milliseconds since 1970.
+    /// The time from which the worker claims no jobs because it can't grade, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_since: Option<i64>,
     /// The number of the worker's consecutive faults.
@@ -357,7 +357,7 @@ fn read_progress(row: &Row) -> Result<Option<Progress>, DbError> {
 }
 
 impl Submission {
-    /// Replaces the grader's points by those from staff, which lose nothing for being late.
+    /// Replaces the grader's points by those that staff set, which are not reduced for being late.
     pub(super) fn apply_staff_points(&mut self) {
         let Some(grade) = &mut self.grade else { return };
         let given = self.mark.as_ref().and_then(|mark| mark.points.clone());
@@ -429,7 +429,7 @@ pub(super) async fn submission(
     Ok(Some(submission))
 }
 
-/// Returns the history of a grade; `withheld` leaves out hidden groups. Only staff sees names of the course's own
+/// Returns the history of a grade; `withheld` leaves out hidden groups. Only staff see names of the course's own
 /// suites.
 pub(super) async fn history(
     transaction: &mut Transaction,
@@ -463,7 +463,7 @@ pub(super) async fn history(
         };
         let ((old_code, old_points), (new_code, new_points)) = (old, new);
         let old_points = given.clone().or(old_points);
-        // Points from staff count instead of the grader's until staff removes them.
+        // The points that staff set count instead of the grader's until staff remove them.
         if row.maybe_int("old_result")? == Some(row.int("result")?) {
             given = row.maybe_text("given")?;
         }
@@ -526,7 +526,7 @@ pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Re
 
 /// Returns the queue in the form for staff.
 pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Queue, DbError> {
-    // Each count has its own index, because few jobs are of each kind.
+    // Each count has its own small index, because few jobs have each state.
     let statement = "SELECT
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS waiting,
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,

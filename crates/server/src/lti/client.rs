@@ -39,7 +39,7 @@ const RENEWAL_MARGIN: Duration = Duration::from_secs(30);
 /// The maximum wait that a platform can request.
 const MAX_WAIT: Duration = Duration::from_secs(3600);
 
-/// The reason why a platform did not fulfill a request.
+/// The reason why a request to a platform failed.
 #[derive(Debug, Clone, Error)]
 pub enum ServiceFault {
     /// The platform does not answer, or is overloaded; a later request may succeed.
@@ -86,7 +86,7 @@ impl ServiceAnswer {
 
     /// Returns the answer if it reports success.
     pub(super) fn ensure_success(self) -> Result<Self, ServiceFault> {
-        // The beginning of the platform's text, on one line, for people.
+        // The message contains the beginning of the platform's text, on one line.
         let said: String = String::from_utf8_lossy(&self.body).chars().take(200).collect();
         let said: String = said.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
         let text = format!("{} {said}", self.status);
@@ -137,7 +137,7 @@ impl Client {
         Self { agent: net::agent(over_http, ANSWER_TIMEOUT), over_http, tokens: Mutex::default() }
     }
 
-    /// Reads a file that a platform publishes.
+    /// Downloads a public file of a platform.
     pub(super) async fn get(&self, platform: &Platform, address: &str) -> Result<ServiceAnswer, ServiceFault> {
         let ask = Ask { address: address.to_owned(), accept: "application/json", body: None };
         self.send(platform, &ask, None).await?.ensure_success()

@@ -41,7 +41,7 @@ struct Rs256Verifier {
 
 impl Verifier<Vec<u8>> for Rs256Verifier {
     fn verify(&self, message: &[u8], signed: &Vec<u8>) -> Result<(), signature::Error> {
-        // Reject keys below 2048 bits.
+        // Keys below 2048 bits are rejected.
         RsaPublicKeyComponents { n: &self.n, e: &self.e }
             .verify(&RSA_PKCS1_2048_8192_SHA256, message, signed)
             .map_err(|_| signature::Error::new())

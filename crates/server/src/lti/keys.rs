@@ -29,11 +29,11 @@ impl SigningKey {
     }
 }
 
-/// Creates a key, which signs after an hour, or immediately if it is the first.
+/// Creates a key. It signs after an hour, or immediately if it is the first one.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn new_key(database: &Database) -> Result<(), DbError> {
     let made = tokio::task::spawn_blocking(generate).await.map_err(|error| DbError::Other(error.to_string()))?;
     let (private, modulus, exponent) = made?;
@@ -41,7 +41,7 @@ pub async fn new_key(database: &Database) -> Result<(), DbError> {
     let statement =
         "INSERT INTO platform_key (kid, private_key, modulus, exponent, created_at) VALUES (?, ?, ?, ?, {now})";
     transaction.execute(statement, values![secret::random_hex(), private, modulus, exponent]).await?;
-    // Keep the new key, and the key that signs at present.
+    // Keep only the new key, and the key that signs at present.
     let statement = "UPDATE platform_key SET retired_at = {now} WHERE retired_at IS NULL
         AND id NOT IN (SELECT id FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC LIMIT 2)";
     transaction.execute(statement, values![]).await?;
@@ -87,7 +87,7 @@ pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbErr
 /// Returns the public part of the keys: a JSON Web Key Set (RFC 7517).
 ///
 /// # Errors
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn public_keys(database: &Database) -> Result<Value, DbError> {
     let mut keys = Vec::new();
     for row in &all(database).await? {

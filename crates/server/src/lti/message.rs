@@ -41,7 +41,7 @@ pub enum Rejection {
     /// The message comes from an unregistered deployment.
     #[error("deployment {0} is not registered; an administrator can add it")]
     Deployment(String),
-    /// A part is missing or not understood.
+    /// A part of the message is missing or invalid.
     #[error("the message is not understood: {0}")]
     Content(String),
 }
@@ -65,7 +65,7 @@ impl LtiRole {
     }
 }
 
-/// A person in a platform's description.
+/// A person, as a platform describes them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LtiPerson {
     /// The platform's identifier of the person, which never changes.
@@ -78,7 +78,7 @@ pub struct LtiPerson {
     pub email: Option<String>,
 }
 
-/// A person, and the place that the person comes from.
+/// A message about a person who comes from a platform, and the place that the person comes from.
 #[derive(Debug, Clone)]
 pub struct Message {
     /// The person.
@@ -319,7 +319,7 @@ pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
 /// Returns the answer to a request for a link as a signed token, with one link to an assignment (DL 4.5).
 ///
 /// # Errors
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn deep_linking_response(
     database: &Database,
     platform: &Platform,

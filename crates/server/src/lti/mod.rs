@@ -43,12 +43,12 @@ impl Default for Lti {
 }
 
 impl Lti {
-    /// Creates the state. `over_http` allows platforms without TLS, for trials on one machine.
+    /// Creates the state. `over_http` allows platforms without TLS, for tests on one machine.
     pub fn new(over_http: bool) -> Self {
         Self { client: Client::new(over_http), trust: Trust::default() }
     }
 
-    /// Returns whether platforms and this service may be used without TLS.
+    /// Returns whether platforms and this service may be used over plain HTTP.
     pub fn over_http(&self) -> bool {
         self.client.over_http
     }
@@ -57,7 +57,7 @@ impl Lti {
     ///
     /// # Errors
     ///
-    /// The reason why the message is rejected.
+    /// Fails if the message is rejected, with the reason.
     pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Rejection> {
         let kid = message::key_of(token)?;
         let key = self.trust.key(&self.client, platform, &kid).await?;

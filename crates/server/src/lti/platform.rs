@@ -31,7 +31,8 @@ pub struct PlatformWish {
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Word>)]
     pub audience: Option<String>,
-    /// The deployments from which people may come. The page of a rejected sign-in shows the number of a new one.
+    /// The deployments from which people may come. If a sign-in from a new deployment is rejected, the page shows the
+    /// deployment's number.
     #[schema(value_type = Vec<Word>, min_items = 1, max_items = 1000)]
     pub deployments: Vec<String>,
     /// Further hosts of the platform's services, in addition to those of the other addresses.
@@ -53,7 +54,7 @@ pub struct Platform {
     pub settings: PlatformWish,
 }
 
-/// Returns an address that may be called: HTTPS with a host, and without hidden parts.
+/// Parses an address that this service may call: HTTPS with a host, and no user name, password or fragment.
 pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     let url = Url::parse(text).ok()?;
     let secure = url.scheme() == "https" || (over_http && url.scheme() == "http");
@@ -74,7 +75,7 @@ impl PlatformWish {
     ///
     /// # Errors
     ///
-    /// The first invalid value.
+    /// Fails at the first invalid value.
     pub fn check(&self, over_http: bool) -> Result<(), Problem> {
         let is_word = |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {

@@ -35,7 +35,7 @@ struct Member {
 ///
 /// # Errors
 ///
-/// The platform's error, or the fault of its answer; no members are used then.
+/// Fails if the platform reports an error, or its answer is invalid; no members are returned then.
 pub async fn fetch(
     client: &Client,
     database: &Database,

@@ -1,8 +1,8 @@
 //! Scores of people's work on assignments, for platforms (AGS 3.4).
 //!
-//! Every change of a grade puts a job into the queue, in the same transaction. The job holds no score: the score is
-//! read when it is sent, so that many changes are one message. Each content has a time, which only grows and is the
-//! same in every repetition; a platform keeps the newest content. A message that arrives twice, or late, therefore
+//! Every change of a grade puts a job into the queue, in the same transaction. The job contains no score: the score is
+//! read when it is sent, so that many changes need only one message. Each score has a time, which only grows and is the
+//! same if the score is sent again; a platform keeps the newest score. A message that arrives twice, or late, therefore
 //! changes nothing.
 use super::Platform;
 use crate::{
@@ -28,8 +28,7 @@ pub(super) struct Order {
     pub(super) again: bool,
 }
 
-/// Selects the links of platforms that receive students' scores, with the students; the argument is the rest of the
-/// statement.
+/// Selects links of platforms and the students whose scores they receive; the argument is the rest of the statement.
 macro_rules! orders {
     ($which:literal) => {
         concat!(
@@ -150,9 +149,9 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
     })))
 }
 
-/// Returns the score of a person's work on an assignment: the most points of all submissions. Until there are points,
-/// the platform is informed that they follow, and if the grader failed, that staff must check the work; it never
-/// receives an undeserved zero. Hidden, unpublished groups are left out, because platforms show every score.
+/// Returns the score of a person's work on an assignment: the most points of all submissions. Before there are points,
+/// the platform receives the state `Pending`, or `PendingManual` if the grader failed; it never receives an
+/// undeserved zero. Hidden, unpublished groups are left out, because platforms show every score.
 async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown,
            mark.points AS mark, submission.created_at, assignment.settings, extension.due_at AS own_due FROM submission
@@ -219,7 +218,7 @@ pub(super) async fn note_rejection(transaction: &mut Transaction, order: Order, 
     transaction.execute(statement, values![fault, order.link, order.account]).await.map(drop)
 }
 
-/// Records that a job was tried too often; returns whether it was a job of this lane.
+/// Records that a job was tried too often; returns whether it was a job that sends a score.
 pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault: &str) -> Result<bool, DbError> {
     let Ok(order) = serde_json::from_str::<Order>(payload) else { return Ok(false) };
     note_rejection(transaction, order, fault).await?;
@@ -247,8 +246,8 @@ pub(super) enum ColumnState {
     Claimed,
 }
 
-/// Returns the state of the column of a link; a caller that receives [`ColumnState::Unclaimed`] must soon call
-/// [`column_made`].
+/// Returns the state of the column of a link; a caller that receives [`ColumnState::Unclaimed`] must create the column
+/// soon.
 pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<ColumnState, DbError> {
     let statement = "UPDATE platform_link SET making_until = {now} + ?
         WHERE id = ? AND line_item IS NULL

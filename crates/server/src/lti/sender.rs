@@ -28,13 +28,14 @@ const MAX_OUTAGE_TRIES: u32 = 32;
 /// The number of tries while a platform rejects scores, because its configuration may be corrected.
 const MAX_REJECTED_TRIES: u32 = 6;
 
-/// The maximum duration of a message.
+/// The maximum duration of sending a score.
 const MAX_DURATION: Duration = Duration::from_secs(600);
 
 /// The maximum wait between two tries.
 const MAX_WAIT: Duration = Duration::from_secs(3600);
 
-/// The time in which no other caller creates a column, in milliseconds; others check for it at the same interval.
+/// The time for which one caller may create a column while others wait, in milliseconds. The others check at the same
+/// interval.
 const COLUMN_CREATION_TIME: i64 = 90_000;
 const MAX_POLLS: u32 = 100;
 const POLL_INTERVAL: Duration = Duration::from_millis(250);
@@ -43,7 +44,7 @@ const POLL_INTERVAL: Duration = Duration::from_millis(250);
 const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", token: None };
 
 /// Sends scores until `stop` is canceled. If recording a sent score fails, it is sent again, which changes nothing.
-/// `look` finds jobs of silent servers; it is called before each claim.
+/// `look` is called before each claim, and finds jobs of servers that stopped responding.
 pub async fn run<F: Future<Output = Result<(), DbError>>>(
     database: Database,
     notifier: Notifier,
@@ -86,7 +87,7 @@ async fn take<F: Future<Output = Result<(), DbError>>>(
     room: &Arc<Semaphore>,
     look: impl Fn() -> F,
 ) -> Result<Option<(Claim, tokio::sync::OwnedSemaphorePermit)>, DbError> {
-    // A server without platforms makes no write transactions for them.
+    // A server without platforms needs no write transactions here.
     if !queue::is_due(&mut database.read().await?, Lane::Passback).await? {
         return Ok(None);
     }
@@ -114,7 +115,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
     let mut transaction = database.begin().await?;
     match sent {
         Ok(parcel) => {
-            // A sender that lost the lease sends the same score as the next one, with the same time.
+            // If the lease was lost, the next sender sends the same score with the same time, which changes nothing.
             if queue::complete(&mut transaction, &claim.lease).await? == Completion::Done
                 && let Some(parcel) = parcel
             {
@@ -185,7 +186,7 @@ struct LineItem {
     link: Option<String>,
 }
 
-/// Returns the column of a link that has none yet. One message finds or creates it, and the others wait.
+/// Returns the column of a link that has none yet. One caller finds or creates it, and the others wait.
 async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<String, ServiceFault> {
     let Some(container) = &parcel.line_items else {
         return Err(ServiceFault::Refused("its grade book has no column for this link".to_owned()));

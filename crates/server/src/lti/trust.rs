@@ -11,10 +11,10 @@ use std::{
 /// The time for which keys are used without reading them again.
 const KEY_LIFETIME: Duration = Duration::from_secs(3600);
 
-/// The time for which keys are used if the platform does not answer.
+/// The time for which known keys are still used if the platform does not answer.
 const STALE_LIFETIME: Duration = Duration::from_secs(24 * 3600);
 
-/// The pause between two requests because of unknown keys, which strangers can name freely.
+/// The minimum pause between two requests for unknown keys, because strangers can name any key.
 const MIN_PAUSE: Duration = Duration::from_secs(5);
 
 /// The keys of platforms, by the platform's number.

@@ -14,13 +14,13 @@ pub struct Claimant<'a> {
     pub token: Option<i64>,
 }
 
-/// Claims the next job, if there is one. A job on which this worker failed last is left to others for a third of a
-/// lease, because the worker may be at fault. Two workers never get the same job: the row is locked, and skipped by
+/// Claims the next job, if there is one. A job on which this worker failed last is left to other workers for a third of
+/// a lease, because this worker may be at fault. Two workers never get the same job: the row is locked, and skipped by
 /// others, until the caller commits.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn claim(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -44,12 +44,12 @@ pub async fn claim(
     Ok(Some(read_row!(row => Claim { submission, payload, failures, deaths; lease })))
 }
 
-/// Returns whether a job in a lane may be due: a waiting one, or a held one whose lease may have expired. This needs
+/// Returns whether a job in a lane may be due: a waiting job, or a running one whose lease may have expired. This needs
 /// only a read transaction.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn is_due(transaction: &mut Transaction, lane: Lane) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE lane = ? AND (
            (state = 'waiting' AND run_after <= {now}) OR (state = 'running' AND lease_until < {now})

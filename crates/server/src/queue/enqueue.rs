@@ -1,17 +1,17 @@
 //! Puts jobs into the queue, with their ranks.
 //!
 //! A job's **rank** is a time by which jobs are ordered. For the first waiting job of a student it is the present; each
-//! further one is later by [`Turn::Student`]'s spacing, so that twenty uploads of one student do not delay another's
-//! first. Jobs of a regrade come later by a head start for uploads, and then one by one. Ranks never change, so only a
-//! bounded number of other jobs can pass a waiting job. No aging is needed, and the position of a job in the queue is a
-//! count.
+//! further one is later by [`Turn::Student`]'s spacing, so that twenty uploads of one student do not delay another
+//! student's first upload. Jobs of a regrade get a later rank than uploads of the same time, and increasing ranks among
+//! themselves. Ranks never change, so only a bounded number of other jobs can pass a waiting job. No aging is needed,
+//! and the position of a job in the queue is a count.
 use super::Lane;
 use crate::{
     db::{DbError, Transaction},
     values,
 };
 
-/// The owner of the turn that a job takes.
+/// The owner of a job, by whom jobs take turns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turn {
     /// A student with an upload; the value is the account.
@@ -68,7 +68,7 @@ pub struct NewJob<'a> {
     pub submission: Option<i64>,
     /// The regrade of the job.
     pub campaign: Option<i64>,
-    /// The owner of the turn that the job takes.
+    /// The owner of the job.
     pub turn: Turn,
     /// The task, in the form for the worker.
     pub payload: &'a str,
@@ -78,7 +78,7 @@ pub struct NewJob<'a> {
 /// [`super::Notifier::commit`].
 ///
 /// # Errors
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<i64, DbError> {
     let key = job.turn.key();
     let rank = job.turn.next(transaction).await?;
@@ -91,11 +91,12 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
     row.int("id")
 }
 
-/// Returns whether a job of this owner waits until the caller's transaction ends, so that no further one is needed.
+/// Returns whether a job of this owner is waiting and stays so until the caller's transaction ends. Then no further job
+/// is needed.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn waits(transaction: &mut Transaction, turn: Turn) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE fair_key = ? AND state = 'waiting' LIMIT 1 {for update}";
     let row = transaction.row(statement, values![turn.key()]).await?;

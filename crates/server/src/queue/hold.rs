@@ -1,4 +1,4 @@
-//! The messages of a lease's holder. Each counts only while the job runs under this lease.
+//! The reports of a worker that has a lease. Each counts only while the job runs under this lease.
 use super::{Lease, MAX_PLATFORM_WAIT, QueuePolicy, millis};
 use crate::{
     db::{DbError, Row, Transaction},
@@ -11,9 +11,9 @@ use utoipa::ToSchema;
 /// The result of reporting a job as finished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completion {
-    /// The job is finished; the caller writes its result in the same transaction.
+    /// The job is finished, and the caller must write its result in the same transaction.
     Done,
-    /// The job was finished under the same lease before; the earlier answer was lost.
+    /// The job was already finished under the same lease, but the worker did not receive the answer.
     Repeated,
     /// The lease was lost, so nothing may be written.
     Late,
@@ -41,12 +41,12 @@ pub struct Progress {
     pub all: u32,
 }
 
-/// Extends a lease, up to a maximum age of the claim, and stores the holder's progress, if it reports one. Returns
-/// false if the lease was lost, so that the work is useless.
+/// Extends a lease, up to a maximum age of the claim, and stores the worker's progress, if it is reported. Returns
+/// `false` if the lease was lost; the worker should then stop.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn renew(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -62,11 +62,11 @@ pub async fn renew(
     Ok(transaction.execute(statement, values).await? > 0)
 }
 
-/// Returns the task for the holder of a lease; `None` if the lease was lost.
+/// Returns the task of a leased job; `None` if the lease was lost.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Option<String>, DbError> {
     let statement = "SELECT payload FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
     let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
@@ -77,9 +77,9 @@ pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Opt
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Completion, DbError> {
-    // The key stays, so that a repeated answer is recognized.
+    // The key stays, so that a repeated report is recognized.
     let statement = "UPDATE job SET state = 'done', finished_at = {now}, lease_until = NULL
         WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
     let changed = transaction.execute(statement, values![lease.job, lease.attempt, &lease.key]).await?;
@@ -91,11 +91,11 @@ pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Co
     Ok(if same.is_some() { Completion::Repeated } else { Completion::Late })
 }
 
-/// Returns a job without counting a failure, because its worker must stop. Returns false if the lease was lost.
+/// Returns a job without counting a failure, because its worker must stop. Returns `false` if the lease was lost.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<bool, DbError> {
     let statement =
         "UPDATE job SET state = 'waiting', run_after = {now}, worker = NULL, lease_key = NULL, lease_until = NULL
@@ -104,11 +104,11 @@ pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<boo
     Ok(changed > 0)
 }
 
-/// Records that a try failed, with the reason. The next one comes after `least` at the earliest.
+/// Records that a try failed, with the reason. The next try begins after `least` at the earliest.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn fail(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -136,7 +136,7 @@ struct Loss<'a> {
     fault: &'a str,
 }
 
-/// Records that the worker of a job died, or may have; `row`, which this transaction has locked, has the counts.
+/// Records that the worker of a job was lost. This transaction has locked `row`, which contains the job's counts.
 pub(super) async fn die(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -148,7 +148,7 @@ pub(super) async fn die(
     lose(transaction, loss, deaths >= policy.max_deaths()).await
 }
 
-/// Buries a job after its last try, or lets it wait again.
+/// Gives a job up after its last try, or lets it wait again.
 async fn lose(transaction: &mut Transaction, loss: Loss<'_>, is_last: bool) -> Result<Failure, DbError> {
     let Loss { job, failures, deaths, wait, fault } = loss;
     if is_last {

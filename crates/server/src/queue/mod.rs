@@ -1,13 +1,12 @@
 //! The queue of jobs, as statements within the caller's transaction: a job is enqueued together with its upload, and
 //! finished together with its result.
 //!
-//! A worker **claims** a job and holds it under a lease, which it **renews**; it **finishes** it, gives it back
-//! (**releases**) or reports that it **failed**. Every claim has a number, the attempt, and a key that only the worker
-//! knows. Every message of a worker is checked against both, so that a worker without a valid lease changes nothing. A
-//! job that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it is **buried**:
-//! staff must check it. The death or silence of a worker does not count as a failure of the job. Only a job whose
-//! workers died far more often than it may fail is buried, too. The modules that use the queue define the jobs and
-//! their results.
+//! A worker **claims** a job for the time of a lease, which the worker **renews**. The worker then **finishes** the
+//! job, gives it back (**releases** it) or reports that it **failed**. Every claim has a number, the attempt, and a key
+//! that only the worker knows. Every message of a worker must contain both, so that a worker without a valid lease
+//! changes nothing. A job that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it
+//! is **buried**: staff must check it. The loss of a worker does not count as a failure of the job. However, a job
+//! whose workers were lost very often is buried, too. The modules that use the queue define the jobs and their results.
 
 mod claim;
 mod enqueue;
@@ -53,7 +52,7 @@ const MAX_PLATFORM_WAIT: Duration = Duration::from_secs(86_400);
 /// The time limits and the numbers of tries in the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct QueuePolicy {
-    /// The time for which a worker may be silent.
+    /// The maximum time between two reports of a worker.
     pub lease: Duration,
     /// The number of failures after which a job is buried.
     pub max_failures: u32,
@@ -85,19 +84,19 @@ impl QueuePolicy {
         self.lease / 8
     }
 
-    /// Returns the gap between two searches for expired leases after which the database counts as having been
-    /// unavailable; workers could not renew leases during it.
+    /// Returns the gap between two searches for expired leases from which the database counts as having been
+    /// unavailable, so that workers could not renew leases.
     fn outage(&self) -> Duration {
         self.lease / 2
     }
 
-    /// Returns the maximum number of times that a job's worker may die. It is far more than a job may fail, because the
-    /// crash loop of a server is rarely the job's fault.
+    /// Returns how often the worker of a job may be lost. The limit is far above that for failures, because the job
+    /// rarely causes a server's crash loop.
     fn max_deaths(&self) -> i64 {
         8 * i64::from(self.max_failures)
     }
 
-    /// Returns the wait of a job after its worker died, which is short because a job is rarely the cause.
+    /// Returns how long a job waits after its worker was lost. The wait is short, because the job is rarely the cause.
     fn wait_after_death(&self, deaths: i64) -> Duration {
         self.first_wait * u32::try_from(deaths).unwrap_or(0).clamp(1, 10)
     }
@@ -108,7 +107,7 @@ impl QueuePolicy {
         self.first_wait.saturating_mul(4_u32.saturating_pow(steps)).min(self.longest_wait)
     }
 
-    /// Returns a random wait, so that jobs that failed together do not return together.
+    /// Returns a random wait, so that jobs that failed at the same time do not retry at the same time.
     fn retry_delay(&self, failures: i64) -> Duration {
         let longest = self.longest(failures);
         longest - longest / 4 * secret::random_byte().into() / 255
@@ -124,7 +123,7 @@ pub struct Lease {
     /// The number of the claim, from 1.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     pub attempt: i64,
-    /// The secret that only the claimant knows.
+    /// A secret that only the worker knows.
     #[schema(max_length = 200)]
     pub key: String,
 }
@@ -140,7 +139,7 @@ pub struct Claim {
     pub payload: String,
     /// The number of the job's earlier failures.
     pub failures: i64,
-    /// The number of times that the job's worker died earlier.
+    /// The number of times that a worker of the job was lost.
     pub deaths: i64,
 }
 

@@ -1,5 +1,5 @@
-//! Notifies waiting tasks of this process to check immediately. It only saves time: a notification means that something
-//! may have changed, and a task in another process checks a little later.
+//! Notifies waiting tasks of this process to check immediately. Notifications only save time: without one, as in
+//! another process, a task notices a change a little later.
 use crate::db::{DbError, Transaction};
 use std::{sync::Arc, time::Duration};
 use tokio::sync::watch;
@@ -18,7 +18,7 @@ impl Notifier {
     /// Commits, and wakes subscribers.
     ///
     /// # Errors
-    /// When the transaction can't be committed.
+    /// Fails if the transaction can't be committed.
     pub async fn commit(&self, transaction: Transaction) -> Result<(), DbError> {
         transaction.commit().await?;
         self.wake();
@@ -42,7 +42,7 @@ impl Subscription {
         match tokio::time::timeout(patience, self.0.changed()).await {
             Ok(Ok(())) => true,
             Err(_) => false,
-            // The notifier is gone, with everything that could use it. Wait anyway, so that no caller spins.
+            // The notifier was dropped, so no change can follow. Wait anyway, so that no caller spins.
             Ok(Err(_)) => {
                 tokio::time::sleep(patience).await;
                 false

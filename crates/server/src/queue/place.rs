@@ -14,10 +14,10 @@ const RECENT_JOBS: i64 = 50;
 pub struct Place {
     /// The number of jobs before this one.
     pub ahead: i64,
-    /// The expected time until its result, from the recent jobs and the slots of the workers that are alive; `None`
-    /// without jobs or workers.
+    /// The expected time until the job's result, computed from recent jobs and the slots of live workers; `None`
+    /// without recent jobs or live workers.
     pub expected: Option<Duration>,
-    /// Whether a worker is alive.
+    /// Whether a worker is alive that can run the job.
     pub is_served: bool,
 }
 
@@ -25,7 +25,7 @@ pub struct Place {
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn place(
     transaction: &mut Transaction,
     policy: &QueuePolicy,

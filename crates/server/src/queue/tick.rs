@@ -1,4 +1,4 @@
-//! Finds silent workers.
+//! Finds workers that stopped responding.
 //!
 //! Every live process ticks, and leases expire only while one does. A gap between ticks means that the database was
 //! unavailable and no worker could renew, so all leases start again. Therefore a restart of PostgreSQL does not count
@@ -17,30 +17,32 @@ const SILENT_WORKER: &str = "its worker went silent";
 pub struct Tick {
     /// The number of jobs that wait again.
     pub retried: usize,
-    /// The jobs whose workers died too often; the caller writes the failures in the same transaction.
+    /// The jobs that were given up, because their workers were lost too often. The caller must write the failures in
+    /// the same transaction.
     pub buried: Vec<BuriedJob>,
     /// Whether leases started again because no process had ticked.
     pub outage: bool,
 }
 
-/// A job whose workers died too often.
+/// A job that was given up, because its workers were lost too often.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct BuriedJob {
     /// The job's number.
     pub job: i64,
-    /// The number of its last claim.
+    /// The number of the job's last claim.
     pub attempt: i64,
-    /// The last worker's name.
+    /// The name of the job's last worker.
     pub worker: String,
     /// The reason why the last try failed.
     pub fault: String,
 }
 
-/// Ends leases of silent workers, at most once per [`QueuePolicy::tick_every`], for any caller.
+/// Ends leases of workers that stopped responding, at most once per [`QueuePolicy::tick_every`], no matter which
+/// process calls it.
 ///
 /// # Errors
 ///
-/// An error of the database.
+/// Fails if the database fails.
 pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result<Tick, DbError> {
     let pulse =
         transaction.row("SELECT beat_at, {now} AS now FROM pulse WHERE id = 1 {skip locked}", values![]).await?;

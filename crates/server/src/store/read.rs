@@ -10,7 +10,7 @@ use tokio::io::AsyncWriteExt;
 
 /// An artifact that is being read.
 pub struct OpenArtifact {
-    /// The size of the whole artifact.
+    /// The size of the whole artifact, in bytes.
     pub size: u64,
     /// The artifact's bytes.
     pub pieces: BoxStream<'static, Result<Bytes, StoreError>>,
@@ -22,10 +22,10 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// When there is no such artifact, it is damaged, or the store fails.
+    /// Fails if there is no such artifact, it is damaged, or the store fails.
     pub async fn open(&self, digest: &Digest) -> Result<OpenArtifact, StoreError> {
         let mut found = self.objects.get(&digest.key(KEPT_FOLDER)).await;
-        // The sweep may have moved the file to the trash before a row referred to it again; restore it.
+        // The sweep may have moved the file to the trash before a row referred to it again, so restore it.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
             found = self.objects.get(&digest.key(TRASH)).await;
         }
@@ -45,8 +45,8 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// When there is no such artifact or it is damaged (no file is left then), the file can't be written, or the store
-    /// fails.
+    /// Fails if there is no such artifact or it is damaged (no file is left then), the file can't be written, or the
+    /// store fails.
     pub async fn fetch(&self, digest: &Digest, file: &Path) -> Result<(), StoreError> {
         let mut output = tokio::fs::File::create_new(file).await?;
         let copying = async {
@@ -64,7 +64,7 @@ impl Store {
     }
 }
 
-/// Returns the pieces; the last one is returned only if all together have the digest.
+/// Passes the pieces on, but the last one only if all of them together have the digest.
 fn verify(
     pieces: BoxStream<'static, Result<Bytes, StoreError>>,
     digest: Digest,

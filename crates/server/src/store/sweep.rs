@@ -23,7 +23,7 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// When the store fails, or the referenced digests can't be found. Artifacts in the trash are checked again the
+    /// Fails if the store fails, or the referenced digests can't be found. Artifacts in the trash are checked again the
     /// next time.
     pub async fn give_up<E: From<StoreError>, F: Future<Output = Result<HashSet<Digest>, E>>>(
         &self,
@@ -38,7 +38,7 @@ impl Store {
             let named = named(digests.clone()).await?;
             for digest in digests.iter().filter(|digest| !named.contains(digest)) {
                 self.rename(&digest.key(KEPT_FOLDER), &digest.key(TRASH)).await?;
-                // In a bucket it is a new copy.
+                // In a bucket, a moved object is a new copy with a new age.
                 if let Some(folder) = &self.folder {
                     renew(&folder.join(digest.key(TRASH).as_ref()));
                 }
@@ -86,7 +86,7 @@ impl Store {
         let listing = self.objects.list(Some(&Key::from(prefix))).map_err(StoreError::from);
         let found = listing.try_filter_map(async |meta| {
             let parts: Vec<String> = meta.location.parts().map(|part| part.as_ref().to_owned()).collect();
-            // Skip every other file: this store did not write it.
+            // Other files are skipped, because this store did not write them.
             let [_, first, rest] = parts.as_slice() else { return Ok(None) };
             Ok(format!("{first}{rest}").parse().ok().map(|digest| (digest, age(&meta))))
         });
@@ -94,7 +94,7 @@ impl Store {
     }
 }
 
-/// Sets the age of a file to zero; a file that can't be touched keeps its age.
+/// Sets a file's modification time to now, if possible.
 fn renew(file: &Path) {
     let touched = fs::File::options().write(true).open(file).and_then(|file| file.set_modified(SystemTime::now()));
     if let Err(error) = touched {

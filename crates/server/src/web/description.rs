@@ -1,5 +1,4 @@
-//! The description of the API (OpenAPI 3.1): the descriptions of the handlers, completed by everything that they have
-//! in common.
+//! The description of the API (OpenAPI 3.1): the handlers' own descriptions, and everything that they have in common.
 use super::who::cookie_name;
 use crate::{
     problem::Problem,
@@ -47,13 +46,12 @@ const MAX_INTEGER: i64 = (1 << 53) - 1;
 )]
 struct Base;
 
-/// Returns the answers that are given before any handler runs.
+/// Returns a description with the answers that are sent before any handler runs.
 pub(super) fn base() -> OpenApi {
     Base::openapi()
 }
 
-/// Adds to the description what applies to every operation: ways to sign in, the form of names in addresses, and common
-/// answers.
+/// Adds everything that applies to all operations: ways to sign in, the form of names in addresses, and common answers.
 pub(super) fn complete(api: &mut OpenApi) {
     let components = api.components.get_or_insert_default();
     for (name, scheme) in schemes() {
@@ -68,8 +66,8 @@ pub(super) fn complete(api: &mut OpenApi) {
     }
 }
 
-/// Removes the ban of additional fields from types that are part of larger types; otherwise the larger type's own
-/// fields would be invalid.
+/// Allows additional fields in schemas that other schemas include; otherwise the fields of the including schema would
+/// be invalid.
 fn allow_extension(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
     let closed: BTreeMap<String, Object> = schemas
         .iter()
@@ -129,7 +127,7 @@ fn name_parts(path: &str, operation: &mut Operation) {
 fn complete_operation(operation: &mut Operation) {
     let is_of = |tag: &str| operation.tags.iter().flatten().any(|of| of == tag);
     let required = |name: &str| SecurityRequirement::new(name, Vec::<String>::new());
-    // A handler that accepts fewer ways to sign in describes them itself.
+    // A handler that does not accept all ways to sign in describes its own.
     let security = match () {
         () if is_of("operations") => Vec::new(),
         () if is_of("workers") => vec![required("worker")],
@@ -206,7 +204,7 @@ fn bytes_schema() -> RefOr<Schema> {
     ObjectBuilder::new().schema_type(Type::String).format(Some(format)).min_length(Some(1)).into()
 }
 
-/// Returns the description of an answer that has none.
+/// Returns a default description for an answer.
 fn describe_answer(status: &str) -> String {
     if status == "default" {
         return "The request was rejected or failed; the body has the reason and the remedy".to_owned();

@@ -1,4 +1,4 @@
-//! Sends artifacts in pieces while they are read, or not at all if the client has them.
+//! Sends artifacts in pieces while they are read; an artifact that the client already has is not sent again.
 use crate::{
     domain::{Member, Transfer},
     problem::Problem,
@@ -11,7 +11,7 @@ use axum::{
 };
 use futures_util::TryStreamExt;
 
-/// Answers with an artifact, unless the request's headers say that the client has it.
+/// Sends an artifact, unless the request's headers show that the client already has it.
 pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact) -> Result<Response, Problem> {
     let transfer = member.transfer()?;
     let tag = format!("\"{}\"", artifact.digest);

@@ -9,12 +9,12 @@ use axum::{
 };
 use std::time::Instant;
 
-/// The content policy of pages, which may use only this server's files, and not be in a frame.
+/// The content security policy of pages: they use only this server's files, and cannot be shown in a frame.
 const PAGE_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
                       media-src blob:; connect-src 'self'; form-action 'self'; base-uri 'none'; \
                       frame-ancestors 'none'";
 
-/// The addresses to which learning platforms send people, always from other sites; the sign-in's secret binds each
+/// The addresses to which learning platforms send people, always from other sites. The secret of the sign-in binds each
 /// request to the browser.
 const PLATFORM_ADDRESSES: [&str; 2] = ["/lti/login", "/lti/launch"];
 
@@ -22,8 +22,8 @@ const PLATFORM_ADDRESSES: [&str; 2] = ["/lti/login", "/lti/launch"];
 const CONNECT_ADDRESS: &str = "/account/provider";
 
 /// Rejects requests that another site made a browser send. Another site can't send a token in a header, so requests
-/// with a token are accepted. All others that change something must come from this site, which the browser states in
-/// `Sec-Fetch-Site`, or in `Origin` if it is older.
+/// with a token are accepted. All others that change something must come from this site, as the browser confirms in
+/// `Sec-Fetch-Site` (older browsers: `Origin`).
 pub(super) async fn check_site(State(app): State<App>, request: Request, next: Next) -> Response {
     if (is_harmless(request.method()) && request.uri().path() != CONNECT_ADDRESS)
         || PLATFORM_ADDRESSES.contains(&request.uri().path())
@@ -32,7 +32,7 @@ pub(super) async fn check_site(State(app): State<App>, request: Request, next: N
     {
         return next.run(request).await;
     }
-    // A program without its token is not signed in, whatever the site.
+    // A request without any of these headers comes from a program, which needs a token.
     if request.uri().path().starts_with("/api/") && who::secrets(request.headers(), app.is_secure()).session.is_none() {
         return Problem::not_signed_in().into_response();
     }

@@ -1,4 +1,4 @@
-//! Reads requests, with error answers that name the fault.
+//! Reads requests; an invalid request is answered with a description of its error.
 use crate::{domain::App, problem::Problem};
 use axum::{
     extract::{FromRequest, FromRequestParts, MatchedPath, Path, Query, Request},
@@ -19,7 +19,7 @@ pub(super) struct PlainBody(pub(super) String);
 /// The fields of a form, from the body or from the query of a GET request.
 pub(super) struct Fields<T>(pub(super) T);
 
-/// The names in an address; a part that the route lacks is empty.
+/// The names in an address; a name that the route does not have is empty.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct AddressParts {
@@ -52,8 +52,8 @@ impl ListEnd {
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct SeenEvent {
-    /// The last event of the audit log that the sender has seen. If it is given, a change is rejected if there is a
-    /// later one of the same thing.
+    /// The last event of the audit log that the sender has seen. If it is given, a change is rejected if the same thing
+    /// was changed after it.
     #[param(maximum = 9_007_199_254_740_991_i64)]
     seen: Option<u64>,
 }
@@ -80,11 +80,11 @@ fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
 #[derive(Clone, Copy)]
 pub(super) struct ArrivalTime(pub(super) Instant);
 
-/// A mark in a request whose sender is known, so that a larger body may be read.
+/// Marks a request whose sender is known, so that a larger body may be read.
 #[derive(Clone, Copy)]
 pub(super) struct SignedIn;
 
-/// Returns the bytes of a body, which must be small until its sender is known.
+/// Reads a request's body, which must be small unless the sender is known.
 async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
     let most = if request.extensions().get::<SignedIn>().is_some() { super::MAX_BODY } else { super::MAX_GUEST_BODY };
     let reading = async {
@@ -101,12 +101,13 @@ async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
     tokio::time::timeout(app.patience, reading).await.map_err(|_| Problem::too_slow())?
 }
 
-/// Converts whole numbers such as `7.0`, as some languages write them, to integers, which they are for JSON Schema.
+/// Converts whole numbers such as `7.0` to integers. Some languages write them so, and JSON Schema treats them as
+/// integers.
 fn fix_integers(value: &mut Value) {
     match value {
         Value::Number(number) => {
             let whole = number.as_f64().filter(|x| x.fract() == 0.0 && x.abs() < 9e15);
-            // Exact, below 2^53.
+            // The conversion is exact below 2^53.
             #[expect(clippy::cast_possible_truncation, reason = "whole and small")]
             if let (false, Some(whole)) = (number.is_i64() || number.is_u64(), whole) {
                 *value = Value::from(whole as i64);

@@ -49,7 +49,7 @@ pub(super) async fn examine(
     let wanted = program.into_iter().chain(archives).collect::<Vec<_>>().join(", or ");
     let mut words = vec!["--wanted", &wanted];
     words.extend(said.iter().flat_map(|form| ["--form", form]));
-    // The grader's suites build nothing.
+    // The grader's own suites do not build programs, so sources are not accepted.
     if settings.suite_archive.is_none() && settings.takes(Form::Sources) {
         words.extend(["--program", &settings.program]);
     }
@@ -63,11 +63,11 @@ pub(super) async fn unpack(member: &Member, archive: &Path, folder: &Path) -> Re
     check_in_turn(member, archive, &["--into", folder]).await?.map(drop).map_err(Problem::no_suite)
 }
 
-/// Checks a file with this program in the sender's turn. Rejected files count, so that an account that sends many has
-/// to wait.
+/// Checks a file in a process of this program, in the sender's turn. Rejected files count, so that an account that
+/// sends many has to wait.
 async fn check_in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<Result<Option<Form>, String>, Problem> {
     let _turn = member.archive_turn().await?;
-    // The same program, even if its file was replaced since.
+    // Run the same program, even if its file was replaced by an update.
     let mut command = Command::new("/proc/self/exe");
     command.arg("look-through").args(words).arg("--").arg(file);
     command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());

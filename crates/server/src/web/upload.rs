@@ -1,4 +1,4 @@
-//! Reception of files, which are written to a file of the server while they arrive, and are never completely in memory.
+//! Receives uploads. They are written to a file while they arrive, and are never completely in memory.
 use crate::{
     domain::{App, is_file_name},
     problem::Problem,
@@ -24,11 +24,12 @@ use std::{
 use tempfile::TempPath;
 use tokio::io::AsyncWriteExt;
 
-/// The maximum additional time of an upload, for pauses of its body, in multiples of the patience.
+/// The maximum total pause of an upload, in multiples of the maximum single pause.
 const MAX_PAUSES: u32 = 20;
 
 /// Returns the time in which an upload of a size must arrive to count as arrived at its start: half a minute, and a
-/// second for each 32 KiB. Otherwise an upload could start before the due date and be written later.
+/// second for each 32 KiB. Without this limit, an upload could start before the due date and its content be written
+/// later.
 pub(super) fn fair_time(size: u64) -> Duration {
     Duration::from_secs(30 + size / (32 << 10))
 }
@@ -37,7 +38,8 @@ pub(super) fn fair_time(size: u64) -> Duration {
 /// connection.
 const FORM_OVERHEAD: u64 = 1024 * 1024;
 
-/// Counts the bytes of a form that arrived and were not processed. They are in memory, so their number is limited.
+/// Counts the bytes of a form that have arrived but are not processed yet. They are in memory, so their number is
+/// limited.
 #[derive(Clone, Default)]
 struct UntakenBytes(Arc<AtomicU64>);
 
@@ -54,7 +56,7 @@ impl UntakenBytes {
 
 /// A file that was received.
 pub(super) struct ReceivedFile {
-    /// The place of the file until it is stored.
+    /// The temporary file with the content.
     pub(super) file: TempPath,
     /// The sender's name for the file.
     pub(super) name: Option<String>,
@@ -79,7 +81,7 @@ pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<Re
 }
 
 /// Rejects an upload before anything is stored. The body is read and dropped, because many programs read the answer
-/// only after they have sent everything, and would otherwise see a broken connection.
+/// only after they have sent everything; otherwise they would only see a broken connection.
 pub(super) async fn reject(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
     if request.headers().contains_key(header::EXPECT) {
         return problem;
@@ -102,7 +104,7 @@ pub(super) async fn reject(app: &App, request: Request, most: u64, problem: Prob
 ///
 /// # Errors
 ///
-/// The error in the form.
+/// Fails if the form is invalid.
 pub async fn receive_form(
     incoming: &Path,
     body: &[u8],
@@ -241,11 +243,11 @@ pub(super) fn is_program(start: &[u8]) -> bool {
 }
 
 /// Returns the form of an archive, if the archive is valid: sources must contain the `program`, unless the suite builds
-/// it. It runs in a separate process (`web::look`).
+/// it. This check runs in a separate process (`web::look`).
 ///
 /// # Errors
 ///
-/// The reason for the rejection.
+/// Fails if the archive is rejected, with the reason.
 pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Option<&str>) -> Result<Form, String> {
     let said = said.and_then(Form::from_name);
     let opened = File::open(file).map_err(|error| error.to_string())?;
@@ -269,7 +271,7 @@ pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Opti
     }
 }
 
-/// Checks that an archive with these files holds the program.
+/// Checks that the program is among an archive's files.
 fn check_program(files: &[PathBuf], program: Option<&str>) -> Result<(), String> {
     /// The maximum number of files that a message names.
     const MAX_NAMED: usize = 6;

@@ -16,18 +16,18 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-/// A request's session that was extended, so that the browser must extend its cookie.
+/// The session of a request, if it was extended and the browser must therefore extend its cookie.
 #[derive(Debug, Clone, Default)]
 pub(super) struct RenewedSession(Arc<OnceLock<String>>);
 
 impl RenewedSession {
-    /// Returns the cookie's content, if the cookie must be sent again.
+    /// Returns the content of the cookie, if it must be sent again.
     pub(super) fn session(&self) -> Option<&str> {
         self.0.get().map(String::as_str)
     }
 }
 
-/// Returns the name of the session's cookie. Over HTTPS it is one that no other host and no script can set or read.
+/// Returns the name of the session's cookie. Over HTTPS, its prefix prevents other hosts from setting the cookie.
 pub(super) fn cookie_name(secure: bool) -> &'static str {
     if secure { "__Host-fosssim" } else { "fosssim" }
 }
@@ -60,13 +60,13 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
 
 async fn read_secrets(parts: &mut Parts, app: &App) -> Secrets {
     let said = ClientIp::from_request_parts(parts, app).await.ok().map(|ClientIp(address)| address);
-    // The request bypassed the proxy.
+    // The header of the proxy is missing, so the request bypassed the proxy.
     let peer = || parts.extensions.get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(peer)| peer.ip());
     let address = said.or_else(peer).map(|address| address.to_canonical());
     Secrets { address, ..secrets(&parts.headers, app.is_secure()) }
 }
 
-/// The course in an address; other parts are ignored.
+/// The course in a request's address; other parts are ignored.
 #[derive(Deserialize)]
 struct InCourse {
     course: String,
@@ -94,7 +94,7 @@ roles! {
         if let (true, Some(secret), Some(renewed)) =
             (person.is_renewed(), secrets.session, parts.extensions.get::<RenewedSession>())
         {
-            // Another part of the same request may have stored it already.
+            // Another extractor of the same request may have stored the session already.
             drop(renewed.0.set(secret));
         }
         Ok(person)

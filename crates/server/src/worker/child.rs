@@ -14,7 +14,7 @@ use tokio::sync::watch;
 pub(super) enum End {
     /// The process exited with this code.
     Code(i32),
-    /// This signal ended the process.
+    /// The signal with this number ended the process.
     Signal(i32),
 }
 
@@ -26,7 +26,7 @@ pub(super) struct Child {
     end: watch::Receiver<Option<End>>,
 }
 
-/// Limits the memory and the processor time of a command, which dies with its owner.
+/// Limits the memory and the processor time of a command, and lets the kernel kill it when this process ends.
 pub(crate) fn limit(command: &mut Command, memory: u64, seconds: u64) {
     // SAFETY: these calls may be made between fork and exec.
     unsafe {
@@ -45,7 +45,7 @@ impl Child {
     /// Starts a child without input.
     ///
     /// # Errors
-    /// When it can't be started.
+    /// Fails if it can't be started.
     pub(super) fn start(mut command: Command) -> io::Result<Self> {
         command.stdin(Stdio::null()).stdout(Stdio::null()).process_group(0);
         let parent = std::process::id();
@@ -53,7 +53,7 @@ impl Child {
         unsafe {
             command.pre_exec(move || {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The owner died before the preceding call.
+                // The parent ended before the preceding call, so this process must end, too.
                 if libc::getppid().unsigned_abs() != parent {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
@@ -64,7 +64,8 @@ impl Child {
         let (end_sender, end) = watch::channel(None);
         let group = Arc::new(Mutex::new(None));
         let known = group.clone();
-        // The kernel regards the thread that forked as the parent, so that thread waits for the child and outlives it.
+        // For the kernel, the parent is the thread that forked, so that thread must outlive the child, and waits for
+        // it.
         std::thread::Builder::new().name("grader".to_owned()).spawn(move || {
             let mut child = match command.spawn() {
                 Ok(child) => child,
@@ -139,7 +140,7 @@ fn wait_without_reaping(number: libc::pid_t) {
     loop {
         match wait(libc::WEXITED | libc::WSTOPPED | libc::WNOWAIT) {
             (0, libc::CLD_STOPPED) => {
-                // The end is recorded; the next wait is for later ones.
+                // Only a child that has ended stays to be reaped; wait again for other events.
                 wait(libc::WSTOPPED | libc::WNOHANG);
                 // SAFETY: the child is not reaped.
                 unsafe { libc::kill(number, libc::SIGCONT) };

@@ -48,7 +48,7 @@ pub trait Grader: Clone + Send + Sync + 'static {
     ///
     /// # Errors
     ///
-    /// The reason why it can't, for staff only.
+    /// Fails if it can't, with the reason, which is for staff only.
     fn prove(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
 
     /// Grades the submission at `submission`, with the suite's archive at `suite` if there is one; it may use `folder`

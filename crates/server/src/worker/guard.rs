@@ -1,5 +1,5 @@
-//! The process between a worker and its grader. It only waits. A grader that kills or stops its parent therefore
-//! affects only the guard, and not the worker with all its other jobs.
+//! The process between a worker and its grader. It only waits. A grader that kills or stops its parent affects only the
+//! guard, and not the worker with its other jobs.
 use std::{
     io,
     sync::atomic::{AtomicI32, Ordering},
@@ -12,15 +12,15 @@ static GRADER_PID: AtomicI32 = AtomicI32::new(0);
 ///
 /// # Safety
 ///
-/// Only between fork and exec of a child that leads a process group; of the process, only its memory is left.
+/// Call this only between fork and exec, in a child that leads a process group.
 ///
 /// # Errors
 ///
-/// When no other process can be created.
+/// Fails if no other process can be created.
 pub(super) unsafe fn run_guard() -> io::Result<()> {
     // SAFETY: these calls may be made between fork and exec, and use no memory of this process except for the text.
     unsafe {
-        // If memory runs short, the find_grader is killed before the worker.
+        // If memory runs short, the grader is killed before the worker.
         let file = libc::open(c"/proc/self/oom_score_adj".as_ptr(), libc::O_WRONLY | libc::O_CLOEXEC);
         if file >= 0 {
             libc::write(file, c"800".as_ptr().cast(), 3);
@@ -35,7 +35,7 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
             -1 => Err(io::Error::last_os_error()),
             0 => {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The guard died before the preceding call.
+                // The guard ended before the preceding call.
                 if libc::getppid() != guard {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
@@ -61,8 +61,8 @@ unsafe fn watch(grader: libc::pid_t) -> ! {
     GRADER_PID.store(grader, Ordering::Relaxed);
     // SAFETY: system calls on numbers, and structures that are zeroed first.
     unsafe {
-        // The worker's signal handlers would write to files that are closed here. One of these files signals that the
-        // grader has started: the worker waits until no process holds it.
+        // The worker's signal handlers would write to files that are closed here. The worker learns that the grader has
+        // started when one of these files is closed in all other processes.
         for signal in [libc::SIGINT, libc::SIGHUP, libc::SIGQUIT, libc::SIGCHLD, libc::SIGUSR1, libc::SIGUSR2] {
             libc::signal(signal, libc::SIG_DFL);
         }
@@ -70,7 +70,7 @@ unsafe fn watch(grader: libc::pid_t) -> ! {
         action.sa_sigaction = pass_on as extern "C" fn(libc::c_int) as libc::sighandler_t;
         libc::sigaction(libc::SIGTERM, &raw const action, std::ptr::null_mut());
         if libc::syscall(libc::SYS_close_range, 0, libc::c_uint::MAX, 0) != 0 {
-            // Kernels before 5.9.
+            // Kernels before 5.9 do not have this call.
             for file in 0..65_536 {
                 libc::close(file);
             }

@@ -1,5 +1,5 @@
-//! Checks whether a worker can grade. A worker with a broken grader fails immediately and is free again immediately, so
-//! it would take all jobs of the queue.
+//! Checks whether a worker can grade. A worker with a broken grader would fail on each job immediately, and so take all
+//! jobs of the queue.
 //!
 //! Therefore a worker runs a check before its first claim, and again after every fault. Until the check succeeds it
 //! claims nothing, and its jobs move to another worker without counting a failure.
@@ -26,7 +26,7 @@ pub(super) struct Health<G> {
     /// The folder for the folders of jobs and checks.
     pub(super) folder: PathBuf,
     is_proven: Arc<AtomicBool>,
-    /// The lock of the slot that requests checks until one succeeds; the others wait for it.
+    /// The lock of the one slot that repeats checks until one succeeds; other slots wait for it.
     asking: Arc<Mutex<()>>,
     /// The lock that is held during a check.
     proving: Arc<Mutex<()>>,
@@ -71,7 +71,7 @@ impl<G: Grader> Health<G> {
         if self.is_proven() {
             return !stop.is_cancelled();
         }
-        // One slot requests checks; the others wait.
+        // One slot repeats checks, and the others wait.
         let asking = tokio::select! {
             asking = self.asking.lock() => asking,
             () = stop.cancelled() => return false,
@@ -90,7 +90,7 @@ impl<G: Grader> Health<G> {
         false
     }
 
-    /// Checks after a fault whether the worker can still grade; if so, the job may be at fault.
+    /// Checks after a fault whether the worker can still grade. If it can, the job may be at fault.
     pub(super) async fn check_after_fault(&self, stop: &CancellationToken) -> bool {
         self.is_proven.store(false, Ordering::Release);
         self.prove(stop).await

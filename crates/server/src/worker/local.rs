@@ -1,4 +1,4 @@
-//! The source of jobs for workers with access to the database: those in the server, and separate ones on request.
+//! The source of jobs for workers with access to the database: those in the server's process, and separate ones.
 use super::{GRACE_PERIOD, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
@@ -108,7 +108,7 @@ impl JobSource for LocalSource {
                     let renew_every = u64::try_from(renew_every.as_millis()).unwrap_or(u64::MAX);
                     return Ok(Some(ClaimedJob { lease: claim.lease, renew_every, task }));
                 }
-                // Another version of the program wrote the task, so this worker cannot do it.
+                // The task cannot be read, because another version of the program wrote it.
                 Err(error) => {
                     self.fail(&claim.lease, &format!("the task can't be read: {error}")).await?;
                 }
@@ -121,7 +121,7 @@ impl JobSource for LocalSource {
     }
 
     async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {
-        // A jump of the clock is detected before it can end a lease.
+        // Check for a jump of the clock before it can end a lease.
         ledger::tick(&self.database, &self.policy).await?;
         let mut transaction = self.database.begin().await?;
         let task = queue::payload(&mut transaction, lease).await?.and_then(|text| serde_json::from_str(&text).ok());

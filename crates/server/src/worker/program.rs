@@ -1,5 +1,5 @@
-//! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory there never
-//! stops the worker, and all leftovers of the child are removed with the job.
+//! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory in the grader
+//! does not stop the worker, and all leftovers of the child are removed with the job.
 use super::{
     Grader, GraderFault, GradingOutput, NewFile, PROGRESS_FILE,
     child::{Child, End},
@@ -67,7 +67,7 @@ impl Program {
             Form::Traces => drop(command.arg("--traces")),
         }
         match &task.suite {
-            // The server could not read the grader's default, so the grader chooses.
+            // Without a suite's name, the grader uses its default.
             Suite::Named(name) if name.is_empty() => {}
             Suite::Named(name) => drop(command.arg("--suite").arg(name)),
             Suite::Archive(_) => drop(command.arg("--suite").arg(folder.join("suite/suite.toml"))),
@@ -78,8 +78,8 @@ impl Program {
         if let Some(hints) = &task.hints {
             command.arg("--hints").arg(hints);
         }
-        // Reports show as much as students may see. Hidden groups are in all of them except the page: staff reads them,
-        // and the server hides them from students.
+        // Reports show as much as students may see. All of them except the page contain hidden groups; the server shows
+        // these reports to staff only.
         command.args(["--for", "student"]);
         for (format, file, _) in REPORTS.into_iter().filter(|(format, _, _)| !format.is_empty()) {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
@@ -200,7 +200,7 @@ impl Grader for Program {
                 place_program(submission, folder, &task.submission.name).map_err(fault_about("place the program"))?
             }
             Form::Sources => unpack(submission, folder.join("submission")).await?.0,
-            // The top folder stays, because it may be the group of all scenes.
+            // The top folder is kept, because it may be the group of all scenes.
             Form::Traces => unpack(submission, folder.join("submission")).await?.1,
         };
         if let Some(suite) = suite {

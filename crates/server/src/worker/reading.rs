@@ -1,4 +1,4 @@
-//! The parts of a grader's result that the service reads; people read the rest.
+//! The parts of a grader's result that the service reads; the rest is for people.
 use crate::{grade_file::GradeFile, task::Outcome};
 use std::{fs, path::Path};
 

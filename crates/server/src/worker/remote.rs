@@ -38,7 +38,7 @@ struct Parts {
     server: String,
     authorization: String,
     name: String,
-    /// The time between two reports that the worker is alive in milliseconds, as the server sets it.
+    /// The time between two reports that the worker is alive in milliseconds, as the server requires.
     tick_every: AtomicU64,
 }
 
@@ -192,7 +192,7 @@ impl JobSource for RemoteSource {
                 io::copy(&mut input, &mut output)
             });
             written.map(drop).map_err(|error| {
-                // A retry must find no file.
+                // Remove the file, so that a retry can create it.
                 drop(fs::remove_file(&place));
                 outage(error)
             })

@@ -40,7 +40,7 @@ const WORK_FOLDER: &str = "work";
 ///
 /// # Errors
 ///
-/// When the source no longer accepts the worker, so that its jobs are lost.
+/// Fails if the source no longer accepts the worker, so that its jobs are lost.
 pub async fn work<D: JobSource, G: Grader>(
     source: D,
     grader: G,
@@ -110,7 +110,7 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
 enum JobEnding {
     Finished(Box<Outcome>),
     Failed(String),
-    /// The worker must stop.
+    /// The job was returned, because the worker must stop.
     GivenBack,
     /// The lease is lost, so there is nothing to report.
     Lost,
@@ -142,10 +142,10 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
             match ending {
                 Some(ending) => ending,
                 None => {
-                    // The grader ends its children before anything is reported or removed.
+                    // The grader ends its children before the result is reported and the folder removed.
                     halt.cancel();
                     match grading.await {
-                        // The job finished at that very moment.
+                        // The grading finished at the same moment.
                         JobEnding::Finished(outcome) if !lost.is_cancelled() => JobEnding::Finished(outcome),
                         _ if lost.is_cancelled() => JobEnding::Lost,
                         _ => JobEnding::GivenBack,
@@ -154,7 +154,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
             }
         }
     };
-    // A failure of the grader may be the machine's fault, which must not count as a failure of the job.
+    // A failure of the grader may be the machine's fault, which does not count as a failure of the job.
     let ending = match ending {
         JobEnding::Failed(fault) if !health.check_after_fault(&stop).await => {
             tracing::warn!(job = job.lease.job, fault, "the job goes to another worker");
@@ -184,7 +184,7 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opti
                 tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
                 return lost.cancel();
             }
-            // The work continues; at its end, the source decides whether it counts.
+            // The grading continues; when it ends, the source decides whether its result counts.
             Err(error) => tracing::warn!(job = lease.job, %error, "the lease can't be renewed"),
         }
     }

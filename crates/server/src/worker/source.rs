@@ -1,5 +1,5 @@
-//! The interface to the source of workers' jobs, which also receives their results: the database, or a server over
-//! HTTP.
+//! The interface between workers and the source of their jobs, which also receives the results: the database, or a
+//! server over HTTP.
 use crate::{
     queue::{Lease, Progress},
     store::{Artifact, Digest},
@@ -46,7 +46,7 @@ pub trait JobSource: Clone + Send + Sync + 'static {
     /// Returns the job without counting a failure.
     fn release(&self, lease: &Lease) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
-    /// Reports that the try failed, without a fault of the submission.
+    /// Reports that the try failed because of the grader or the machine, not of the submission.
     fn fail(&self, lease: &Lease, fault: &str) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
     /// Copies an artifact of the job into a new file.

@@ -19,7 +19,7 @@ const MAX_MESSAGE_LENGTH: usize = 2000;
 ///
 /// # Errors
 ///
-/// The grader's objections, without the folders of this machine.
+/// Fails with the grader's objections, without the folders of this machine.
 pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     let messages = tempfile::NamedTempFile::new_in(folder).map_err(|error| error.to_string())?;
     let mut command = Command::new(grader);

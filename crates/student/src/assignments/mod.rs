@@ -14,7 +14,7 @@ use fosssim_model::{
 /// the suite they show every part of a program's work.
 ///
 /// # Panics
-/// If a scene is not valid; a test reads all of them.
+/// Panics if a scene is not valid; a test reads all of them.
 #[must_use]
 pub fn probe_scenes(assignment: Assignment) -> Vec<(String, Scene)> {
     let read = |&(name, text): &(&str, &str)| {

@@ -60,7 +60,7 @@ impl Ffmpeg {
     ///
     /// # Errors
     ///
-    /// When there is none, with advice.
+    /// Fails if there is none, with advice.
     pub(super) fn find() -> Result<(&'static str, &'static [&'static str])> {
         let run = Command::new(FFMPEG)
             .args(["-hide_banner", "-loglevel", "error", "-encoders"])
@@ -88,7 +88,7 @@ impl Ffmpeg {
     ///
     /// # Errors
     ///
-    /// When it can't be started, or the output is not a file.
+    /// Fails if it can't be started, or the output is not a file.
     pub(super) fn start(size: Size, rate: Rate, output: Output) -> Result<Self> {
         let (encoder, options) = Self::find()?;
         let Some(path) = output.temporary_path() else { bail!("an MP4 needs an output file; name one") };
@@ -129,7 +129,7 @@ impl Ffmpeg {
     ///
     /// # Errors
     ///
-    /// When the program has ended.
+    /// Fails if the program has ended.
     pub(super) fn write_picture(&mut self, rgba: &[u8]) -> Result<()> {
         let pipe = self.pipe.as_mut().context("ffmpeg accepts no pictures")?;
         pipe.write_all(rgba).context("ffmpeg accepts no more pictures")?;
@@ -141,7 +141,7 @@ impl Ffmpeg {
     ///
     /// # Errors
     ///
-    /// When drawing or the program failed, with the program's output; then there is no film.
+    /// Fails if drawing or the program failed, with the program's output; then there is no film.
     pub(super) fn finish(mut self, drawn: Result<()>) -> Result<()> {
         drop(self.pipe.take());
         self.watch.pictures.fetch_add(1, Ordering::Relaxed);

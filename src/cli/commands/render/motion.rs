@@ -64,7 +64,7 @@ impl Motion {
     ///
     /// # Errors
     ///
-    /// When the temporary file can't be read.
+    /// Fails if the temporary file can't be read.
     pub(super) fn next(&mut self, row: &mut Vec<f64>) -> Result<bool> {
         row.clear();
         for place in 0..self.width {
@@ -118,7 +118,7 @@ impl<'a> FilmKeeper<'a> {
 ///
 /// # Errors
 ///
-/// When it can't be stored.
+/// Fails if it can't be stored.
 pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
     let mut keeper = FilmKeeper::new(scene, picks);
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
@@ -141,7 +141,8 @@ pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
 ///
 /// # Errors
 ///
-/// When the trace can't be opened or stored, or the operating system fails while it is read. Damage ends the motion.
+/// Fails if the trace can't be opened or stored, or the operating system fails while it is read. Damage ends the
+/// motion.
 pub(super) fn read_motion(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion> {
     let mut trace = input::trace(name)?;
     let layout = Layout::for_scene(scene);

@@ -17,7 +17,7 @@ use super::{
 /// Handles the impacts of a step, then reaches the synchronization point.
 ///
 /// # Errors
-/// [`StepError::RootSearch`]
+/// Fails with [`StepError::RootSearch`] if a root search would never end.
 pub(super) fn handle<O: Observer>(
     bodies: &Bodies,
     law: &Law,

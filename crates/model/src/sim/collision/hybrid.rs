@@ -30,7 +30,8 @@ pub(super) struct HybridScratch {
 /// Handles the impacts of a step. The synchronization point is after the impulses.
 ///
 /// # Errors
-/// [`StepError::RootSearch`], [`StepError::Work`]
+/// Fails with [`StepError::RootSearch`] if a root search would never end, and with [`StepError::Work`] if the allowed
+/// work is exceeded.
 #[expect(clippy::too_many_arguments, reason = "the parts of Handler, borrowed one by one")]
 pub(super) fn handle<O: Observer>(
     bodies: &Bodies,

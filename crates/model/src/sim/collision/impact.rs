@@ -10,7 +10,7 @@ use fosssim_num::{certificate::excludes_unit_interval, first_time::first_time_co
 /// Returns the time of impact; it is not computed if it is not needed.
 ///
 /// # Errors
-/// [`StepError::RootSearch`]
+/// Fails with [`StepError::RootSearch`] if a root search would never end.
 #[inline]
 pub(super) fn time_of_impact(
     search: RootSearch,

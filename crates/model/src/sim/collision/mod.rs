@@ -72,7 +72,8 @@ impl Handler {
     /// `state`.
     ///
     /// # Errors
-    /// [`StepError::RootSearch`] and [`StepError::Work`]; the state is unspecified then.
+    /// Fails with [`StepError::RootSearch`] if a root search would never end, and with [`StepError::Work`] if the
+    /// allowed work is exceeded. The state is unspecified then.
     pub fn handle<O: Observer>(
         &mut self,
         bodies: &Bodies,

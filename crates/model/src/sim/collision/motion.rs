@@ -76,7 +76,7 @@ impl PairMotion {
     /// Returns the motion of a scene's pair between two arrays of positions in trace order.
     ///
     /// # Panics
-    /// If the scene or an array lacks one of the objects.
+    /// Panics if the scene or an array lacks one of the objects.
     #[must_use]
     pub fn between(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);

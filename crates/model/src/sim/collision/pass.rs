@@ -93,8 +93,8 @@ impl Detector {
     /// next pair is checked.
     ///
     /// # Errors
-    /// [`StepError::RootSearch`] for a pair whose search would never end, [`StepError::Work`] if the allowed work is
-    /// exceeded.
+    /// Fails with [`StepError::RootSearch`] if the root search of a pair would never end, and with [`StepError::Work`]
+    /// if the allowed work is exceeded.
     pub fn run<O: Observer>(
         &mut self,
         bodies: &Bodies,

@@ -108,8 +108,8 @@ impl Stepper {
     /// Advances `state` by one time step, number `step`. `steer` receives the systems that are solved.
     ///
     /// # Errors
-    /// [`StepError::Newton`], or [`StepError::Work`] if the allowed work is exceeded, from implicit-euler; the state is
-    /// then unchanged.
+    /// `implicit-euler` fails with [`StepError::Newton`] if Newton's method does not converge, or with
+    /// [`StepError::Work`] if the allowed work is exceeded. The state is unchanged then.
     pub fn advance<'a>(
         &mut self,
         step: u32,

@@ -50,7 +50,7 @@ impl Manifest {
     ///
     /// # Errors
     ///
-    /// If the folder is not a backup, or was made by a newer program.
+    /// Fails if the folder is not a backup, or was made by a newer program.
     pub(super) fn read(folder: &Path) -> Result<Self> {
         let file = folder.join(MANIFEST_FILE);
         let text = fs::read_to_string(&file)

@@ -7,7 +7,7 @@ use url::{Url, form_urlencoded};
 
 /// Returns an address without its password, and the password.
 fn without_password(address: &str) -> Result<(Url, String)> {
-    // The text may hold a password, so the error does not repeat it.
+    // The text may contain a password, so the error does not repeat it.
     let mut url = Url::parse(address).ok().context("the database's address is invalid")?;
     let form = format!("password={}", url.password().unwrap_or_default().replace('+', "%2B"));
     let fields = form_urlencoded::parse(form.as_bytes()).into_owned().chain(url.query_pairs().into_owned());

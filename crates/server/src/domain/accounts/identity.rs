@@ -183,8 +183,8 @@ pub(in crate::domain) async fn end_session(transaction: &mut Transaction, sessio
     transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await.map(drop)
 }
 
-/// Creates a link that signs in once, and invalidates the account's unused ones. `way` states whether only a course's
-/// staff vouches for it.
+/// Creates a link that signs in once, and invalidates the account's unused ones. `way` is the sign-in method of the
+/// person who requests it.
 pub(in crate::domain) async fn new_link(
     transaction: &mut Transaction,
     account: i64,
@@ -226,7 +226,7 @@ pub(in crate::domain) async fn use_link(
     let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
     let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
-    // The person could not sign in at the provider, so staff may have connected the account with somebody else.
+    // The person could not sign in at the provider, so staff may have connected the account with another person.
     if way == Way::Own {
         end_vouched_connections(transaction, account).await?;
     }
@@ -239,13 +239,13 @@ pub(in crate::domain) async fn end_sessions(transaction: &mut Transaction, accou
     transaction.execute("DELETE FROM session WHERE account = ?", values![account]).await.map(drop)
 }
 
-/// Ends connections with a provider that were made in sessions from links of a course's staff.
+/// Ends connections with a provider that were made in sessions from staff's links.
 async fn end_vouched_connections(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     let statement = "DELETE FROM platform_account WHERE account = ? AND vouched = 1";
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
-/// Ends all sessions, links and tokens of an account, whose rights increase or end.
+/// Ends all sessions, links and tokens of an account. Called when the account gets more rights or is closed.
 pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     end_sessions(transaction, account).await?;
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
@@ -299,7 +299,7 @@ pub(in crate::domain) fn is_control(c: char) -> bool {
             | '\u{e0000}'..='\u{e0fff}')
 }
 
-/// Checks a name that people chose; it is shown in pages, logs and tables.
+/// Checks a name that a person chose. The name is shown in pages, logs and tables.
 pub(in crate::domain) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
     let length = text.chars().count();
     if !(1..=200).contains(&length) || text.chars().any(is_control) || text.trim() != text {
@@ -310,7 +310,7 @@ pub(in crate::domain) fn check_title(what: &str, text: &str) -> Result<(), Probl
     Ok(())
 }
 
-/// Checks a name that is part of addresses.
+/// Checks a name that becomes a part of URLs.
 pub(in crate::domain) fn check_slug(what: &str, text: &str) -> Result<(), Problem> {
     let plain = |c: char| c.is_ascii_lowercase() || c.is_ascii_digit() || matches!(c, '-' | '_' | '.');
     if !(1..=60).contains(&text.len()) || !text.chars().all(plain) || text.starts_with(['-', '.', '_']) {

@@ -72,7 +72,7 @@ impl TransferLimits {
     }
 }
 
-/// Returns the value that all tasks of an account share, as long as one of them holds it.
+/// Returns the value that all tasks of an account share, while at least one task uses it.
 fn find_shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnOnce() -> T) -> Arc<T> {
     let mut all = all.lock().unwrap_or_else(PoisonError::into_inner);
     all.retain(|_, one| Arc::strong_count(one) > 1);
@@ -84,7 +84,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the account or the server reaches its limit of transfers.
+    /// Fails if the account or the server reaches its limit of transfers.
     pub fn transfer(&self) -> Result<Transfer, Problem> {
         self.app.limits.transfer(self.account.id)
     }
@@ -93,7 +93,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When too many archives wait, or too many of the account's were rejected.
+    /// Fails if too many archives wait, or too many of the account's were rejected.
     pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
         let turn = self.app.limits.archives.wait(self.account.id).await?;
         if !self.app.limits.refused.pass(self.account.id, REFUSED, Instant::now()) {
@@ -127,7 +127,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn describe_kept_bytes(&self) -> Result<Vec<String>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let [student, course, server] = self.shares(&mut transaction).await?;

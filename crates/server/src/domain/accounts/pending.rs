@@ -25,7 +25,7 @@ const MAX_LOGINS: u32 = 3000;
 /// The message about a sign-in that did not begin here, was answered before, or took too long.
 pub(in crate::domain) const UNKNOWN_SIGN_IN: &str = "this sign-in is unknown, used or too old";
 
-/// A sign-in that has begun.
+/// A sign-in that has begun, with the secrets that the answer must contain.
 pub(in crate::domain) struct BegunSignIn {
     /// The signed state, which the service returns.
     pub(in crate::domain) state: String,
@@ -56,7 +56,7 @@ impl App {
         if !self.0.throttle.pass(throttle::bucket_id(secrets.address, at), MAX_LOGINS, Instant::now()) {
             return Err(Problem::too_many("too many people are signing in from your address"));
         }
-        // Windows of a browser share one secret.
+        // All windows of a browser share one secret.
         let is_word = |word: &&String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
         let browser = known.filter(is_word).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
         let key = self.signing_key().await?;
@@ -73,11 +73,11 @@ impl App {
         Ok(hex(hmac::sign(&key, format!("{kind} {state}").as_bytes()).as_ref()))
     }
 
-    /// Returns the sign-in with a state, which the browser must have begun.
+    /// Returns the sign-in with a state, if this browser began it.
     ///
     /// # Errors
     ///
-    /// When the state is unknown, used or too old, or comes from another browser.
+    /// Fails if the state is unknown, used or too old, or comes from another browser.
     pub(in crate::domain) async fn pending_sign_in(
         &self,
         state: &str,

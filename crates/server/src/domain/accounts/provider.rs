@@ -1,5 +1,5 @@
-//! Sign-in at an OpenID Connect provider. The account of each subject of the provider is stored. A mail address leads
-//! to an account only once: to one that a course's staff made and that nobody has used.
+//! Sign-in at an OpenID Connect provider. The account of each subject of the provider is stored. An e-mail address can
+//! claim an account once, if a course's staff created the account and it has never been used.
 use crate::{
     db::Transaction,
     domain::{
@@ -56,7 +56,7 @@ impl Visitor {
     ///
     /// # Errors
     ///
-    /// When there is no provider, or it does not answer, or the person may not do so.
+    /// Fails if there is no provider, or it does not answer, or the person lacks the permission.
     pub async fn begin_at_provider(&self, to: &str, connects: Option<&Person>) -> Result<LoginAnswer, Problem> {
         let provider = self.app.known_provider()?;
         let account = match connects {
@@ -72,7 +72,7 @@ impl Visitor {
     /// Signs in the person for whom the provider gave a code, in answer to a sign-in that this browser began.
     ///
     /// # Errors
-    /// When the answer does not belong to such a sign-in, or the provider's tokens are not accepted.
+    /// Fails if the answer does not belong to such a sign-in, or the provider's tokens are not accepted.
     pub async fn sign_in_by_provider(&self, state: &str, code: &str) -> Result<LaunchTarget, Problem> {
         let (app, browser) = (&self.app, self.secrets.provider.as_ref());
         let provider = app.known_provider()?;
@@ -119,7 +119,7 @@ async fn connect(
     }
     identity::end_sessions(transaction, account).await?;
     identity::end_vouched(transaction, account).await?;
-    // The person may have signed in there before, and have another account.
+    // The person may already have another account, from an earlier sign-in at the provider.
     let newcomer = newcomer(&issuer, person);
     let statement = "DELETE FROM platform_account WHERE issuer = ? AND subject = ?";
     transaction.execute(statement, values![&issuer, &person.subject]).await?;
@@ -140,7 +140,7 @@ async fn account(transaction: &mut Transaction, provider: &Provider, person: &Pr
     if newcomer.find(transaction).await?.is_none()
         && let Some(mailbox) = &person.mailbox
     {
-        // Staff made the account for the owner of this address, and nobody has used it yet.
+        // Staff made the account for the owner of this address, and it was never used.
         let statement = "SELECT id FROM account
             WHERE login = ? AND managed_by IS NOT NULL AND disabled_at IS NULL {for update}";
         if let Some(row) = transaction.row(statement, values![mailbox]).await? {
@@ -162,11 +162,11 @@ async fn account(transaction: &mut Transaction, provider: &Provider, person: &Pr
 }
 
 impl Person {
-    /// Returns whether the account is connected to the provider.
+    /// Returns whether the person's account is connected to the provider.
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn is_connected(&self) -> Result<bool, Problem> {
         let Some(provider) = &self.app.provider else { return Ok(false) };
         let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
@@ -178,7 +178,7 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// When there is no provider, or the person did not sign in recently.
+    /// Fails if there is no provider, or the person did not sign in recently.
     pub async fn disconnect(&self) -> Result<(), Problem> {
         let issuer = issuer(self.app.known_provider()?);
         self.lately_at_browser()?;

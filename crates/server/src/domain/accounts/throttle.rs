@@ -1,6 +1,6 @@
 //! Limits the requests of an account by a bucket of tokens that refills over time. Requests count by account and not by
-//! address, because a whole lecture hall may share an address. Sign-ins count by address, because one address has many
-//! accounts.
+//! address, because a whole lecture hall may share an address. Sign-ins count by address, because the account is not
+//! known before.
 use std::{
     collections::HashMap,
     hash::{DefaultHasher, Hash, Hasher},
@@ -44,8 +44,8 @@ impl Throttle {
     }
 }
 
-/// Returns the bucket's number for an address and a purpose. A user of IPv6 has 2^64 addresses, so the network counts
-/// there.
+/// Returns the bucket's number for an address and a purpose. A user of IPv6 has 2^64 addresses, so all addresses of a
+/// network share one bucket.
 pub(in crate::domain) fn bucket_id(address: Option<IpAddr>, what: &str) -> i64 {
     let network = address.map(|address| match address.to_canonical() {
         IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),
@@ -53,7 +53,7 @@ pub(in crate::domain) fn bucket_id(address: Option<IpAddr>, what: &str) -> i64 {
     });
     let mut hasher = DefaultHasher::new();
     (network, what).hash(&mut hasher);
-    // Accounts have positive numbers.
+    // Accounts have positive numbers, so negative ones are free for addresses.
     -hasher.finish().cast_signed().saturating_abs()
 }
 

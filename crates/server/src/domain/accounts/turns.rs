@@ -84,7 +84,7 @@ impl Turns {
         loop {
             let changed = self.0.changed.notified();
             tokio::pin!(changed);
-            // No notification is missed after this.
+            // A notification after this line is not missed.
             changed.as_mut().enable();
             {
                 let mut state = self.state();

@@ -17,7 +17,7 @@ use utoipa::{
     openapi::{KnownFormat, ObjectBuilder, OneOfBuilder, Schema, SchemaFormat, Type},
 };
 
-/// The rules for grading an assignment, and for uploads to it.
+/// The rules for uploads to an assignment, and for grading them.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
@@ -138,13 +138,13 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// When another version of the program wrote them.
+    /// Fails if another version of the program wrote them.
     pub(in crate::domain) fn read(text: &str) -> Result<Self, DbError> {
         let wrong = |error| DbError::Other(format!("the settings of an assignment can't be read: {error}"));
         serde_json::from_str(text).map_err(wrong)
     }
 
-    /// Returns the settings that differ from earlier ones, as text.
+    /// Describes the settings that differ from earlier ones.
     pub(in crate::domain) fn changes(&self, before: &Self) -> String {
         let fields = |settings: &Self| match serde_json::to_value(settings) {
             Ok(Value::Object(fields)) => fields,
@@ -167,7 +167,7 @@ impl Settings {
     ///
     /// # Errors
     ///
-    /// When a field is unknown, or has the wrong type.
+    /// Fails if a field is unknown, or has the wrong type.
     pub fn with_changes(&self, changes: &Map<String, Value>) -> Result<Self, Problem> {
         let Ok(Value::Object(mut fields)) = serde_json::to_value(self) else { return Err(Problem::fault()) };
         // A named suite replaces an uploaded one.
@@ -186,7 +186,7 @@ impl Settings {
         serde_json::from_value(Value::Object(fields)).map_err(|error| Problem::invalid(error.to_string()))
     }
 
-    /// Returns the settings, with the rules for grading from others.
+    /// Returns the settings, with the grading rules of other settings.
     pub(in crate::domain) fn graded_as(&self, other: &Self) -> Self {
         let Self { suite, suite_archive, rules, hints, program, seconds, .. } = other.clone();
         Self { suite, suite_archive, rules, hints, program, seconds, ..self.clone() }

@@ -42,7 +42,7 @@ impl Suites {
     ///
     /// # Errors
     ///
-    /// When the JSON is not such a list.
+    /// Fails if the JSON is not such a list.
     pub fn read(json: &[u8]) -> Result<Self, serde_json::Error> {
         let list: ListedSuites = serde_json::from_slice(json)?;
         let default = list.suites.iter().find(|suite| suite.default).map(|suite| suite.name.clone());

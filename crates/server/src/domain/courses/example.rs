@@ -6,7 +6,7 @@ use crate::domain::{
 };
 use crate::{problem::Problem, values};
 
-/// The name and title of the course. An existing course with this name counts as the example.
+/// The name and title of the course. An existing course with this name is taken for the example.
 const COURSE: (&str, &str) = ("example", "Example course");
 const ASSIGNMENT: (&str, &str) = ("m1", "Theme 2, Milestone 2: continuous-time collisions");
 const STUDENT: (&str, &str) = ("student", "A student");
@@ -17,7 +17,7 @@ impl App {
     ///
     /// # Errors
     ///
-    /// When there are other courses, or another account is called `student`, because the server is in real use.
+    /// Fails if there are other courses, or another account is called `student`, because the server is in real use.
     pub async fn example(&self) -> Result<Option<NewSecret>, Problem> {
         let mut transaction = self.0.database.begin().await?;
         let statement = "SELECT count(*) AS courses, count(CASE WHEN slug = ? THEN 1 END) AS examples FROM course";

@@ -22,7 +22,7 @@ pub struct MemberLine {
     pub(crate) line: u64,
     pub(crate) name: String,
     pub(crate) login: String,
-    // The address for the link, which is not stored.
+    // The mail address to which the link can be sent. It is not stored.
     pub(crate) email: String,
     pub(crate) role: String,
     /// The columns of the table with a value in this line that is not stored.
@@ -56,7 +56,7 @@ fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     }
 }
 
-/// Reads a table; each line has its errors.
+/// Reads a table. Errors are reported in the lines that contain them.
 fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
     let first = text.lines().next().unwrap_or_default();
     if first.trim_start().starts_with(['{', '[']) {
@@ -87,7 +87,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         }
         let is_beside = |(place, word): &(usize, &String)| !word.is_empty() && !places.contains(&Some(*place));
         let beside = words.iter().enumerate().filter(is_beside);
-        // No column is ignored silently: a column without a known heading is an error.
+        // A column without a known heading is an error, so that no column is ignored silently.
         let unused: Option<Vec<String>> =
             beside.map(|(place, _)| named.get(place).filter(|name| !name.is_empty()).cloned()).collect();
         let field = |column: usize| places[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
@@ -128,14 +128,14 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When it is not a table, or one of its members was changed after the event `seen`.
+    /// Fails if it is not a table, or one of its members was changed after the event `seen`.
     pub async fn import(&self, text: &str, preview: bool, seen: Option<i64>) -> Result<Vec<MemberLine>, Problem> {
         let mut lines = read(text)?;
         if preview || lines.iter().any(|line| line.error.is_some()) {
             return Ok(lines);
         }
         let mut transaction = self.begin().await?;
-        // The order does not depend on the table's, so that two simultaneous imports cannot deadlock.
+        // Members are added in the order of their logins, so that two simultaneous imports cannot deadlock.
         let mut in_order: Vec<&mut MemberLine> = lines.iter_mut().collect();
         in_order.sort_by(|one, other| one.login.cmp(&other.login));
         for line in in_order {

@@ -38,7 +38,7 @@ impl Staff {
     /// Returns the course's members.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn members(&self) -> Result<Vec<MemberInfo>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT account.login, account.name, member.role FROM member
@@ -51,7 +51,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When a name is invalid, or the member was changed after the event `seen`.
+    /// Fails if a name is invalid, or the member was changed after the event `seen`.
     pub async fn set_member(&self, login: &str, name: &str, role: &str, seen: Option<i64>) -> Result<Link, Problem> {
         check_member(login, name, role)?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -65,7 +65,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn last_event(&self) -> Result<i64, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT coalesce(max(id), 0) AS id FROM event WHERE course = ?";
@@ -73,8 +73,8 @@ impl Staff {
     }
 
     /// Rejects a change if another person has changed the same thing after the event `seen`; the error names the person
-    /// and the change. The check looks for a later event of a kind, of an assignment or of none, whose text begins with
-    /// given words.
+    /// and the change. The check searches for a later event with the same kind and assignment, whose text begins with
+    /// `words`.
     pub(in crate::domain) async fn check_seen(
         &self,
         transaction: &mut Transaction,
@@ -141,7 +141,7 @@ impl Staff {
         }
     }
 
-    /// Checks that the course keeps a member of staff if this member gets another role.
+    /// Checks that the course still has staff if this member loses the role.
     async fn check_left(&self, transaction: &mut Transaction, login: &str, role: &str) -> Result<(), Problem> {
         let statement = "SELECT count(*) AS n FROM member WHERE course = ? AND role = 'staff' AND account <> ?";
         let goes = login == self.account.login && role != "staff" && !self.account.is_admin;
@@ -173,7 +173,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When the person is not a member, or was changed after the event `seen`.
+    /// Fails if the person is not a member, or was changed after the event `seen`.
     pub async fn remove_member(&self, login: &str, seen: Option<i64>) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         self.check_seen(&mut transaction, ("member", None), &format!("{login} is "), seen).await?;
@@ -191,7 +191,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When the account does not belong to this course alone, or is not a member.
+    /// Fails if the account does not belong to this course alone, or is not a member.
     pub async fn new_link(&self, login: &str) -> Result<Link, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT account.id, account.is_admin, account.managed_by, member.role

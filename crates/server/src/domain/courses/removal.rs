@@ -88,7 +88,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When the course has no submission with this number.
+    /// Fails if the course has no submission with this number.
     pub async fn remove_submission(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.begin().await?;
         let statement = "SELECT assignment.id FROM submission JOIN assignment ON assignment.id = submission.assignment
@@ -104,7 +104,7 @@ impl Staff {
     /// Removes an assignment with its submissions.
     ///
     /// # Errors
-    /// When there is no such assignment.
+    /// Fails if there is no such assignment.
     pub async fn remove_assignment(&self, slug: &str) -> Result<(), Problem> {
         let assignment = self.assignment(slug).await?;
         remove_in_batches(&self.app.0.database, SOME_OF_ASSIGNMENT, assignment.id).await?;
@@ -137,7 +137,7 @@ impl Admin {
     /// Removes a course with its assignments and submissions. People's accounts stay.
     ///
     /// # Errors
-    /// When there is no such course.
+    /// Fails if there is no such course.
     pub async fn remove_course(&self, slug: &str) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let course = self.course(&mut transaction, slug).await?;
@@ -175,7 +175,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When the account does not exist, or is the administrator's own.
+    /// Fails if the account does not exist, or is the administrator's own.
     pub async fn remove_person(&self, login: &str) -> Result<(), Problem> {
         ensure(login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.read().await?;

@@ -1,5 +1,5 @@
-//! The choices of staff who came from a platform: the course here that belongs to the platform's, and the assignment
-//! that a link opens.
+//! The choices of staff who come from a learning platform: the course on this server that belongs to the platform's
+//! course, and the assignment that a link opens.
 use crate::domain::{
     Member, Person,
     platforms::launch,
@@ -59,7 +59,7 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// When the secret is unknown, or belongs to another person.
+    /// Fails if the secret is unknown, or belongs to another person.
     pub async fn choice(&self, secret: &str) -> Result<LinkTarget, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
@@ -93,7 +93,7 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// When there is no such course, or the new one's name is taken.
+    /// Fails if there is no such course, or the new one's name is taken.
     pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
@@ -118,7 +118,7 @@ impl Person {
         let (platform, memberships) = (pending.platform.id, arrival.memberships.as_deref());
         let values = values![platform, &arrival.deployment, &arrival.context.id, title, course, memberships];
         let made = transaction.one(statement, values).await?.int("id")?;
-        // The platform's message began this session, and ended all other sessions of an account that was a student's.
+        // The platform's message began this session, and ended all other sessions if the account was a student's.
         let statement = "INSERT INTO platform_member (platform_course, account) VALUES (?, ?)
             ON CONFLICT (platform_course, account) DO NOTHING";
         transaction.execute(statement, values![made, self.account.id]).await?;
@@ -131,11 +131,11 @@ impl Person {
         Ok(transaction.commit().await?)
     }
 
-    /// Makes the link open an assignment. If the platform requested the link, returns the expected answer.
+    /// Makes the link open an assignment. If the platform requested the link, this returns the signed answer.
     ///
     /// # Errors
     ///
-    /// When the person does not teach the course, or it has no such assignment.
+    /// Fails if the person does not teach the course, or it has no such assignment.
     pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<LinkStep, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
@@ -184,7 +184,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn platforms(&self) -> Result<Vec<String>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT DISTINCT platform.name FROM platform_course

@@ -38,7 +38,7 @@ pub struct LoginRequest {
     pub lti_deployment_id: Option<String>,
 }
 
-/// The next step of a browser.
+/// The redirect to a service at which a person signs in.
 #[derive(Debug, Clone)]
 pub struct LoginAnswer {
     /// The address to which the browser is redirected.
@@ -88,7 +88,7 @@ impl Visitor {
     ///
     /// # Errors
     ///
-    /// When no platform with this name is registered.
+    /// Fails if no platform with this name is registered.
     pub async fn platform(&self, request: &LoginRequest) -> Result<Platform, Problem> {
         self.app.check_launchable()?;
         let mut transaction = self.app.0.database.read().await?;
@@ -107,7 +107,7 @@ impl Visitor {
     ///
     /// # Errors
     ///
-    /// When there are too many sign-ins, or the database does not answer.
+    /// Fails if there are too many sign-ins, or the database does not answer.
     pub async fn begin_login(&self, platform: &Platform, request: &LoginRequest) -> Result<LoginAnswer, Problem> {
         let browser = (&self.secrets, self.secrets.browser.as_ref());
         let BegunSignIn { state, browser } = self.app.begin_sign_in(&platform.id.to_string(), browser, (0, "")).await?;
@@ -135,7 +135,7 @@ impl Visitor {
     ///
     /// # Errors
     ///
-    /// When the answer does not belong to such a sign-in or platform, or the person may not sign in this way.
+    /// Fails if the answer does not belong to such a sign-in or platform, or the person may not sign in this way.
     pub async fn launch(&self, state: &str, token: &str) -> Result<LaunchTarget, Problem> {
         let pending = self.app.pending_sign_in(state, self.secrets.browser.as_ref(), Problem::refused_launch).await?;
         let statement = "SELECT id, name, settings FROM platform WHERE id = ? AND disabled_at IS NULL";
@@ -178,7 +178,7 @@ pub(in crate::domain) async fn place(
     transaction.find(statement, values![platform, &arrival.deployment, &arrival.context.id]).await
 }
 
-/// Finds or creates the account, updates its role, and returns the page to which it is redirected.
+/// Finds or creates the person's account, updates its role, and returns the page to open.
 async fn arrive(
     transaction: &mut Transaction,
     platform: &Platform,
@@ -231,8 +231,8 @@ async fn arrive(
     }
 }
 
-/// Returns the assignment that a link names itself, because it was chosen by deep linking or written by the link's
-/// author.
+/// Returns the assignment that the link itself contains, because staff chose it by deep linking or wrote it into the
+/// link.
 async fn find_named_assignment(
     transaction: &mut Transaction,
     place: i64,
@@ -298,7 +298,7 @@ async fn account(transaction: &mut Transaction, platform: &Platform, person: &Lt
     let account = find_or_make(transaction, platform, person).await?;
     let row = transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
     ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_launch("your account here is closed"))?;
-    // Otherwise the owner of any platform could do everything here.
+    // Without this check, the owner of any registered platform could act as an administrator here.
     if row.flag("is_admin")? {
         return Err(Problem::refused_launch("you are an administrator of this server: sign in on its own pages"));
     }
@@ -320,7 +320,7 @@ pub(in crate::domain) async fn find_or_make(
     newcomer.find_or_make(transaction).await
 }
 
-/// Makes a person a member, as a platform requests, or changes their role; roles that staff set here stay.
+/// Makes a person a member, or changes their role, as a platform requests. Roles that staff set on this server stay..
 pub(in crate::domain) async fn enroll(
     transaction: &mut Transaction,
     platform: i64,
@@ -353,13 +353,13 @@ pub(in crate::domain) async fn enroll(
     view::note(transaction, &Entry { course: Some(course), ..Entry::new("member", account, &text) }).await
 }
 
-/// The choice that staff has to make, and its person.
+/// A choice that staff must make, with the person who must make it.
 pub(in crate::domain) struct PendingLaunch {
     pub(in crate::domain) platform: Platform,
     pub(in crate::domain) arrival: Arrival,
 }
 
-/// Returns the choice with a secret that an account has to make.
+/// Returns the pending choice that belongs to a secret and an account.
 pub(in crate::domain) async fn pending(
     transaction: &mut Transaction,
     account: i64,

@@ -22,13 +22,13 @@ pub struct RosterRead {
     pub members: usize,
     /// The number of members who left.
     pub left: usize,
-    /// The logins of people who joined.
+    /// The logins of people who join.
     pub comes: Vec<String>,
-    /// The logins of people who left.
+    /// The logins of people who leave.
     pub goes: Vec<String>,
 }
 
-/// The handling of a roster that was read.
+/// The handling of a roster after it is read.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RosterWish {
     /// Only report who would join and leave.
@@ -62,7 +62,7 @@ impl App {
     /// Returns the service's public keys.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn platform_keys(&self) -> Result<Value, Problem> {
         Ok(lti::public_keys(&self.0.database).await?)
     }
@@ -72,7 +72,7 @@ impl Admin {
     /// Returns all platforms.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn platforms(&self) -> Result<Vec<Platform>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, name, settings FROM platform WHERE disabled_at IS NULL ORDER BY name";
@@ -83,7 +83,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When a setting is invalid.
+    /// Fails if a setting is invalid.
     pub async fn set_platform(&self, name: &str, wish: &PlatformWish) -> Result<Platform, Problem> {
         identity::check_slug("a platform's name", name)?;
         wish.check(self.app.lti.over_http())?;
@@ -94,7 +94,7 @@ impl Admin {
             let detail = format!("this issuer and client are registered as {}", taken.text("name")?);
             return Err(Problem::conflict(detail, "change that one"));
         }
-        // Accounts belong to the people of one issuer, and must not become another issuer's.
+        // Accounts belong to the people of one issuer, so the issuer cannot change.
         let was = transaction.row("SELECT issuer FROM platform WHERE name = ?", values![name]).await?;
         if was.is_some_and(|was| was.text("issuer").is_ok_and(|issuer| issuer != wish.issuer)) {
             return Err(Problem::conflict("another issuer is registered under this name", "give it another name"));
@@ -115,7 +115,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When there is no platform with this name.
+    /// Fails if there is no platform with this name.
     pub async fn shut_platform(&self, name: &str) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE platform SET disabled_at = {now} WHERE name = ? AND disabled_at IS NULL";
@@ -129,7 +129,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn new_platform_key(&self) -> Result<(), Problem> {
         lti::new_key(&self.app.0.database).await?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -144,7 +144,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When no platform gives a list, one does not answer, or more than a third would leave without a confirmation;
+    /// Fails if no platform gives a list, one does not answer, or more than a third would leave without a confirmation;
     /// then nothing changes.
     pub async fn read_roster(&self, wish: RosterWish) -> Result<RosterRead, Problem> {
         let app = &self.app;
@@ -205,7 +205,7 @@ impl Staff {
             }
             enroll(&mut transaction, platform.id, place, course, account, role).await?;
         }
-        // An empty answer comes from a filter, or an error.
+        // An empty list is probably caused by a filter or an error.
         if present.is_empty() {
             return Ok(RosterRead::default());
         }
@@ -246,7 +246,7 @@ impl Staff {
     /// Returns the messages to platforms about an assignment's scores.
     ///
     /// # Errors
-    /// When there is no such assignment.
+    /// Fails if there is no such assignment.
     pub async fn scores(&self, slug: &str) -> Result<Vec<ScoreInfo>, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         let statement = "SELECT platform.name AS platform, account.login, platform_score.content, platform_score.stamp,
@@ -269,7 +269,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When there is no such assignment.
+    /// Fails if there is no such assignment.
     pub async fn send_scores(&self, slug: &str) -> Result<usize, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;

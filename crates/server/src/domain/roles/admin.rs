@@ -17,7 +17,7 @@ pub struct Admin {
     pub(crate) app: App,
 }
 
-/// A course with the logins of its staff, and its size.
+/// A course with its size and the logins of its staff.
 pub struct CourseSize {
     pub(crate) slug: String,
     pub(crate) title: String,
@@ -58,7 +58,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When its name is taken.
+    /// Fails if its name is taken.
     pub async fn new_course(&self, slug: &str, title: &str) -> Result<Course, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         make_course(&mut transaction, (slug, title)).await?;
@@ -70,7 +70,7 @@ impl Admin {
     /// Returns all courses with their sizes.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn course_sizes(&self) -> Result<Vec<CourseSize>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT slug, title,
@@ -84,12 +84,8 @@ impl Admin {
         Ok(transaction.all(statement, values![]).await?)
     }
 
-    /// Returns a page of the accounts whose login or name contains given words, after a login, and whether there are
-    /// more.
-    ///
-    /// # Errors
-    ///
-    /// When the database does not answer.
+    /// Returns a page of the accounts whose login or name contains `words`, beginning after a login, and whether there
+    /// are more.
     pub async fn accounts_page(&self, words: &str, after: &str) -> Result<(Vec<Account>, bool), Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL AND login > ?
@@ -106,7 +102,7 @@ impl Admin {
     /// Returns all accounts.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn accounts(&self) -> Result<Vec<Account>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL ORDER BY login";
@@ -118,7 +114,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When a name is invalid.
+    /// Fails if a name is invalid.
     pub async fn set_account(&self, login: &str, name: &str, is_admin: bool) -> Result<Link, Problem> {
         identity::check_slug("a login", login)?;
         identity::check_title("a name", name)?;
@@ -145,7 +141,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When the account does not exist, or is the administrator's own.
+    /// Fails if the account does not exist, or is the administrator's own.
     pub async fn disable_account(&self, login: &str) -> Result<(), Problem> {
         ensure(login != self.account.login, Problem::own_account())?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -159,7 +155,7 @@ impl Admin {
     /// Returns the tokens of workers.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn worker_tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement =
@@ -171,7 +167,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When its name is invalid.
+    /// Fails if its name is invalid.
     pub async fn new_worker_token(&self, name: &str) -> Result<NewToken, Problem> {
         self.app.new_worker_token(name, self.account.id).await
     }
@@ -180,7 +176,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When there is no token with this number.
+    /// Fails if there is no token with this number.
     pub async fn revoke_worker_token(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account IS NULL AND revoked_at IS NULL";
@@ -193,7 +189,7 @@ impl Admin {
     /// Returns the queue and the workers.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn queue(&self) -> Result<Queue, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(view::queue(&mut transaction, &self.app).await?)
@@ -203,7 +199,7 @@ impl Admin {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(transaction.all(view::events!(""), values![before.unwrap_or(i64::MAX)]).await?)
@@ -224,7 +220,7 @@ impl App {
     /// Makes a token for workers, in the name of the first administrator.
     ///
     /// # Errors
-    /// When its name is none, or the server was never started.
+    /// Fails if the name is invalid, or the server was never started.
     pub async fn worker_token(&self, name: &str) -> Result<NewToken, Problem> {
         let statement = "SELECT id FROM account WHERE is_admin = 1 ORDER BY id LIMIT 1";
         let first = self.0.database.read().await?.row(statement, values![]).await?;
@@ -236,7 +232,7 @@ impl App {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn first_link(&self) -> Result<Option<NewSecret>, Problem> {
         let mut transaction = self.0.database.begin().await?;
         let statement =
@@ -250,7 +246,7 @@ impl App {
         }
         let statement = "SELECT id FROM account WHERE login = 'admin' AND is_admin = 1";
         let account = transaction.one(statement, values![]).await?.int("id")?;
-        // Another server that starts at the same time has printed a link, too.
+        // Another server that started at the same time has also printed a link, so both must stay valid.
         let link = identity::further_link(&mut transaction, account, None, Way::Own).await?;
         transaction.commit().await?;
         Ok(Some(link))
@@ -260,7 +256,7 @@ impl App {
     ///
     /// # Errors
     ///
-    /// When there is no such administrator.
+    /// Fails if there is no such administrator.
     pub async fn admin_link(&self, login: &str) -> Result<NewSecret, Problem> {
         let mut transaction = self.0.database.begin().await?;
         let statement = "SELECT id FROM account WHERE login = ? AND is_admin = 1 AND disabled_at IS NULL";

@@ -1,5 +1,4 @@
-//! A member of a course: a student, or staff who tries something out. Students see their own submissions; staff sees
-//! all.
+//! A member of a course. Students see their own submissions; staff see all.
 use crate::domain::{
     App,
     view::{self, Account, Assignment, Entry, History, Submission},
@@ -15,7 +14,7 @@ use crate::{
 };
 use futures_util::StreamExt;
 
-/// The name of the report without groups that the suite hides from students.
+/// The name of the report for students, without the groups that the suite hides.
 const STUDENT_PAGE: &str = "report.html";
 
 /// A member of a course.
@@ -29,7 +28,7 @@ pub struct Member {
 }
 
 impl Member {
-    /// Returns an entry of the course's audit log.
+    /// Creates an entry for the course's audit log.
     pub(in crate::domain) fn entry<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Entry<'a> {
         Entry { course: Some(self.course), assignment, ..Entry::new(kind, self.account.id, text) }
     }
@@ -38,7 +37,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn assignments(&self) -> Result<Vec<Assignment>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
@@ -57,7 +56,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the assignment does not exist.
+    /// Fails if the assignment does not exist.
     pub async fn assignment(&self, slug: &str) -> Result<Assignment, Problem> {
         Ok(self.hide_course_suite(self.read_at(slug).await?.1))
     }
@@ -83,7 +82,7 @@ impl Member {
     /// Returns the member's own submissions to an assignment, newest first.
     ///
     /// # Errors
-    /// When there is no such assignment.
+    /// Fails if there is no such assignment.
     pub async fn submissions(&self, assignment: &str) -> Result<Vec<Submission>, Problem> {
         let (mut transaction, assignment) = self.read_at(assignment).await?;
         let mut submissions = view::submissions_of(&mut transaction, assignment.id, self.account.id).await?;
@@ -91,7 +90,7 @@ impl Member {
             if !self.is_staff {
                 submission.fault = None;
             }
-            // The hidden parts were not separated yet, which needs the files.
+            // The hidden parts of old results are not stored separately yet; separating them needs the files.
             if submission.grade.as_ref().is_some_and(|grade| !self.is_staff && grade.shown.is_none()) {
                 *submission = self.find_submission(&mut transaction, submission.id).await?;
                 submission.grade.iter_mut().for_each(|grade| grade.outcome.files.clear());
@@ -106,7 +105,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the member does not see the assignment.
+    /// Fails if the member does not see the assignment.
     pub async fn attempts(&self, submission: &Submission) -> Result<Vec<Submission>, Problem> {
         if !self.is_staff {
             return self.submissions(&submission.assignment).await;
@@ -122,7 +121,7 @@ impl Member {
         let files = &mut grade.outcome.files;
         files.retain(|file| self.is_staff || file.name != STAFF_PAGE);
         if self.is_staff || submission.is_published {
-            // The page without hidden groups.
+            // Students see the page without hidden groups.
             if files.iter().any(|file| file.name == PUBLISHED_PAGE) {
                 files.retain(|file| file.name != STUDENT_PAGE);
             }
@@ -162,7 +161,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the member sees no submission with this number.
+    /// Fails if the member can see no submission with this number.
     pub async fn submission(&self, id: i64) -> Result<Submission, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         self.find_submission(&mut transaction, id).await
@@ -172,7 +171,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the member sees no submission with this number.
+    /// Fails if the member can see no submission with this number.
     pub async fn history(&self, id: i64) -> Result<Vec<History>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
@@ -183,7 +182,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When there is no report with this name.
+    /// Fails if there is no report with this name.
     pub async fn report(&self, id: i64, name: &str) -> Result<OutputFile, Problem> {
         let submission = self.read_with_bytes(id).await?;
         submission
@@ -196,7 +195,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the member sees no submission with this number.
+    /// Fails if the member can see no submission with this number.
     pub async fn upload(&self, id: i64) -> Result<(Submission, Artifact), Problem> {
         let submission = self.read_with_bytes(id).await?;
         let wrong = |what: &str| Problem::from(DbError::Other(format!("a submission's {what} is invalid")));
@@ -215,7 +214,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the store fails.
+    /// Fails if the store fails.
     pub async fn open(&self, artifact: &Artifact) -> Result<OpenArtifact, Problem> {
         Ok(self.app.0.store.open(&artifact.digest).await?)
     }
@@ -224,7 +223,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the store fails.
+    /// Fails if the store fails.
     pub async fn beginning(&self, artifact: &Artifact, most: usize) -> Result<Vec<u8>, Problem> {
         let mut pieces = self.open(artifact).await?.pieces;
         let mut bytes = Vec::new();

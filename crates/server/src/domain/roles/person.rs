@@ -12,7 +12,7 @@ use crate::{
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// A course, with the person's role in it.
+/// A course, with the role of a person in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct CourseOf {
     /// The course.
@@ -57,7 +57,7 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn courses(&self) -> Result<Vec<CourseOf>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let all: i64 = self.account.is_admin.into();
@@ -73,7 +73,7 @@ impl Person {
     /// Returns the person's tokens.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn tokens(&self) -> Result<Vec<TokenInfo>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, name, created_at FROM token WHERE account = ? AND revoked_at IS NULL ORDER BY id";
@@ -84,7 +84,7 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// When its name is invalid, there are too many, or the person did not sign in recently.
+    /// Fails if its name is invalid, there are too many, or the person did not sign in recently.
     pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_title("a token's name", name)?;
         let way = if self.lately_at_browser()?.is_vouched { Way::Vouched } else { Way::Own };
@@ -103,7 +103,7 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// When the person has no token with this number.
+    /// Fails if the person has no token with this number.
     pub async fn revoke_token(&self, id: i64) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "UPDATE token SET revoked_at = {now} WHERE id = ? AND account = ? AND revoked_at IS NULL";

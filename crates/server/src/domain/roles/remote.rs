@@ -66,7 +66,7 @@ impl Remote {
     /// Returns the next job, if there is one.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn claim(&self) -> Result<Option<ClaimedJob>, Problem> {
         Ok(self.source().claim().await?)
     }
@@ -75,7 +75,7 @@ impl Remote {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn tick(&self, slots: usize, fault: Option<&str>, version: &str) -> Result<Manners, Problem> {
         let fault = fault.map(|fault| strip_controls(fault, 2000));
         let source = self.source().with_version(strip_controls(version, 60));
@@ -89,7 +89,7 @@ impl Remote {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<bool, Problem> {
         Ok(self.owns(lease).await? && self.source().renew(lease, progress).await?.held)
     }
@@ -97,7 +97,7 @@ impl Remote {
     /// Returns a job to the queue.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn release(&self, lease: &Lease) -> Result<bool, Problem> {
         Ok(self.owns(lease).await? && self.source().release(lease).await?.held)
     }
@@ -105,7 +105,7 @@ impl Remote {
     /// Reports that a try failed.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn fail(&self, lease: &Lease, fault: &str) -> Result<bool, Problem> {
         Ok(self.owns(lease).await? && self.source().fail(lease, &strip_controls(fault, 2000)).await?.held)
     }
@@ -114,7 +114,7 @@ impl Remote {
     ///
     /// # Errors
     ///
-    /// When the result is invalid.
+    /// Fails if the result is invalid.
     pub async fn finish(&self, lease: &Lease, outcome: &Outcome) -> Result<bool, Problem> {
         if !self.owns(lease).await? {
             return Ok(false);
@@ -150,7 +150,7 @@ impl Remote {
         let mut transaction = self.app.0.database.first().read().await?;
         let mut names = std::collections::BTreeSet::new();
         for file in &mut outcome.files {
-            // The worker cannot choose the name or media type of a report.
+            // The server, not the worker, chooses the names and media types of reports.
             let Some((_, _, media_type)) = REPORTS.iter().find(|(_, name, _)| *name == file.name) else {
                 return Err(Problem::invalid(format!("no report is called {}", strip_controls(&file.name, 60))));
             };
@@ -181,7 +181,7 @@ impl Remote {
     ///
     /// # Errors
     ///
-    /// When the worker does not hold the job, or the artifact is not the job's.
+    /// Fails if the worker does not hold the job, or the artifact is not the job's.
     pub async fn artifact(&self, lease: &Lease, digest: &Digest) -> Result<OpenArtifact, Problem> {
         let task = self.leased_task(lease).await?;
         let suite = matches!(&task.suite, Suite::Archive(suite) if suite == digest);
@@ -193,12 +193,12 @@ impl Remote {
     ///
     /// # Errors
     ///
-    /// When the worker does not hold the job, or the store fails.
+    /// Fails if the worker does not hold the job, or the store fails.
     pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, Problem> {
         self.leased_task(lease).await?;
         let artifact = self.app.0.store.put_file(file).await?;
         let mut transaction = self.app.0.database.first().begin().await?;
-        // A request that takes the job away waits for this one, or this one finds that the job was taken.
+        // This transaction and one that takes the job away wait for each other.
         let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
             {for update}";
         let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
@@ -215,7 +215,7 @@ impl Remote {
     ///
     /// # Errors
     ///
-    /// When the worker does not hold the job.
+    /// Fails if the worker does not hold the job.
     pub async fn check_held(&self, lease: &Lease) -> Result<u64, Problem> {
         self.leased_task(lease).await.map(|_| MAX_FILE_BYTES)
     }
@@ -225,7 +225,7 @@ impl Remote {
 const MAX_POINTS: f64 = 1e9;
 const MAX_SLOTS: usize = 256;
 
-/// Returns untrusted text on one line, without control characters, cut to `most`.
+/// Returns untrusted text on one line, without control characters, and with a maximum length.
 fn strip_controls(text: &str, most: usize) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(most).collect()
 }

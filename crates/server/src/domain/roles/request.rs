@@ -1,4 +1,4 @@
-//! The role of a request's sender, by the secrets in the request.
+//! Finds the role of a request's sender from the secrets in the request.
 use crate::domain::{
     Admin, App, Member, Person, Remote, Secrets, Staff, Visitor,
     accounts::identity::{self, SessionState},
@@ -12,7 +12,7 @@ use crate::{
 use std::time::Instant;
 
 impl App {
-    /// Returns the owner of the secrets.
+    /// Returns the account that the secrets belong to.
     async fn account(&self, secrets: &Secrets) -> Result<(Account, Option<SessionState>), Problem> {
         let (account, seen) = match secrets {
             Secrets { bearer: Some(token), .. } => {
@@ -49,7 +49,7 @@ impl App {
     ///
     /// # Errors
     ///
-    /// When the request is not signed in, or there are too many requests.
+    /// Fails if the request is not signed in, or there are too many requests.
     pub async fn person(&self, secrets: &Secrets) -> Result<Person, Problem> {
         let (account, session) = self.account(secrets).await?;
         Ok(Person { account, session, app: self.clone() })
@@ -59,7 +59,7 @@ impl App {
     ///
     /// # Errors
     ///
-    /// When the token is not a worker's, or no longer valid.
+    /// Fails if the token is not a worker's, or no longer valid.
     pub async fn remote(&self, token: &str, name: &str) -> Result<Remote, Problem> {
         let mut transaction = self.0.database.read().await?;
         let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
@@ -81,8 +81,8 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// When the person is not a member, or there is no such course; the error is the same, so that others do not learn
-    /// whether it exists.
+    /// Fails if the person is not a member, or there is no such course; the error is the same, so that others do not
+    /// learn whether it exists.
     pub async fn member_of(self, slug: &str) -> Result<Member, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT course.id, course.slug, course.title, member.role FROM course
@@ -105,7 +105,7 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// When the person is not an administrator.
+    /// Fails if the person is not an administrator.
     pub fn admin(self) -> Result<Admin, Problem> {
         match self.account.is_admin {
             true => Ok(Admin { account: self.account, app: self.app }),
@@ -119,7 +119,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the person is not staff.
+    /// Fails if the person is not staff.
     pub fn staff(self) -> Result<Staff, Problem> {
         if self.is_staff { Ok(Staff(self)) } else { Err(Problem::not_allowed("this is for the course's staff")) }
     }

@@ -94,7 +94,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When a part of it is invalid, or the assignment was changed after `revision`.
+    /// Fails if a part of the change is invalid, or the assignment was changed after `revision`.
     pub async fn set_assignment(
         &self,
         slug: &str,
@@ -133,7 +133,7 @@ impl Staff {
         let withholds = was_published && hides && !is_same_suite;
         let values = values![self.course, slug, title, visible, settings.text(), withholds];
         let assignment = Assignment::from_row(&transaction.one(statement, values).await?)?;
-        // Late submissions may have other points now, and platforms receive the shown points.
+        // A new rule for late work can change the points of late submissions, and platforms receive the shown points.
         if withholds || before.late_policy() != settings.late_policy() {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
@@ -176,7 +176,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When there is no such assignment.
+    /// Fails if there is no such assignment.
     pub async fn publish(&self, slug: &str, published: bool) -> Result<Assignment, Problem> {
         let mut transaction = self.begin().await?;
         let assignment = self.find_assignment(&mut transaction, slug).await?;
@@ -195,7 +195,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When there is no such assignment, it was changed after `revision`, or the store fails.
+    /// Fails if there is no such assignment, it was changed after `revision`, or the store fails.
     pub async fn set_suite(
         &self,
         slug: &str,
@@ -213,7 +213,7 @@ impl Staff {
     /// Returns the suites that were uploaded to the course, latest first.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn suites(&self) -> Result<Vec<UploadedSuite>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT digest, name, uploaded_at FROM suite WHERE course = ?
@@ -221,14 +221,14 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Returns whether any submission to an assignment was graded by a suite that hides groups.
+    /// Returns whether some submission to an assignment was graded by a suite that hides groups.
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn hides(&self, assignment: &Assignment) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        // Older versions may not have separated the hidden parts.
+        // Results of older versions may contain the hidden parts, too.
         let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id
             WHERE submission.assignment = ? AND coalesce(result.shown, 'unknown') <> '' AND result.code <> 'JE'
             LIMIT 1";
@@ -239,7 +239,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn submissions_after(&self, assignment: i64, after: i64) -> Result<Vec<Submission>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(view::submissions_after(&mut transaction, assignment, after).await?)
@@ -249,7 +249,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = view::events!("AND event.course = ?");
@@ -259,7 +259,7 @@ impl Staff {
     /// Returns the queue and the workers.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn queue(&self) -> Result<Queue, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(view::queue(&mut transaction, &self.app).await?)

@@ -28,7 +28,8 @@ pub struct Visitor {
     pub(in crate::domain) secrets: Secrets,
 }
 
-/// The maximum number of sign-ins by link or token from one address per minute; a lecture hall may share an address.
+/// The maximum number of sign-ins by link or token from one address per minute; a whole lecture hall may share an
+/// address.
 const MAX_SIGN_INS: u32 = 600;
 
 impl Visitor {
@@ -42,7 +43,7 @@ impl Visitor {
     ///
     /// # Errors
     ///
-    /// When the link is unknown, used or too old.
+    /// Fails if the link is unknown, used or too old.
     pub async fn sign_in_by_link(&self, link: &str) -> Result<NewSecret, Problem> {
         self.count_sign_in()?;
         let unknown = || Problem::unknown_secret("link", "ask the course's staff for a new one");
@@ -58,7 +59,7 @@ impl Visitor {
     /// Returns whether a link can still be used to sign in.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn is_link(&self, link: &str) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(identity::is_link(&mut transaction, link).await?)
@@ -68,7 +69,7 @@ impl Visitor {
     ///
     /// # Errors
     ///
-    /// When the token is unknown or revoked.
+    /// Fails if the token is unknown or revoked.
     pub async fn sign_in_by_token(&self, token: &str) -> Result<NewSecret, Problem> {
         self.count_sign_in()?;
         let mut transaction = self.app.0.database.read().await?;
@@ -84,7 +85,7 @@ impl Visitor {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn sign_out(&self) -> Result<(), Problem> {
         if let Some(session) = &self.secrets.session {
             let mut transaction = self.app.0.database.read().await?;
@@ -103,7 +104,7 @@ impl Visitor {
     ///
     /// # Errors
     ///
-    /// When they can't.
+    /// Fails if they can't.
     pub async fn check_ready(&self) -> Result<(), Problem> {
         self.app.0.storage.prove().await
     }
@@ -113,7 +114,7 @@ impl Visitor {
     ///
     /// # Errors
     ///
-    /// When they can't be written as text.
+    /// Fails if they can't be written as text.
     pub async fn metrics(&self) -> Result<String, Problem> {
         let parts = &self.app.0;
         let queue = parts.counts.read(&parts.database, &parts.policy).await;

@@ -1,4 +1,4 @@
-//! Grades submissions again on which the grader failed.
+//! Grades submissions again after the grader failed on them.
 use crate::domain::{
     Staff,
     submissions::bulk::enqueue_replaced,
@@ -11,7 +11,7 @@ use crate::{
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// The submissions that are graded again.
+/// The answer to a request for grading again.
 #[derive(Serialize, ToSchema)]
 pub struct RegradeOrder {
     /// The number of submissions.
@@ -23,7 +23,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When there is no submission with this number, it is being graded, or its bytes are no longer stored.
+    /// Fails if there is no submission with this number, it is being graded, or its bytes are no longer stored.
     pub async fn grade_again(&self, id: i64) -> Result<RegradeOrder, Problem> {
         let submission = self.submission(id).await?;
         let assignment = self.assignment(&submission.assignment).await?;
@@ -41,12 +41,8 @@ impl Staff {
         Ok(RegradeOrder { jobs })
     }
 
-    /// Grades all submissions again on which the grader failed, of one assignment or of the whole course; returns their
+    /// Grades all submissions of one assignment or the whole course again if the grader failed on them; returns their
     /// number.
-    ///
-    /// # Errors
-    ///
-    /// When there is no such assignment.
     pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<RegradeOrder, Problem> {
         let assignments = match assignment {
             Some(slug) => vec![self.assignment(slug).await?],

@@ -1,4 +1,4 @@
-//! Jobs for many submissions in one statement of the database.
+//! Enqueues jobs for many submissions with one SQL statement.
 use crate::domain::view::Assignment;
 use crate::{
     db::{Transaction, Value},
@@ -16,7 +16,8 @@ macro_rules! payload {
 }
 pub(in crate::domain) use payload;
 
-/// Returns the texts between the columns in a [`payload`], which are the same for all submissions to an assignment.
+/// Returns the constant texts between the columns in a [`payload`]. They are the same for all submissions to an
+/// assignment.
 pub(in crate::domain) fn pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
     let any = crate::store::Artifact { digest: crate::store::Digest::from_bytes(b""), size: 0 };
     let task = assignment.settings.task(Input { form: Form::Program, name: String::new(), artifact: any });
@@ -32,7 +33,7 @@ pub(in crate::domain) fn pieces(assignment: &Assignment) -> Result<[String; 5], 
     ])
 }
 
-/// Enqueues submissions to an assignment, given by number, on request; their earlier jobs are replaced.
+/// Enqueues submissions with given numbers, on a person's request, and cancels their earlier jobs.
 pub(in crate::domain) async fn enqueue_replaced(
     transaction: &mut Transaction,
     assignment: &Assignment,
@@ -43,7 +44,7 @@ pub(in crate::domain) async fn enqueue_replaced(
     let mut values: Vec<Value> = vec![format!("again {}", assignment.id).into()];
     values.extend(pieces.into_iter().map(Value::from));
     values.extend([by, assignment.id, *ids.start(), *ids.end()].map(Value::from));
-    // The jobs are a second apart, so that new uploads are graded in between.
+    // The ranks of the jobs are a second apart, so that new uploads are graded in between.
     let statement = concat!(
         "INSERT INTO job (lane, submission, fair_key, payload, state, rank, run_after, enqueued_at, asked_by)
          SELECT 'grading', submission.id, CAST(? AS TEXT), ",

@@ -28,7 +28,7 @@ pub(in crate::domain) async fn enqueue_missing(
     let mut values: Vec<Value> = vec![campaign.into(), turn.key().into()];
     values.extend(pieces(assignment)?.into_iter().map(Value::from));
     values.extend([from, turn.spacing_millis(), assignment.id, campaign].map(Value::from));
-    // The plus keeps SQLite from searching all jobs of the regrade for each submission.
+    // The unary plus prevents an index, with which SQLite would search all jobs of the regrade for each submission.
     let statement = concat!(
         "INSERT INTO job (lane, submission, campaign, fair_key, payload, state, rank, run_after, enqueued_at)
          SELECT 'grading', submission.id, CAST(? AS {int}), CAST(? AS TEXT), ",

@@ -1,4 +1,4 @@
-//! The texts that are stored with results next to their grades, and the scenes that changed between attempts.
+//! The texts that are stored with a result next to its grade, and the scenes that changed between attempts.
 use crate::domain::{Member, view::Submission};
 use crate::{
     db::{DbError, Row},
@@ -8,13 +8,13 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The scenes that a result does not accept, each with its verdict's code.
+/// The scenes that are not accepted in a result, each with the code of its verdict.
 pub type FailedScenes = BTreeMap<String, String>;
 
 /// The scenes that changed in an attempt.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AttemptChange {
-    /// The number of the preceding attempt.
+    /// The number of the attempt before it.
     pub since: i64,
     /// The scenes that became right.
     pub right: Vec<String>,
@@ -31,7 +31,7 @@ impl AttemptChange {
     }
 }
 
-/// Reads the column's form: a line such as `WA Group/name` for each scene.
+/// Reads the stored text, which has a line such as `WA Group/name` for each scene.
 fn read(text: &str) -> FailedScenes {
     let lines = text.lines().filter_map(|line| line.split_once(' '));
     lines.map(|(code, scene)| (scene.to_owned(), code.to_owned())).collect()
@@ -52,7 +52,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn kept_results(&self, results: &[i64]) -> Result<BTreeMap<i64, KeptResult>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT result.id, result.failed, result.parts FROM result
@@ -75,7 +75,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn changes(&self, attempts: &[Submission]) -> Result<BTreeMap<i64, AttemptChange>, Problem> {
         let graded = attempts.iter().filter_map(|one| Some((one, one.grade.as_ref()?.result)));
         let graded: Vec<(&Submission, i64)> = graded.collect();

@@ -53,7 +53,7 @@ pub struct Overview {
     pub requests: i64,
     /// The number of regrades that are neither applied nor discarded.
     pub regrades: i64,
-    /// The number of gradings that all workers of the server can do at one time.
+    /// The number of gradings that all workers of the server can run at the same time.
     pub slots: i64,
 }
 
@@ -74,11 +74,13 @@ fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
 }
 
 impl Staff {
-    /// Gives a submission other points than the grader's, or the grader's again, with a reason. This answers a request.
+    /// Replaces the grader's points of a submission, or restores them, with a reason. This also answers a student's
+    /// request.
     ///
     /// # Errors
     ///
-    /// When there is no such submission, the points are invalid, or the submission was marked after the time `seen`.
+    /// Fails if there is no such submission, the points are invalid, or the submission was marked after the time
+    /// `seen`.
     pub async fn mark(
         &self,
         id: i64,
@@ -139,7 +141,7 @@ impl Staff {
     /// Returns the unanswered requests of students about an assignment, oldest first.
     ///
     /// # Errors
-    /// When there is no such assignment.
+    /// Fails if there is no such assignment.
     pub async fn requests(&self, slug: &str) -> Result<Vec<Request>, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         let statement = "SELECT mark.submission, mark.request, account.login FROM mark
@@ -153,7 +155,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When the person is not a member and has submitted nothing.
+    /// Fails if the person is not a member and has submitted nothing.
     pub async fn student_history(&self, slug: &str, login: &str) -> Result<StudentHistory, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?;
@@ -183,7 +185,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When there is no such student, or the date was changed after the event `seen`.
+    /// Fails if there is no such student, or the date was changed after the event `seen`.
     pub async fn extend(&self, slug: &str, login: &str, due_at: Option<i64>, seen: Option<i64>) -> Result<(), Problem> {
         identity::check_slug("a login", login)?;
         if due_at.is_some_and(|due| !calendar::is_plausible(due)) {
@@ -220,7 +222,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the submission is not the member's, or the request is empty.
+    /// Fails if the submission is not the member's, or the request is empty.
     pub async fn request(&self, id: i64, text: &str) -> Result<(), Problem> {
         check_words("a request", text, 1)?;
         let mut transaction = self.app.0.database.begin().await?;
@@ -243,7 +245,7 @@ impl Member {
     /// Returns the state of an assignment, for staff.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn overview(&self, assignment: &Assignment) -> Result<Option<Overview>, Problem> {
         if !self.is_staff {
             return Ok(None);
@@ -267,7 +269,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn due_date(&self, assignment: &Assignment) -> Result<Option<i64>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(due_date(&mut transaction, assignment, self.account.id).await?)

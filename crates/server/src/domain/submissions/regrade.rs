@@ -36,13 +36,13 @@ pub struct Regrade {
     pub reason: String,
     /// The settings that the regrade uses.
     pub settings: Settings,
-    /// The account that began the regrading.
+    /// The login of the account that began the regrade.
     pub by: String,
     /// The time of creation, in milliseconds since 1970.
     pub created_at: i64,
     /// The number of submissions in the regrade.
     pub submissions: usize,
-    /// The number of submissions that are still to be graded.
+    /// The number of submissions that are not graded yet.
     pub left: usize,
     /// The number of submissions on which the grader failed; their grades stay.
     pub failed: usize,
@@ -76,7 +76,7 @@ pub struct Change {
     pub new_points: Option<String>,
     /// The result of the regrade in one line.
     pub new_summary: String,
-    /// The differences between the two gradings, such as version, suite, rules or limits.
+    /// The differences between the two gradings that may explain the change, such as version, suite, rules or limits.
     pub why: Vec<String>,
 }
 
@@ -96,7 +96,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When another regrade of the assignment is open.
+    /// Fails if another regrade of the assignment is open.
     pub async fn regrade(&self, slug: &str, reason: &str, settings: &Settings) -> Result<Regrade, Problem> {
         crate::domain::accounts::identity::check_title("a reason", reason)?;
         let assignment = self.assignment(slug).await?;
@@ -123,7 +123,7 @@ impl Staff {
     /// Returns the regrades of an assignment, latest first, without their changes.
     ///
     /// # Errors
-    /// When there is no such assignment.
+    /// Fails if there is no such assignment.
     pub async fn regrades(&self, slug: &str) -> Result<Vec<Regrade>, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         let statement = regrades!("campaign.assignment = ? ORDER BY campaign.id DESC LIMIT 100");
@@ -133,7 +133,7 @@ impl Staff {
     /// Returns a regrade and its changes, for submissions after a number.
     ///
     /// # Errors
-    /// When there is no regrade of this number.
+    /// Fails if there is no regrade of this number.
     pub async fn show_regrade(&self, slug: &str, id: i64, after: Option<i64>) -> Result<Regrade, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
@@ -144,7 +144,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When the regrade is not finished; submissions that arrived since must be graded first, too.
+    /// Fails if the regrade is not finished, or submissions have arrived since that are not graded yet.
     pub async fn apply_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
@@ -179,7 +179,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When there is no such regrade, or it was applied or discarded.
+    /// Fails if there is no such regrade, or it was applied or discarded.
     pub async fn discard_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
@@ -189,7 +189,7 @@ impl Staff {
         self.show_regrade(slug, id, None).await
     }
 
-    /// Locks an open regrade, and returns its settings and its reason.
+    /// Locks an open regrade against other decisions, and returns its settings and reason.
     async fn lock_open(
         &self,
         transaction: &mut Transaction,
@@ -240,7 +240,8 @@ impl FromRow for Regrade {
     }
 }
 
-/// Selects the jobs of a regrade whose results differ from the counting ones, or from those before it was applied.
+/// Selects the jobs of a regrade whose results differ from the results that count, or that counted before the regrade
+/// was applied.
 macro_rules! changes {
     ($columns:literal, $rest:literal) => {
         concat!(

@@ -18,7 +18,7 @@ use std::{
 };
 use utoipa::ToSchema;
 
-/// The standing of a student in an assignment.
+/// A student's submissions to an assignment, and the one that counts.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Standing {
     /// The login of the student's account.
@@ -27,7 +27,7 @@ pub struct Standing {
     pub name: String,
     /// The number of the student's submissions.
     pub submissions: usize,
-    /// The submission that counts: the one with the most points, of equal ones the latest; the last one if none has
+    /// The submission that counts: the one with the most points (on a tie, the latest), or the last one if none has
     /// points.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub counts: Option<Submission>,
@@ -93,7 +93,7 @@ impl Staff {
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn short_standings(&self, assignment: &Assignment) -> Result<Arc<Vec<ShortStanding>>, Problem> {
         let asked = Instant::now();
         let answer = self.app.0.standings.answer_for(assignment.id);
@@ -112,7 +112,7 @@ impl Staff {
     /// Returns the standing of all students in an assignment.
     ///
     /// # Errors
-    /// When there is no such assignment.
+    /// Fails if there is no such assignment.
     pub async fn standings(&self, assignment: &str) -> Result<Vec<Standing>, Problem> {
         let assignment = self.assignment(assignment).await?;
         let short = self.short_standings(&assignment).await?;
@@ -122,7 +122,7 @@ impl Staff {
     /// Returns the standing of all students, with the submissions that count.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn whole_standings(&self, short: &[ShortStanding]) -> Result<Vec<Standing>, Problem> {
         let ids: Vec<i64> = short.iter().filter_map(|one| Some(one.counts.as_ref()?.id)).collect();
         let mut submissions = HashMap::new();
@@ -197,12 +197,12 @@ async fn read(
     let statement = "SELECT account, due_at FROM extension WHERE assignment = ?";
     let rows = transaction.rows(statement, values![id]).await?;
     let own_due: HashMap<i64, i64> = collect_by_id(&rows, |row| Ok((row.int("account")?, row.int("due_at")?)))?;
-    // The names of members, and of others who have submitted something.
+    // Members, and people who left the course but have submitted something.
     let statement = "SELECT account.id, account.login, account.name, coalesce(member.role, 'student') AS role
         FROM account LEFT JOIN member ON member.account = account.id AND member.course = ?
         WHERE member.role IS NOT NULL OR account.id IN (SELECT account FROM submission WHERE assignment = ?)";
     let people = transaction.rows(statement, values![course, id]).await?;
-    // Staff try assignments, too.
+    // Staff may also try an assignment, but are not in the standings.
     let staff = people.iter().filter(|row| row.text("role").is_ok_and(|role| role == "staff"));
     let staff = staff.map(|row| row.int("id")).collect::<Result<HashSet<_>, _>>()?;
     let statement = "SELECT submission.account, count(*) AS n, string_agg(submission.id || ' ' || submission.created_at

@@ -19,8 +19,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The maximum time that an upload waits for earlier ones: at a deadline, no upload is rejected after its request was
-/// accepted.
+/// The maximum time that an upload waits for earlier ones: no upload is rejected only because many arrive before a
+/// deadline.
 const CROWD_TIMEOUT: Duration = Duration::from_secs(240);
 
 const MINUTE: i64 = 60 * 1000;
@@ -55,18 +55,18 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the assignment does not accept it, or the server can't store it. Then there is no submission, or the same
-    /// key finds it.
+    /// Fails if the assignment does not accept it, or the server can't store it. Then there is no submission, or the
+    /// same key finds it.
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<SubmitResult, Problem> {
         let (_, assignment) = self.read_at(assignment).await?;
         if !assignment.settings.takes(upload.form) {
             let (taken, found) = (assignment.settings.describe_forms(), upload.form.describe());
             return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
         }
-        // Simultaneous uploads of an account are checked one after another, so that nothing of an upload is stored if
-        // the one before used up the limit.
+        // Simultaneous uploads of an account are checked one after another, so that an upload is not stored if an
+        // earlier one used up the limit.
         let _turn = self.app.limits.turn(self.account.id).await?;
-        // An upload that is rejected, or was stored before, is not stored.
+        // Check before storing, so that the bytes of a rejected or repeated upload are not stored.
         let artifact = digest_of_file(upload.file).await?;
         let mut transaction = self.app.0.database.read().await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
@@ -90,7 +90,7 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// When the upload is not allowed.
+    /// Fails if the upload is not allowed.
     pub async fn check_announced(
         &self,
         assignment: &str,
@@ -103,7 +103,7 @@ impl Member {
         let Some((key, size)) = announced else { return Ok(came_at) };
         if let Some(key) = key {
             let statement = "SELECT word FROM upload_key WHERE account = ? AND word = ?";
-            // The upload may be a repetition.
+            // The same upload may have been stored before.
             if transaction.row(statement, values![self.account.id, key]).await?.is_some() {
                 return Ok(came_at);
             }
@@ -182,7 +182,7 @@ impl Member {
             ));
         }
         if settings.per_hour > 0 && row.int("recent")? >= settings.per_hour.into() {
-            // The limit allows a submission when the oldest one is an hour old.
+            // The next submission is allowed when the oldest of the last hour is an hour old.
             let again = row.int("oldest")? + HOUR;
             let detail = format!(
                 "at most {} submissions in an hour: the next one is possible from {} UTC",
@@ -204,7 +204,7 @@ impl Member {
     ) -> Result<i64, Problem> {
         let input = Input { form: upload.form, name: upload.name.to_owned(), artifact: artifact.clone() };
         let task = assignment.settings.task(input);
-        // A number is never assigned again, even after a removal.
+        // The highest number ever is stored, so that a number is not assigned again after a removal.
         let statement = "INSERT INTO numbering (assignment, account, last) VALUES (?, ?, 1)
             ON CONFLICT (assignment, account) DO UPDATE SET last = numbering.last + 1 RETURNING last AS number";
         let number = transaction.one(statement, values![assignment.id, self.account.id]).await?.int("number")?;

@@ -9,7 +9,7 @@ use axum::{Json, http::StatusCode};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// The name of a token.
+/// The request for a new token.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct TokenName {
@@ -17,7 +17,7 @@ pub(in crate::web) struct TokenName {
     pub(in crate::web) name: String,
 }
 
-/// The names of a worker and its token.
+/// The request for a worker's token.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct WorkerTokenName {

@@ -24,7 +24,7 @@ use utoipa::ToSchema;
 /// The maximum size of a suite's archive, in bytes.
 const MAX_SUITE_BYTES: u64 = 64 << 20;
 
-/// The new state of an assignment. Parts and settings that are not given stay as they are; a setting that is null is
+/// The new state of an assignment. Parts and settings that are not given do not change. A setting that is null is
 /// removed.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
@@ -60,7 +60,7 @@ pub(super) struct GradesFormat {
     format: Option<String>,
 }
 
-/// A student's own due date.
+/// The request that sets a student's own due date.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct Extension {
@@ -68,8 +68,8 @@ pub(super) struct Extension {
     #[serde(deserialize_with = "moment")]
     #[schema(schema_with = moment_schema, required = true)]
     due_at: Option<i64>,
-    /// The last event of the audit log that the sender has seen. If it is given, the change is rejected if there is a
-    /// later one of this extension.
+    /// The last event of the audit log that the sender has seen. If it is given, the change is rejected if this
+    /// extension was changed after it.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     seen: Option<i64>,
 }
@@ -197,7 +197,7 @@ answers! { OK:
     /// Returns an assignment.
     get "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         assignment(member: Member, { assignment }) -> Assignment: member.assignment(&assignment);
-    /// Publishes the groups that the suite hides; they count for students from then on.
+    /// Publishes the groups that the suite hides; from then on, they count for students.
     put "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         publish(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, true);
     /// Withholds the hidden groups again.

@@ -29,8 +29,8 @@ pub(super) struct MemberWish {
     /// The member's role: `student` or `staff`.
     #[schema(pattern = "^(student|staff)$")]
     role: String,
-    /// The last event of the audit log that the sender has seen. If it is given, the change is rejected if there is a
-    /// later one of this member.
+    /// The last event of the audit log that the sender has seen. If it is given, the change is rejected if this member
+    /// was changed after it.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     seen: Option<i64>,
 }

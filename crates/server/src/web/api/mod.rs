@@ -17,7 +17,7 @@ macro_rules! answers {
     };
 }
 
-/// Declares the routes of handlers that only perform an action; the answer describes the action as text.
+/// Declares routes that only perform an action; the answer describes the result as text.
 macro_rules! deeds {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, ?$asked:ident: $query:ty)?

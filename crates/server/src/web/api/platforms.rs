@@ -8,7 +8,7 @@ use crate::{
 use axum::{Json, http::StatusCode};
 use serde::Deserialize;
 
-/// Whether the roster is only read, or is applied even if many members leave.
+/// The parameters for reading a roster.
 #[derive(Deserialize)]
 pub(super) struct RosterParameters {
     #[serde(default)]

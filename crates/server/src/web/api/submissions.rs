@@ -94,7 +94,7 @@ pub(in crate::web) async fn receive(
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MarkWish {
-    /// The points that count instead of the grader's; null for the grader's.
+    /// The points that count instead of the grader's; null restores the grader's points.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 1_000_000)]
     points: Option<f64>,
@@ -117,7 +117,7 @@ pub(in crate::web) struct RequestWish {
     pub(in crate::web) text: String,
 }
 
-/// Returns a report on a submission, as the grader wrote it: `grade.json`, `report.txt`, ...
+/// Returns a report on a submission, such as `grade.json` or `report.txt`, as the grader wrote it.
 #[utoipa::path(get, path = "/api/v1/courses/{course}/submissions/{id}/files/{name}", tag = "submissions",
     responses((status = 200, description = "The report")))]
 pub(super) async fn report(
@@ -127,7 +127,7 @@ pub(super) async fn report(
 ) -> Result<Response, Problem> {
     let file = member.report(id, &name).await?;
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
-    // The report contains text from an untrusted program, so the browser shows it without this site's origin and
+    // The report contains text from an untrusted program, so the browser must not give it this site's origin and
     // cookies.
     let policy = if file.media_type.starts_with("text/html") {
         "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src \
@@ -148,7 +148,8 @@ pub(super) async fn upload(
     asked: HeaderMap,
 ) -> Result<Response, Problem> {
     let (submission, artifact) = member.upload(id).await?;
-    // An untrusted file, which is saved and never shown. Its name was made safe when it arrived.
+    // The uploaded file is not trusted, so browsers must save it instead of showing it. Its name was made safe when it
+    // arrived.
     let disposition = format!("attachment; filename=\"{}\"", submission.file_name);
     let headers = [
         (header::CONTENT_TYPE, HeaderValue::from_static("application/octet-stream")),
@@ -166,7 +167,7 @@ pub(super) async fn upload(
 ///
 /// # Errors
 ///
-/// Never, in memory.
+/// Fails only if memory runs out.
 pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Result<String, Problem> {
     let mut writer = csv::Writer::from_writer(Vec::new());
     let fault = |_| Problem::fault();
@@ -206,7 +207,7 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
     String::from_utf8(bytes).map_err(|_| Problem::fault())
 }
 
-/// Returns a cell that no spreadsheet reads as a formula.
+/// Returns the text in a form that no spreadsheet takes for a formula.
 pub(in crate::web) fn cell(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
 }
@@ -215,16 +216,16 @@ answers! { ACCEPTED:
     /// Grades a submission again, with the assignment's present settings.
     post "/api/v1/courses/{course}/submissions/{id}/again" "submissions"
         grade_again(staff: Staff, { id }) -> RegradeOrder: staff.grade_again(id);
-    /// Grades all submissions to an assignment again on which the grader failed.
+    /// Grades all submissions to an assignment again if the grader failed on them.
     post "/api/v1/courses/{course}/assignments/{assignment}/judge-errors/again" "submissions"
         grade_errors_again(staff: Staff, { assignment }) -> RegradeOrder: staff.grade_errors_again(Some(&assignment));
-    /// Grades all submissions to a course's assignments again on which the grader failed.
+    /// Grades all submissions of a course again if the grader failed on them.
     post "/api/v1/courses/{course}/judge-errors/again" "submissions"
         grade_all_errors_again(staff: Staff) -> RegradeOrder: staff.grade_errors_again(None);
 }
 
 answers! { OK:
-    /// Gives a submission other points than the grader's, with a comment, or the grader's again.
+    /// Replaces the grader's points of a submission, with a comment, or restores them.
     put "/api/v1/courses/{course}/submissions/{id}/mark" "submissions"
         mark(staff: Staff, { id }, wish: MarkWish) -> Submission:
             staff.mark(
@@ -239,7 +240,7 @@ answers! { OK:
     /// Returns a submission with its position in the queue and its result.
     get "/api/v1/courses/{course}/submissions/{id}" "submissions"
         submission(member: Member, { id }) -> Submission: member.submission(id);
-    /// Returns the history of the submission's grade: the person, the time, the reason, the version and the rules.
+    /// Returns the changes of the submission's grade, each with its person, time, reason, version and rules.
     get "/api/v1/courses/{course}/submissions/{id}/history" "submissions"
         history(member: Member, { id }) -> Vec<History>: member.history(id);
 }

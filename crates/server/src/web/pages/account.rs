@@ -1,4 +1,4 @@
-//! The pages with a person's courses and tokens.
+//! The home page with a person's courses, and the page with their tokens.
 use super::{
     super::{
         api::TokenName,
@@ -24,7 +24,7 @@ struct Home {
     frame: PageFrame,
     name: String,
     courses: Vec<HomeCourse>,
-    /// Further courses that an administrator is not a member of.
+    /// The courses that an administrator is not a member of.
     others: Vec<Course>,
     /// Whether the server has the page that checks traces.
     checks_traces: bool,
@@ -35,7 +35,7 @@ struct HomeCourse {
     member: Member,
     /// The assignments that accept submissions.
     assignments: Vec<Row>,
-    /// The number of the other assignments.
+    /// The number of assignments that are not listed.
     rest: usize,
 }
 

@@ -39,7 +39,7 @@ struct AdminPage {
     after: Option<String>,
     workers: Vec<TokenInfo>,
     platforms: Vec<Platform>,
-    /// The address of this service, for platforms.
+    /// The public address of this service, to register on platforms.
     public: String,
     queue: Queue,
     events: Vec<Event>,

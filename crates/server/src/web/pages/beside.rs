@@ -12,7 +12,7 @@ use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use url::form_urlencoded::byte_serialize;
 
-/// The other submission: its number on this server, or the login of a student, for the student's last one.
+/// The other submission: its number on this server, or a student's login, which means the student's last submission.
 #[derive(Deserialize)]
 pub(super) struct OtherSubmission {
     #[serde(default)]
@@ -33,10 +33,10 @@ struct ComparisonPage {
 /// The scenes that two results judge differently, by the codes of both verdicts.
 type DifferingScenes = BTreeMap<[String; 2], Vec<String>>;
 
-/// The maximum number of scenes of a kind that are not folded.
+/// Lists of at most this many scenes are shown unfolded.
 const FEW: usize = 6;
 
-/// Returns the fragment of an address that leads to a scene in a report.
+/// Returns the URL fragment of a scene in a report.
 fn place(scene: &str) -> String {
     byte_serialize(scene.as_bytes()).collect()
 }

@@ -31,7 +31,7 @@ pub(super) struct Row {
 }
 
 impl Row {
-    /// Returns whether nothing is graded now, as staff sees it.
+    /// Returns whether submissions wait but no worker is connected; known to staff only.
     pub(super) fn lacks_worker(&self) -> bool {
         self.overview.as_ref().is_some_and(|overview| overview.slots == 0)
     }
@@ -48,7 +48,7 @@ pub(super) struct OwnWork {
     pub(super) due: Option<i64>,
     /// Whether the due date has passed.
     pub(super) is_late: bool,
-    /// The time until which late uploads are taken.
+    /// The time until which late uploads are accepted.
     pub(super) closes_at: Option<i64>,
     /// Whether no submissions are accepted, not even late ones.
     pub(super) is_over: bool,
@@ -56,7 +56,7 @@ pub(super) struct OwnWork {
     pub(super) left: Option<usize>,
     /// All submissions of the student, newest first.
     pub(super) submissions: Vec<Submission>,
-    /// The submission with the most points, of equal ones the latest.
+    /// The submission with the most points; on a tie, the latest.
     pub(super) best: Option<Submission>,
 }
 
@@ -102,7 +102,7 @@ struct MembersPage {
     platforms: Vec<String>,
     /// The last event of the course that the page shows.
     seen: i64,
-    /// A sign-in link, and its person.
+    /// A new sign-in link, and the login of its person.
     link: Option<(String, String)>,
 }
 
@@ -168,7 +168,7 @@ pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignm
     Ok(redirect_to(&format!("/c/{}/a/{slug}/settings", staff.slug)))
 }
 
-/// The filter of people: text in the login or name, a role in the course, and the login to start after.
+/// The filter of people: text in the login or name, a role in the course, and the login after which the page begins.
 #[derive(Default, Deserialize)]
 pub(super) struct People {
     #[serde(default)]
@@ -206,7 +206,7 @@ async fn members_page(staff: &Staff, look: People, link: Option<(String, String)
     let staff_count = members.iter().filter(|member| member.role == "staff").count();
     let students = members.len() - staff_count;
     members.retain(|member| look.wants(member));
-    // The database may sort in another order.
+    // The database may sort differently from this program.
     members.sort_by(|one, other| one.login.cmp(&other.login));
     let has_more = members.len() > PEOPLE_PER_PAGE;
     members.truncate(PEOPLE_PER_PAGE);

@@ -16,7 +16,7 @@ use axum::response::Redirect;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// The rows of scenes, with the code of the page that `grade` writes.
+/// Renders rows of scenes; the page that `grade` writes uses the same code.
 #[path = "../../../../report/src/page/heat.rs"]
 mod heat;
 
@@ -28,7 +28,7 @@ struct GradesPage {
     assignment: Assignment,
     standings: Vec<Standing>,
     look: GradesQuery,
-    /// The number of students that match.
+    /// The number of students that match the filter.
     found: usize,
     before: Option<String>,
     after: Option<String>,
@@ -38,7 +38,7 @@ struct GradesPage {
     statistics: Statistics,
     /// The stored texts of the results that count, by the results' numbers.
     kept: BTreeMap<i64, KeptResult>,
-    /// The scenes that students on the page have wrong, and the students.
+    /// The wrong scenes of students on the page, each with these students.
     scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
     /// Whether students see less than staff before the publication.

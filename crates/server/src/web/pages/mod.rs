@@ -152,7 +152,7 @@ async fn style() -> Response {
     )
 }
 
-/// Returns the script of reports.
+/// Returns the script that reports use.
 async fn viewer() -> Response {
     constant("text/javascript; charset=utf-8", include!("../../../../report/src/page/viewer/viewer.in"))
 }

@@ -97,7 +97,7 @@ pub(super) struct NewPlatform {
 
 /// Returns the cookie with the browser's secret during a launch from a platform. Other sites must be able to make the
 /// browser send it, because the platform's answer is sent that way. In a frame, many browsers isolate or drop the
-/// cookie, so no sign-in works there.
+/// cookie, so sign-ins do not work there.
 fn browser_word(app: &App, word: &str) -> String {
     let secure = app.is_secure();
     let rest = if secure { "SameSite=None; Secure; Partitioned" } else { "SameSite=Lax" };
@@ -132,8 +132,8 @@ pub(super) async fn login(
         for (name, value) in fields {
             value.map(|value| query.append_pair(name, &value));
         }
-        // A link is used instead of a form: the policy for forms covers redirections, and this one leads to the
-        // platform.
+        // The page uses a link instead of a form, because the content security policy would block a form that redirects
+        // to the platform.
         let address = format!("/lti/login?{}", query.finish());
         let page = show(&WindowPage { frame: PageFrame::default(), address })?.into_response();
         let origins = platform.origins(app.lti.over_http());
@@ -235,7 +235,7 @@ impl NewPlatform {
     }
 }
 
-/// Shows first who would join and leave.
+/// Shows who would join and leave, before anything changes.
 pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) -> Result<Response, Problem> {
     let members = format!("/c/{}/members", staff.slug);
     if form.confirm.is_some() {

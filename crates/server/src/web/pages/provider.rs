@@ -32,7 +32,7 @@ fn redirect(app: &App, begun: &LoginAnswer) -> Response {
     sign_in::with_cookie(&cookie, &begun.address)
 }
 
-/// Begins a sign-in. If the provider is unavailable, the sign-in page says so and offers the other ways.
+/// Begins a sign-in. If the provider is unavailable, the sign-in page reports it and offers the other ways.
 pub(super) async fn begin(
     visitor: Visitor,
     QueryInput(NextPage { to }): QueryInput<NextPage>,

@@ -1,5 +1,5 @@
-//! A report as a part of its submission's page. Output of untrusted programs is escaped in it. Even if escaping failed,
-//! only this server's script could run, and elements that send or load something are rejected.
+//! A report as a part of its submission's page. Output of untrusted programs is escaped in it. As a second protection,
+//! only this server's script can run, and a report with elements that send or load something is not shown.
 use crate::{domain::Member, problem::Problem, task::OutputFile};
 
 /// The maximum size of a report that is part of a page, in bytes; the grader's reports have at most three megabytes.
@@ -8,7 +8,7 @@ const MAX_REPORT_BYTES: u64 = 4 << 20;
 /// The elements that a report never has, because they send or load something.
 const FORBIDDEN_ELEMENTS: [&str; 7] = ["form", "iframe", "base", "meta", "link", "object", "embed"];
 
-/// Returns a report without its head; `None` for one of another version's grader, or a report that is too large.
+/// Returns a report without its head; `None` if another version's grader wrote it, or it is too large.
 pub(super) async fn read(member: &Member, file: &OutputFile) -> Result<Option<String>, Problem> {
     if file.artifact.size > MAX_REPORT_BYTES {
         return Ok(None);

@@ -1,12 +1,11 @@
-//! The scenes that submissions have wrong, in tables and sentences.
+//! Tables and sentences about the wrong scenes of submissions.
 use crate::domain::{AttemptChange, KeptResult, Standing};
 use std::{cmp::Reverse, collections::BTreeMap};
 
 /// The maximum number of scenes that a sentence names.
 const MAX_NAMED: usize = 3;
 
-/// Returns the scenes that students have wrong in the results that count, with the students; the most frequent scenes
-/// come first.
+/// Returns the wrong scenes in the results that count, each with its students, the most frequent first.
 pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for standing in standings {
@@ -20,7 +19,7 @@ pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResu
     scenes
 }
 
-/// Returns a sentence about the change in an attempt.
+/// Describes the scenes that changed in an attempt.
 pub(super) fn describe_change(change: &AttemptChange) -> String {
     let list = |scenes: &[String]| {
         let more = scenes.len().saturating_sub(MAX_NAMED);

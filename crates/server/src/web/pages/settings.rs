@@ -139,7 +139,7 @@ impl NewSettings {
     }
 }
 
-/// Returns the time of a date field; the earlier time if it is in the same minute.
+/// Returns the time in a date field. If it is in the same minute as `before`, that exact time is kept.
 pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
     if field.trim().is_empty() {
         return Ok(None);
@@ -165,10 +165,10 @@ pub(super) async fn set(
     AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewSettings>,
 ) -> Result<Redirect, Problem> {
-    // New assignments are created on the course's page, so that a typing error in an address creates none.
+    // This form only changes existing assignments, so that a typing error in an address does not create one.
     let assignment = staff.assignment(&assignment).await?;
     let (title, visible) = (Some(form.title.trim()), Some(form.visible.is_some()));
-    // A page of an earlier version has no revision, and is accepted.
+    // A form of an earlier version sends no revision; it is accepted.
     let revision = Some(form.revision.parse().unwrap_or(-1));
     let change = AssignmentChange { title, visible, revision, suite: None };
     staff.set_assignment(&assignment.slug, change, |before| form.apply_to(before)).await?;

@@ -63,7 +63,7 @@ pub(super) fn start_session(app: &App, session: &NewSecret, to: &str) -> Respons
     with_cookie(&session_cookie(app, session.reveal(), SESSION_SECONDS), to)
 }
 
-/// Returns the error in another service's answer to a sign-in, as one short line.
+/// Returns the error that another service sent in answer to a sign-in, as one short line.
 pub(super) fn fault_of(words: [Option<String>; 2]) -> Option<String> {
     let fault = words.into_iter().flatten().collect::<Vec<_>>().join(": ");
     let fault: String = fault.chars().filter(|c| !c.is_control()).take(300).collect();

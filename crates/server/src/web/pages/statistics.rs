@@ -5,11 +5,11 @@ use crate::{
 };
 use std::{cmp::Reverse, collections::BTreeMap};
 
-/// The histogram, with the code of the page that `grade` writes.
+/// Renders the histogram; the page that `grade` writes uses the same code.
 #[path = "../../../../report/src/page/histogram.rs"]
 mod histogram;
 
-/// The codes of verdicts without any run: unusable, or not built.
+/// The codes of verdicts without any run: the submission was unusable, or was not built.
 const NEVER_RAN: [&str; 2] = ["US", "CE"];
 
 /// The parts of a class to choose from, each with its name and its text.
@@ -22,7 +22,7 @@ pub(super) const PARTS: [(&str, &str); 6] = [
     ("missing", "nothing handed in"),
 ];
 
-/// Returns whether a student is in a part of the class; the empty name stands for the whole class.
+/// Returns whether a student is in a part of the class; an empty name means the whole class.
 pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
     let counts = standing.counts.as_ref();
     let code = counts.and_then(|counts| counts.code.as_deref());
@@ -37,12 +37,12 @@ pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
     }
 }
 
-/// Returns the likely mistake in the one-line summary of a submission.
+/// Returns the likely mistake from the one-line summary of a submission.
 pub(super) fn mistake(counts: &CountedSubmission) -> Option<&str> {
     counts.summary.split_once("; ").map(|(_, mistake)| mistake)
 }
 
-/// Students with something in common: its name, their logins, and a submission that shows it.
+/// Students with something in common: its name, their logins, and the number of a submission as an example.
 pub(super) type SharedBy = (String, Vec<String>, i64);
 
 /// The statistics of a class's results.
@@ -50,13 +50,13 @@ pub(super) struct Statistics {
     pub(super) students: usize,
     /// The number of students in each of the [`PARTS`], with the part's name and text.
     pub(super) parts: Vec<(&'static str, &'static str, usize)>,
-    /// The mean and the median of the points of all students whose work was run, in percent; `None` without such work.
+    /// The mean and the median of the points of all submissions that were run, in percent; `None` if none was run.
     pub(super) points: Option<(String, String)>,
-    /// The histogram of these points.
+    /// The histogram of the points, as HTML.
     pub(super) bars: String,
     /// The likely mistakes of students, the most frequent first.
     pub(super) mistakes: Vec<SharedBy>,
-    /// The programs that several students submitted, byte for byte.
+    /// Identical files that several students submitted.
     pub(super) same: Vec<SharedBy>,
 }
 
@@ -95,7 +95,7 @@ fn points_share(counts: &CountedSubmission) -> Option<f64> {
     (most > 0.0).then(|| (100.0 * points / most).clamp(0.0, 100.0))
 }
 
-/// Returns what students share by the function `of`, the most frequent first.
+/// Groups students by the value that `of` returns; the largest groups come first.
 fn find_shared(standings: &[ShortStanding], of: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<SharedBy> {
     let mut found: BTreeMap<&str, (Vec<String>, i64)> = BTreeMap::new();
     for standing in standings {

@@ -1,4 +1,4 @@
-//! The page of one student's work for staff, and the table by which a class is imported.
+//! The page for staff about one student's work, and the import of a class from a table.
 use super::{
     super::{
         api::{RequestWish, cell},
@@ -39,11 +39,11 @@ struct ImportPage {
     slug: String,
     table: String,
     lines: Vec<ImportRow>,
-    /// The columns whose values are not stored.
+    /// The columns of the table whose values are not stored.
     left_out: BTreeSet<String>,
     is_wrong: bool,
     is_done: bool,
-    /// All links as a table, in the form of a data address.
+    /// A table of all links, as a `data:` URL for downloading.
     download: String,
     /// The last event of the course that the page shows.
     seen: i64,
@@ -53,7 +53,7 @@ struct ImportPage {
 struct ImportRow {
     member: MemberLine,
     link: String,
-    /// A letter with the link, in the form of a mail address.
+    /// A message with the link, as a `mailto:` URL.
     letter: String,
 }
 
@@ -84,7 +84,7 @@ pub(super) struct ImportedTable {
 
 pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, login, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    // Read the event before the work, so that later changes are detected.
+    // Read the last event before the submissions, so that later changes are detected.
     let seen = staff.last_event().await?;
     let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
@@ -122,7 +122,7 @@ async fn import_page(staff: &Staff, table: String, lines: Vec<ImportRow>, is_don
     show(&ImportPage { frame, slug, table, lines, left_out, is_wrong, is_done: is_done && !is_wrong, download, seen })
 }
 
-/// Returns bytes, encoded for an address.
+/// Encodes bytes for a URL.
 fn percent(bytes: &[u8]) -> String {
     byte_serialize(bytes).collect::<String>().replace('+', "%20")
 }

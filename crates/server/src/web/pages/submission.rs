@@ -87,7 +87,7 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
         None => None,
     };
     let is_own = submission.login == member.account.login;
-    // Staff may have hidden the assignment again.
+    // Staff may have hidden the assignment since.
     let work = match &assignment {
         Some(assignment) if is_own && !member.is_staff => Some(OwnWork::read(&member, assignment).await?),
         _ => None,

@@ -72,7 +72,7 @@ impl Blocks {
     /// Advances past the next hit, or to the end if there is none. Polynomials are appended to `bytes`.
     ///
     /// # Errors
-    /// [`StepError::RootSearch`]
+    /// Fails with [`StepError::RootSearch`] if a root search would never end.
     pub fn next_hit(
         &mut self,
         setting: Setting<'_>,
