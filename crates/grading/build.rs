@@ -1,4 +1,4 @@
-//! Builds again when a scene or a recording appears: both are embedded.
+//! Reruns this script when a scene or a recording is added, because both are embedded.
 #![forbid(unsafe_code)]
 
 fn main() {

@@ -17,11 +17,11 @@ use std::{borrow::Cow, fmt};
 pub enum RunEnd {
     /// The program ended by itself with this exit code.
     Exited(i32),
-    /// The program was ended by this signal, which it caused itself (a crash, an abort).
+    /// The program was killed by this signal, which it caused itself (a crash, an abort).
     Signalled(i32),
     /// The program used up its processor time.
     CpuLimit,
-    /// The program used up its time on the clock.
+    /// The program used up its wall time.
     WallLimit,
     /// The program used more memory than allowed, or stopped because memory was denied.
     MemoryLimit,
@@ -127,7 +127,7 @@ pub enum StartProblem {
     /// The file is an ELF file but not a program, for example an object file or a core dump.
     #[error("the file is {what}, not a linked program; upload the linker's output")]
     NotLinked {
-        /// The kind of file that was found instead.
+        /// The kind of the file, as text.
         what: Cow<'static, str>,
     },
     /// The file is a 32-bit program.
@@ -138,7 +138,7 @@ pub enum StartProblem {
     WrongMachine {
         /// The machine for which it was built.
         machine: String,
-        /// The kind of this machine.
+        /// The processor of this machine.
         here: Cow<'static, str>,
     },
     /// The file is a program for another operating system.
@@ -164,7 +164,7 @@ pub enum StartProblem {
     MissingInterpreter {
         /// The path of the interpreter.
         interpreter: String,
-        /// An advice, or an empty text.
+        /// Advice for the remedy, or an empty text.
         hint: Cow<'static, str>,
     },
     /// The interpreter is not part of the system.
@@ -191,7 +191,7 @@ pub enum StartProblem {
     /// The program tried to open a window.
     #[error("the program needs a display; run it without one: pass -d 0")]
     NeedsDisplay,
-    /// The kernel rejected the program for another reason.
+    /// The kernel rejected the program for a different reason.
     #[error("the system refused to execute it: {0}")]
     Refused(String),
 }

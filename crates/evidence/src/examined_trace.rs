@@ -1,4 +1,4 @@
-//! A trace that is judged once, with all data for later requests.
+//! Judges a trace once, and keeps all data for later requests.
 use crate::{
     gather::{Evidence, Focus, gather},
     rulings::{StepRuling, StepRulings},
@@ -17,8 +17,8 @@ use std::io::{self, Read};
 pub enum KeptPart {
     /// Nothing is kept, because the trace is neither explained nor shown.
     Nothing,
-    /// The beginning of the trace is kept. Reading stops when judging stops, because the writer of a piped trace may
-    /// write no more.
+    /// The beginning of the trace is kept. Reading stops when judging stops, because the program at the other end of a
+    /// pipe may write nothing more.
     Read,
     /// The beginning of the trace is kept, including the part after the place where judging stops.
     All,
@@ -51,7 +51,7 @@ pub fn examine<'a, R: Read + Send>(
     let outcome = replay::judge(scene, kept.reader(&mut trace), options, &mut BothObservers(&mut rulings, progress));
     if keep == KeptPart::All && outcome.stop.is_some() {
         let room = (MAX_KEPT_BYTES - kept.bytes().len()) as u64;
-        // An error ends the kept part.
+        // After an error of reading, nothing more is kept.
         let _ = io::copy(&mut kept.reader(trace.take(room)), &mut io::sink());
     }
     ExaminedTrace { scene, rulings: rulings.into_steps(&outcome), outcome, trace: kept }

@@ -1,4 +1,4 @@
-//! Reads a trace again, together with the reference.
+//! Reads a judged trace again and simulates the reference next to it, to collect the evidence.
 use crate::{
     inspected_step::{InspectedStep, Inspector, WantedCalls, continue_from},
     rulings::StepRuling,
@@ -12,7 +12,8 @@ use fosssim_model::{
 };
 use std::io::Read;
 
-/// The maximum number of steps with details, and of numbers in their expected states; large scenes have fewer steps.
+/// The maximum number of steps with details, and of numbers in their expected states; in large scenes fewer steps are
+/// kept.
 const MAX_INSPECTED_STEPS: usize = 12;
 const NUMBERS: usize = 40_000;
 
@@ -22,7 +23,7 @@ const APART: f64 = 1e-10;
 /// The class of a step, for the strip over all steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepClass {
-    /// The step is right, and its end agrees with the reference's own run.
+    /// The step is right, and it ends in the same state as the reference's own run.
     Right,
     /// The step itself is wrong.
     Wrong,
@@ -50,8 +51,8 @@ impl StepClass {
 pub struct Step {
     /// The class of the step.
     pub class: StepClass,
-    /// The largest distance of a position coordinate from the end of a reference step that starts from the trace's own
-    /// state; NaN if one of them is NaN.
+    /// The largest difference of a position coordinate from the reference's, after a step from the trace's own state;
+    /// NaN if one of them is NaN.
     pub position: f64,
     /// The largest distance of velocities, measured in the same way.
     pub velocity: f64,
@@ -62,7 +63,7 @@ pub struct Step {
     pub actual_passes: Option<u32>,
 }
 
-/// A place to show in detail: a step, with a pair in one pass, or in all passes in which it collides.
+/// A place to show in detail: a step, and possibly a pair in one pass, or in all passes in which it collides.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Focus {
     /// The step, from 1.
@@ -74,7 +75,7 @@ pub struct Focus {
 }
 
 impl Focus {
-    /// Returns the places of the findings of both rule books, with the official one's first.
+    /// Returns the places of the findings of both rule books, beginning with the official book's.
     #[must_use]
     pub fn from_outcome(outcome: &Outcome) -> Vec<Self> {
         let books = outcome.fair.iter().map(|fair| &fair.findings).chain([&outcome.parity.findings]);
@@ -105,8 +106,8 @@ pub struct Evidence {
     pub inspected: Vec<InspectedStep>,
 }
 
-/// Reads a trace. `rulings` are the judge's, in the order of the steps; `fair` selects the rule book that decides;
-/// `focus` names the places of findings, the most important first.
+/// Reads a trace. `rulings` are the judge's rulings in the order of the steps; `fair` selects the rule book that
+/// decides; `focus` names the places of findings, the most important first.
 ///
 /// If a trace cannot be read to its end, the evidence covers the readable part.
 pub fn gather(
@@ -232,7 +233,8 @@ impl<'a> Gathering<'a> {
     ) -> Option<PassCount<'f>> {
         self.own.state_mut().clone_from(before);
         self.own.set_steps_done(step - 1);
-        // The mid record of `continuous-time` equals the end record, so it is compared with the end of the step.
+        // The mid record of `continuous-time` equals the end record, so it is compared with the expected end of the
+        // step.
         let mid_state = matches!(self.scene.collision, Collision::Hybrid { .. }).then_some(&mid.state);
         let mut count = PassCount { mid: mid_state, ..PassCount::default() };
         let Some(wanted) = wanted else {
@@ -242,7 +244,8 @@ impl<'a> Gathering<'a> {
         let done = self.work.step(&mut self.own, &mut (&mut inspector, &mut count)).is_ok();
         let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
         inspector.step.actual_contacts.clone_from(impulses);
-        // The inspector comes first: it keeps the expected mid record, and makes the step continue with the trace's.
+        // The inspector must observe first: it keeps the expected mid record, and then makes the step continue with the
+        // trace's.
         if let (Some(expected), Some(mid)) = (&inspector.step.expected_mid, mid_state) {
             count.apart = distances(expected, mid);
         }
@@ -250,7 +253,7 @@ impl<'a> Gathering<'a> {
         done.then_some(count)
     }
 
-    /// Returns whether the reference's own run has another state.
+    /// Returns whether the state of the reference's own run differs from `end`.
     fn is_apart(&self, end: &State) -> bool {
         self.free_goes_on && largest(&self.free.state().positions, &end.positions) > APART
     }
@@ -267,8 +270,8 @@ impl<'a> Gathering<'a> {
     }
 }
 
-/// Returns the steps shown in detail: those of findings, and those around the first wrong step; of many, the most
-/// important ones.
+/// Returns the steps shown in detail: those of findings, and those around the first wrong step; if there are too many,
+/// the most important ones.
 fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
     let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
     let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);

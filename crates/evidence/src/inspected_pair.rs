@@ -1,4 +1,4 @@
-//! One pair in one step from a given state: the reference's computation, and the trace's log.
+//! Inspects one pair in one step from a given state: the reference's computation, and the trace's log.
 use crate::inspected_step::{InspectedStep, Inspector, WantedCalls};
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -38,7 +38,7 @@ pub fn inspect(
     simulation.set_steps_done(step - 1);
     let failed = simulation.step(&mut watch).err();
     let mut step = watch.finish();
-    // Other faults of the step do not matter here.
+    // An error after the pair's calls does not matter here.
     step.calls.retain(|call| call.pair == pair);
     InspectedPair { step, end: simulation.state().clone(), failed }
 }

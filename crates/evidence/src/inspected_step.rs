@@ -1,4 +1,4 @@
-//! One step in detail: every detection pass, contact and zone, and the calls of findings.
+//! Inspects one step in detail: every detection pass, contact and zone, and the calls of findings.
 use crate::matching::{differ, matching};
 use fosssim_judge::study::{NoAnswer, Study};
 use fosssim_model::{
@@ -7,12 +7,13 @@ use fosssim_model::{
     trace::{LoggedImpulse, PolynomialLog},
 };
 
-/// The maximum number of kept passes of a step, and of numbers in their positions; large scenes have fewer passes.
+/// The maximum number of kept passes of a step, and of numbers in their positions; in large scenes fewer passes are
+/// kept.
 const MAX_PASSES: usize = 24;
 const POSITIONS: usize = 12_000;
 /// The maximum number of kept pairs of a pass, for each of differing, missing and repeated ones.
 const MAX_PAIRS: usize = 256;
-/// The maximum number of kept calls of a step, in case the trace has logged another number of polynomials.
+/// The maximum number of kept calls of a step, used if the trace has logged a different number of polynomials.
 const MAX_CALLS: usize = 1 << 14;
 /// The maximum number of wrong or missing calls that are shown without a finding.
 const MAX_SHOWN_CALLS: usize = 2;
@@ -50,7 +51,8 @@ pub struct MergedZones {
 /// The trace's log of a call.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CallLog {
-    /// The logged polynomials in the order of the reference's, highest power first; a missing one is empty.
+    /// The logged polynomials in the order of the reference's, each with the highest power first; a missing polynomial
+    /// is empty.
     These(Vec<Vec<f64>>),
     /// The trace has logged no polynomials of the call.
     Nothing,
@@ -105,11 +107,11 @@ pub struct InspectedStep {
 /// The selection of a pair's calls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum WantedCalls {
-    /// The calls that find a collision.
+    /// The pair's calls that find a collision.
     Hits,
-    /// The call of this pass.
+    /// The pair's call in one pass.
     In(Pass),
-    /// All calls of the pair.
+    /// All calls of the pair in the step.
     Every,
 }
 
@@ -135,7 +137,7 @@ pub(crate) struct Inspector<'a> {
     /// The calls and their polynomials, at most [`MAX_CALLS`].
     asked: Vec<AskedCall>,
     right: PolynomialLog,
-    /// The number in the step of each inspected call, and the index of its first polynomial.
+    /// For each inspected call, its number in the step, and the index of its first polynomial.
     places: Vec<(usize, usize)>,
     /// The number of calls so far.
     calls: usize,
@@ -143,8 +145,8 @@ pub(crate) struct Inspector<'a> {
 }
 
 impl<'a> Inspector<'a> {
-    /// Creates the inspector before the step begins. `log` holds the first of the trace's `logged` polynomials in this
-    /// step.
+    /// Creates the inspector before the step begins. `log` contains the first of the trace's `logged` polynomials in
+    /// this step.
     pub(crate) fn new(
         scene: &'a Scene,
         step: u32,
@@ -153,7 +155,7 @@ impl<'a> Inspector<'a> {
         wanted: &'a [(WantedCalls, Pair)],
     ) -> Self {
         let step = InspectedStep { step, actual_polynomials: logged, ..InspectedStep::default() };
-        // An entry that was not kept would look missing.
+        // A call whose polynomials were not kept must not look as if they were missing.
         let log = (log.len() == logged && logged > 0).then_some(log);
         let (asked, right) = (Vec::new(), PolynomialLog::default());
         Self { scene, mid, log, wanted, pass: None, asked, right, places: Vec::new(), calls: 0, step }
@@ -174,7 +176,7 @@ impl<'a> Inspector<'a> {
         } else if self.calls == self.asked.len() {
             match self.log {
                 Some(log) => self.assign(log),
-                // An empty list is unambiguous.
+                // An empty list can be assigned without doubt.
                 None if actual == 0 => self.assign(&PolynomialLog::default()),
                 None => {}
             }
@@ -183,7 +185,7 @@ impl<'a> Inspector<'a> {
         self.step
     }
 
-    /// Assigns the polynomials of a list of another length to calls.
+    /// Assigns the polynomials to calls if the trace has a different number of polynomials than the reference.
     fn assign(&mut self, log: &PolynomialLog) {
         let Some(found) = matching(&self.right, log) else { return };
         let mut is_claimed = vec![false; log.len()];
@@ -309,7 +311,7 @@ impl Steer for Inspector<'_> {
     }
 }
 
-/// Continues a step from the trace's mid record, if that has the scene's size.
+/// Continues a step from the trace's mid record, if the record has the scene's size.
 pub(crate) fn continue_from(mid: Option<&State>, state: &mut State) -> Resume {
     match mid {
         Some(mid) if mid.positions.len() == state.positions.len() => {
@@ -356,7 +358,7 @@ impl Observer for Inspector<'_> {
         });
         if wanted {
             let study = Study::for_motion(&motion());
-            // Whether the list is as long as the reference's is known only after the whole step.
+            // Only after the whole step is it known whether the list is as long as the reference's.
             self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: CallLog::Unknown });
             self.places.push((self.calls - 1, first));
         }

@@ -1,8 +1,8 @@
 //! The data that a viewer shows of a judged trace: both motions, the reference's events in each step from the trace's
 //! own state, and the detection calls of findings.
 //!
-//! This crate judges nothing; its caller provides the wrong steps ([`StepRulings`]). It reads the trace again and holds
-//! at most [`BUDGET`] numbers, so a trace of any length has evidence. A step starts from the trace's own state
+//! This crate judges nothing; its caller provides the wrong steps ([`StepRulings`]). It reads the trace again and keeps
+//! at most [`BUDGET`] numbers, so the length of the trace is not limited. A step starts from the trace's own state
 //! (oracle-behavior.md 4.2), uses the trace's mid record, and ends where the reference ends from there.
 //!
 //! ```

@@ -75,7 +75,7 @@ pub(crate) fn differ(own: &[f64], right: &[f64]) -> bool {
     if scale == 0.0 || most == 0.0 || !most.is_finite() {
         return own.len() != right.len() && (most != 0.0 || scale != 0.0);
     }
-    // The course's library may have dropped leading coefficients of one and not of the other; they are then small.
+    // The course's library may have dropped small leading coefficients of only one of the two.
     let (excess, own) = own.split_at(own.len().saturating_sub(right.len()));
     let (missing, right) = right.split_at(right.len() - own.len());
     let small = |list: &[f64], size: f64| list.iter().all(|c| c.abs() <= MARKED_DEVIATION * size);

@@ -9,7 +9,7 @@ use fosssim_judge::{
 pub struct StepRuling {
     /// Whether the original's rules find a fault in the step.
     pub wrong_by_parity: bool,
-    /// Whether the fair rules find a fault in the step; also `false` if they did not judge.
+    /// Whether the fair rules find a fault in the step; `false` if the fair rules did not judge the step.
     pub wrong_by_fair: bool,
     /// Whether the step's records, or earlier ones, are damaged, so that its numbers prove nothing.
     pub damaged: bool,
@@ -25,7 +25,7 @@ impl StepRulings {
     /// Returns the rulings in the order of the steps, after the trace has been judged.
     #[must_use]
     pub fn into_steps(mut self, outcome: &Outcome) -> Vec<StepRuling> {
-        // Damage lasts to the end.
+        // All records after a damaged one count as damaged.
         let sound = outcome.steps_judged.saturating_sub(outcome.damaged_steps) as usize;
         self.steps.iter_mut().skip(sound).for_each(|step| step.damaged = true);
         self.steps

@@ -20,8 +20,8 @@ pub struct Window {
 }
 
 impl Window {
-    /// Returns all steps, if a motion of that length fits in the budget, otherwise the steps around `focus`, a third of
-    /// them before it.
+    /// Returns all steps if a motion of that length fits into the budget. Otherwise returns the steps around `focus`, a
+    /// third of them before it.
     #[must_use]
     pub fn for_focus(focus: u32, layout: Layout, budget: usize) -> Self {
         let per_step = 4 * layout.particles.max(1) * layout.records_per_step() as usize;
@@ -51,7 +51,7 @@ impl Window {
 pub struct Track {
     /// The positions and velocities of each record in trace order, 2N each.
     pub values: Vec<f64>,
-    /// The number of records; fewer than in the window if the motion ends early.
+    /// The number of records; it is smaller than the window's if the motion ends early.
     pub records: usize,
 }
 

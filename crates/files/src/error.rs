@@ -6,7 +6,8 @@ use std::{
     os::unix::fs::FileTypeExt,
 };
 
-/// The reason why a file was rejected. Except for [`FileError::System`], the person who filled the folder is the cause.
+/// The reason why a file was rejected. All of them except [`FileError::System`] are caused by the person who filled the
+/// folder.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The file does not exist.
@@ -46,13 +47,13 @@ pub enum FileError {
     System {
         /// The file's name, escaped.
         name: String,
-        /// The system's error.
+        /// The error of the operating system.
         source: io::Error,
     },
 }
 
 impl FileError {
-    /// Returns the reason why a file could not be opened.
+    /// Converts the operating system's error from opening a file.
     pub(crate) fn not_opened(name: String, error: io::Error) -> Self {
         match error.raw_os_error() {
             Some(libc::ENOENT | libc::ENOTDIR) => Self::Missing { name },
@@ -70,7 +71,7 @@ pub(crate) fn escape(name: &OsStr) -> String {
     name.to_string_lossy().escape_debug().to_string()
 }
 
-/// Returns the metadata of an open file, which must be a regular file.
+/// Returns the metadata of an open file, and checks that it is a regular file.
 pub(crate) fn regular(file: &File, shown: impl Fn() -> String) -> Result<Metadata, FileError> {
     let metadata = file.metadata().map_err(|source| FileError::System { name: shown(), source })?;
     let kind = metadata.file_type();

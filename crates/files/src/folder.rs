@@ -25,8 +25,8 @@ const SAFE_FLAGS: OFlags = OFlags::NOFOLLOW.union(OFlags::NONBLOCK).union(OFlags
 /// The bits of a new folder's mode, before the mask.
 const FOLDER_MODE: u32 = 0o777;
 
-/// An open folder. Its entries are accessed only by their own names: no link leads out, and a path that is replaced in
-/// the meantime leads nowhere else.
+/// An open folder. Entries are accessed only relative to the open folder, so no link and no exchanged path leads out of
+/// it.
 #[derive(Debug, Clone)]
 pub struct Folder {
     fd: Arc<OwnedFd>,
@@ -291,7 +291,7 @@ fn step(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
     })
 }
 
-/// Returns a name that does not leave its folder.
+/// Returns the name if it is a single component, so that it does not lead out of its folder.
 pub(super) fn check_single_component(name: &OsStr) -> io::Result<&OsStr> {
     let mut components = Path::new(name).components();
     match (components.next(), components.next()) {

@@ -78,7 +78,8 @@ pub fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> 
     let first = options.clone().custom_flags(libc::O_NONBLOCK).open(name)?;
     let kind = first.metadata()?.file_type();
     if kind.is_fifo() || kind.is_char_device() {
-        // There is a reader. A full pipe would be an error with `first`; with a second opening, writing waits.
+        // The pipe has a reader. `first` never waits, so a full pipe would be an error; open the pipe again for writing
+        // that waits.
         return options.open(name);
     }
     Ok(first)
@@ -110,7 +111,7 @@ pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
 /// # Errors
 /// Fails if it cannot be read, or is larger.
 pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<Vec<u8>> {
-    // One additional byte shows whether the file ends there.
+    // Read one byte more than allowed, to see whether the file is longer.
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit)).unwrap_or_default() + 1);
     with_timeout(file, metadata)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
@@ -136,7 +137,7 @@ pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read 
     let mut first = [0; 1];
     loop {
         match pipe.0.read(&mut first) {
-            // Without a writer a pipe seems to be at its end.
+            // A pipe without a writer looks like the end of a file.
             Ok(0) if begun.elapsed() < PIPE_PATIENCE => thread::sleep(Duration::from_millis(5)),
             Ok(0) => {
                 let text = "it is a pipe without a writer for five seconds";

@@ -1,4 +1,4 @@
-//! Places in a folder of results: a user has named the folder, and the grader everything below it.
+//! Places in a folder of results. A user chooses the folder, and the grader the names of everything in it.
 use super::{FileError, Folder, Replacement, error::escape};
 use std::{
     ffi::OsStr,

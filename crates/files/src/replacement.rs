@@ -21,7 +21,8 @@ pub const UNFINISHED: &str = ".fosssim-oracle-";
 /// The number of names that are tried for an unfinished file.
 const TRIES: u32 = 100;
 
-/// A file that is being written. [`Replacement::finish`] gives it its name; without that, it is removed.
+/// A file that is being written. [`Replacement::finish`] gives the file its name; if it is not called, the file is
+/// removed.
 #[derive(Debug)]
 pub struct Replacement {
     folder: Folder,
@@ -44,7 +45,7 @@ impl Replacement {
                 Ok(fd) => {
                     let made = Self { folder, file: fd.into(), unfinished, name: name.to_owned(), finished: false };
                     if let Some(mode) = mode {
-                        // The mode of a new file is limited by the mask; the mode of a replaced file must stay.
+                        // The process's mask limits the mode of a new file, but a replaced file must keep its mode.
                         made.file.set_permissions(Permissions::from_mode(mode))?;
                     }
                     return Ok(made);
@@ -117,7 +118,7 @@ impl Folder {
 impl Drop for Replacement {
     fn drop(&mut self) {
         if !self.finished {
-            // A file that remains is hidden and useless.
+            // If the file cannot be removed, it stays as a hidden file, which does no harm.
             let _ = unlinkat(&self.folder, &self.unfinished, AtFlags::empty());
         }
     }

@@ -1,4 +1,4 @@
-//! The findings of one rule book in a trace; both books use this type.
+//! The findings of a rule book in a trace. Both rule books use the same type.
 use super::{counts::FindingCounts, finding::Finding};
 
 /// The findings of one rule book.

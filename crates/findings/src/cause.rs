@@ -1,14 +1,15 @@
 //! The rules of the original that make the two rule books differ about a trace.
 //!
-//! The original's rules are written in oracle-behavior.md 4 to 6, and why they can't be trusted in numerics.md 1.
+//! The original's rules are described in oracle-behavior.md 4 to 6, and the reasons why they can't be trusted in
+//! numerics.md 1.
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// A rule of the original that makes the verdicts differ. Rules by which the original fails come first.
+    /// A rule of the original that makes the verdicts differ. Rules by which the original rejects come first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
     #[serde(rename_all = "snake_case")]
     pub enum Cause {
-        /// Parity fails: coefficients are compared at an absolute bound, whatever their size.
+        /// Parity fails: coefficients of all sizes are compared with the same absolute bound.
         AbsoluteCoefficients =
             "the original compares coefficients at an absolute 1e-10, after rescaling by sums of moduli: the \
              round-off of large ones exceeds it",
@@ -23,16 +24,16 @@ fosssim_num::closed_set! {
         ApproachForm =
             "the original has the course's slip in t^3 of the particle-edge approach polynomial, and the trace has \
              the right form",
-        /// Parity fails: states are compared at an absolute bound, whatever the size of the scene.
+        /// Parity fails: states in scenes of all sizes are compared with the same absolute bound.
         AbsoluteStates = "the original compares states at an absolute 1e-10: the round-off of large numbers exceeds it",
-        /// Parity fails: contact normals are compared at an absolute bound.
+        /// Parity fails: contact normals are compared with an absolute bound.
         AbsoluteNormals =
             "the original compares contact normals at an absolute 1e-9: the round-off of long ones exceeds it",
         /// Parity fails: the round-off of all steps is summed.
         AccumulatedResiduals =
             "the original adds up the round-off of all steps and particles, and its bound of 1e-6 does not grow \
              with them",
-        /// Parity fails: round-off may flip a decision.
+        /// Parity fails: round-off may change a decision.
         BorderlineDecision =
             "the original accepts only one result of a decision that round-off may flip, and the trace has the other",
         /// Parity passes: the original never checks the first record.

@@ -1,5 +1,5 @@
-//! The part of a judged trace that a report may show: findings as values. [`Hints`](super::Hints) cut it down to what a
-//! reader may know.
+//! The part of a judged trace that a report may show: findings as values. [`Hints`](super::Hints) limit it to what a
+//! reader may see.
 use super::{
     Book, Damage, FindingCounts, Outcome, Residuals, Rules, Ruling,
     finding::{Finding, FindingKind, FindingPlace},
@@ -15,7 +15,7 @@ pub struct Disclosure {
     pub parity: DisclosedBook,
     /// The findings of the fair rules, if requested.
     pub fair: Option<DisclosedBook>,
-    /// The residuals (oracle-behavior.md 6.3). They are values, so only full hints show them.
+    /// The residuals (oracle-behavior.md 6.3). Residuals are values, so only full hints show them.
     pub residuals: Option<Residuals>,
     /// The first damage that the reader skipped.
     pub damage: Option<Damage>,

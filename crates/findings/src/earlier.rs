@@ -1,4 +1,4 @@
-//! The parts of an earlier grade that a later one is compared with.
+//! Reads earlier grades, with which a later one is compared.
 use serde::{Deserialize, Serialize};
 
 /// The parts of an earlier grade that a later one is compared with. They are read from `grade --format json` of any

@@ -3,7 +3,7 @@ use super::book_findings::BookFindings;
 use fosssim_model::sim::{Pair, Pass};
 use serde::{Deserialize, Serialize};
 
-/// The verdict of the fair rules.
+/// The verdict of the fair rules on a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairVerdict {
@@ -11,7 +11,7 @@ pub enum FairVerdict {
     Accepted,
     /// The trace breaks a rule.
     Rejected,
-    /// Judging stopped before its end, and found no fault until then.
+    /// Judging stopped early, and had found no fault.
     #[default]
     None,
 }
@@ -26,11 +26,11 @@ pub enum FairRefusal {
     Damaged,
     /// Bytes follow the last record.
     TrailingBytes,
-    /// Most decisions of the trace are borderline and differ from the reference's, so the trace proves nothing.
+    /// Most decisions of the trace are borderline and differ from the reference's, so the trace cannot be judged.
     Undecided,
 }
 
-/// The form of the particle-edge approach polynomial that a trace uses, of the two accepted ones.
+/// The form of the particle-edge approach polynomial in a trace. Two forms are accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
@@ -43,20 +43,20 @@ pub enum Form {
     Right,
 }
 
-/// A decision that round-off may flip, and that differs from the reference's.
+/// A decision about a pair that round-off may change, and that differs from the reference's.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Borderline {
     /// The step, from 1.
     pub step: u32,
     /// The detection pass.
     pub pass: Pass,
-    /// The pair.
+    /// The pair whose decision is borderline.
     pub pair: Pair,
     /// Whether the trace reports a collision.
     pub collides: bool,
 }
 
-/// The largest shares of the tolerances that right values used, 0 to 1; 0 if no value differed.
+/// The largest differences of right values, as shares of their tolerances from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Shares {
     /// The share of polynomial coefficients.
@@ -78,7 +78,7 @@ pub struct Shares {
 }
 
 impl Shares {
-    /// Keeps the larger of both shares of each quantity.
+    /// Raises each share to that of `other`, if that is larger.
     pub fn max_with(&mut self, other: &Self) {
         self.coefficient = self.coefficient.max(other.coefficient);
         self.normal = self.normal.max(other.normal);
@@ -90,7 +90,7 @@ impl Shares {
 /// The result of the fair rules for a trace.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
-    /// The verdict.
+    /// The verdict of the fair rules.
     pub verdict: FairVerdict,
     /// The reason why the whole trace is rejected, independent of its steps.
     pub refusal: Option<FairRefusal>,
@@ -108,7 +108,7 @@ pub struct Judgement {
     pub factor: Option<[f64; 2]>,
     /// The form of the approach polynomial.
     pub form: Form,
-    /// The number of polynomials that lack other small coefficients than the reference's.
+    /// The number of polynomials without small coefficients that the reference has, or with small ones that it lacks.
     pub lost: u64,
     /// The used shares of the tolerances.
     pub shares: Shares,

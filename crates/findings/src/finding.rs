@@ -15,11 +15,11 @@ fosssim_num::closed_set! {
         MissedCollision = "missed collision",
         /// A collision of the trace is not in the reference.
         SuperfluousCollision = "superfluous collision",
-        /// A collision is in both, with different contact normals.
+        /// A collision of both has different contact normals.
         WrongNormal = "wrong contact normal",
-        /// The step logged another number of polynomials: detection ran more or less often.
+        /// The step logged a wrong number of polynomials, because detection ran too often or not often enough.
         PolynomialCount = "wrong number of polynomials",
-        /// A polynomial has another number of coefficients.
+        /// A polynomial has a wrong number of coefficients.
         PolynomialDegree = "wrong polynomial degree",
         /// The reference's coefficients are all tiny, but the trace's are not.
         VanishingPolynomial = "polynomial should vanish",
@@ -37,15 +37,15 @@ fosssim_num::closed_set! {
         PassPositions = "wrong positions within the step",
         /// Fair rules: the two records of a step contradict each other.
         RecordsDiffer = "contradicting records",
-        /// Fair rules: the trace holds a log that the course's library can't have written.
+        /// Fair rules: the trace contains a log that the course's library can't have written.
         ImpossibleLog = "impossible log",
-        /// Fair rules: coefficients that were dropped as too small change a decision.
+        /// Fair rules: coefficients that were dropped because they are small change a decision.
         TrimmedDecision = "decision changed by lost coefficients",
         /// Fair rules: the two accepted forms of the approach polynomial are mixed.
         MixedForms = "mixed forms of the approach",
         /// Fair rules: the penalty force between two bodies was left out or applied twice.
         PairForce = "force of a pair left out or doubled",
-        /// Fair rules: no next state exists, from the step's state or with its polynomials.
+        /// Fair rules: the step's state or its polynomials have no next state.
         NoResult = "no next state",
     }
 }
@@ -135,7 +135,7 @@ pub enum FindingDetail {
         expected: usize,
         /// The number of polynomials of the trace.
         actual: usize,
-        /// The number of polynomials in one detection pass over all pairs, by which missing and surplus passes are
+        /// The number of polynomials in one detection pass over all pairs, with which missing and surplus passes are
         /// counted.
         per_pass: usize,
     },
@@ -218,7 +218,7 @@ pub enum FindingDetail {
         #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
-    /// The time of impact is not the time when the polynomials become positive (fair rules).
+    /// The time of impact differs from the time at which the polynomials become positive (fair rules).
     ContactTime {
         /// The reference's collision.
         expected: Impulse,
@@ -230,8 +230,8 @@ pub enum FindingDetail {
         /// The repeated collision.
         actual: LoggedImpulse,
     },
-    /// The polynomial of a pair that a response or the failsafe has moved matches neither motion (fair rules). If the
-    /// polynomial is right, the particles' positions are wrong.
+    /// The polynomial of a pair that a response or the failsafe has moved matches the motion neither before nor after
+    /// (fair rules). If the polynomial is right, the particles' positions are wrong.
     PassPositions {
         /// The place of the first such polynomial.
         place: PolynomialPlace,
@@ -264,8 +264,8 @@ pub enum FindingDetail {
         #[serde(with = "fosssim_num::written")]
         actual: f64,
     },
-    /// A state that cannot be judged: it holds NaN, or its size is far beyond every state that the scene leads to (fair
-    /// rules).
+    /// A state cannot be judged, because it contains NaN or is far larger than every state that the scene leads to
+    /// (fair rules).
     BeyondReach {
         /// The particle.
         particle: usize,
@@ -276,19 +276,19 @@ pub enum FindingDetail {
         #[serde(with = "fosssim_num::written")]
         velocity: [f64; 2],
     },
-    /// The approach polynomial switches to the other of its two accepted forms (fair rules).
+    /// The trace mixes the two accepted forms of the approach polynomial (fair rules).
     MixedForms {
         /// The place of the first such polynomial.
         place: PolynomialPlace,
     },
     /// The penalty force between two near bodies was left out or applied twice (fair rules).
     PairForce {
-        /// The two bodies.
+        /// The pair of bodies.
         pair: Pair,
-        /// Whether it was applied twice.
+        /// Whether the force was applied twice; otherwise it was left out.
         is_doubled: bool,
     },
-    /// No next state exists, from the trace's own state or with its own polynomials (fair rules).
+    /// The trace's own state or its polynomials have no next state (fair rules).
     NoResult {
         /// The numerical error that ended the step.
         error: StepError,
@@ -359,7 +359,7 @@ pub enum FindingPlace {
     Polynomial(PolynomialPlace),
     /// A particle, by its index.
     Particle(usize),
-    /// Two object numbers that only the trace contains.
+    /// Two object numbers in the trace that do not form a pair of the scene.
     Objects(i32, i32),
 }
 

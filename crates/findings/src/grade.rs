@@ -70,7 +70,7 @@ pub struct Grade {
     pub submission: String,
     /// The suite's name.
     pub suite: String,
-    /// The requested rule books; the official one gives verdicts and points.
+    /// The requested rule books; the official one decides verdicts and points.
     pub rules: Rules,
     /// The worst verdict of the groups that count.
     pub verdict: Verdict,
@@ -81,8 +81,8 @@ pub struct Grade {
     pub max_points: f64,
     /// The groups, in the suite's order.
     pub groups: Vec<GroupGrade>,
-    /// Whether reports for students show text that the program controls, such as its output. They do not if groups are
-    /// hidden, unless the suite allows it.
+    /// Whether reports for students show text that the program controls, such as its output. If groups are hidden, they
+    /// do so only if the suite allows it.
     pub shows_output: bool,
     /// The end of the build, if the suite builds.
     pub build: Option<Build>,
@@ -114,7 +114,7 @@ pub struct Grade {
 }
 
 impl Grade {
-    /// Returns the verdict, the points and the maximum of the groups. Extra groups count only if there are no others.
+    /// Returns the common verdict, points and maximum points of groups. Extra groups count only if there are no others.
     #[must_use]
     pub fn totals(groups: &[GroupGrade]) -> (Verdict, Option<f64>, f64) {
         let has_others = groups.iter().any(|group| !group.extra);
@@ -175,7 +175,7 @@ impl Grade {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
-    /// Returns whether the grader failed somewhere. Students must not get such a grade.
+    /// Returns whether the grader failed on a part of the grade. Students must not get such a grade.
     #[must_use]
     pub fn is_our_fault(&self) -> bool {
         self.verdict == Verdict::JudgeError
@@ -187,8 +187,8 @@ impl Grade {
         self.count(Verdict::NotRun) > 0
     }
 
-    /// Returns the fault of the whole submission, if there is one: it has no runnable program, it does not build, it is
-    /// of another milestone, or nothing is written yet.
+    /// Returns the fault of the whole submission, if there is one: it has no runnable program, it does not build, it
+    /// belongs to a different milestone, or nothing is written yet.
     #[must_use]
     pub fn unfit(&self) -> Option<SubmissionFault<'_>> {
         if let Some(other) = self.looks_like {
@@ -205,7 +205,7 @@ impl Grade {
         })
     }
 
-    /// Returns the build, if it made no program.
+    /// Returns the build, if it failed to make a program.
     #[must_use]
     pub fn failed_build(&self) -> Option<&Build> {
         self.build.as_ref().filter(|build| !build.end.is_success())
@@ -243,7 +243,7 @@ impl Grade {
     }
 }
 
-/// An entry of a class's folder that is not a submission, with the reason, so that no entry is left out silently.
+/// An entry of a class's folder that was skipped because it is not a submission, with the reason.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct PassedOver {
@@ -267,9 +267,9 @@ pub struct Build {
 pub enum SubmissionFault<'a> {
     /// The submission's build failed.
     Build(&'a BuildEnd),
-    /// The program implements this milestone, and the suite tests another one.
+    /// The program implements this milestone, but the suite tests a different one.
     Milestone(Assignment),
-    /// A result that all scenes share; the value is that of the first one.
+    /// All scenes have the same fault; the value is the result of the first scene.
     Scene(&'a SceneResult),
 }
 
@@ -282,7 +282,7 @@ pub struct GroupGrade {
     pub visibility: Visibility,
     /// The hints that students get for the group's scenes.
     pub hints: Hints,
-    /// The points reached, including those for speed; `None` if a scene or the speed has none.
+    /// The points reached, including those for speed; `None` if a scene or the speed has no points.
     pub points: Option<f64>,
     /// The maximum number of points.
     pub max_points: f64,
@@ -315,8 +315,8 @@ pub struct SceneGrade {
     pub max_points: f64,
     /// Whether the result was reused from an earlier run.
     pub cached: bool,
-    /// The likely mistakes in the scene, the likeliest first. They come from all scenes together if those name a
-    /// mistake, otherwise from this scene alone ([`SceneResult::explanations`]). Reports show them.
+    /// The likely mistakes in the scene, the likeliest first. They come from all scenes together if these show a common
+    /// mistake, otherwise from this scene alone ([`SceneResult::explanations`]). Reports show these explanations.
     pub settled: Vec<Explanation>,
     /// The number of explanations, at the start of [`settled`](Self::settled), that come from all scenes together.
     pub agreed: usize,
@@ -329,7 +329,7 @@ impl GroupGrade {
         self.max_points - self.speed.as_ref().map_or(0.0, |speed| speed.marking.points)
     }
 
-    /// Removes from the group's scenes and speed what students may not see when groups are hidden.
+    /// Removes everything from the group's scenes and speed that students may not see when groups are hidden.
     pub fn withhold(&mut self) {
         self.scenes.iter_mut().for_each(SceneGrade::withhold);
         if let Some(speed) = &mut self.speed {
@@ -339,7 +339,7 @@ impl GroupGrade {
 }
 
 impl SceneGrade {
-    /// Removes from the result what students may not see when groups are hidden ([`SceneResult::withhold`]).
+    /// Removes everything from the result that students may not see when groups are hidden ([`SceneResult::withhold`]).
     pub fn withhold(&mut self) {
         self.result.withhold();
         (self.settled, self.agreed) = (Vec::new(), 0);

@@ -1,4 +1,4 @@
-//! The level of detail in a report, and the cut of findings to that level.
+//! The level of detail in a report, which limits findings.
 use super::{
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
     finding::Finding,
@@ -11,11 +11,11 @@ use serde::{Deserialize, Serialize};
 pub enum Hints {
     /// Only the verdict.
     None,
-    /// Also the place of the first difference: kind, step, pair and polynomial.
+    /// The verdict and the place of the first difference: kind, step, pair and polynomial.
     Where,
-    /// Also the likely mistake, as a sentence.
+    /// The verdict, the place of the first difference, and the likely mistake as a sentence.
     What,
-    /// Everything: expected and actual values, and the mistake in detail. This may give a right formula away.
+    /// Everything: expected and actual values, and the mistake in detail. This may reveal a right formula.
     Full,
 }
 
@@ -37,7 +37,7 @@ impl Hints {
         matches!(self, Self::What | Self::Full)
     }
 
-    /// Cuts the facts about a trace down to the level: nothing at [`Hints::None`], only places and kinds of findings at
+    /// Limits the facts about a trace to the level: nothing at [`Hints::None`], only places and kinds of findings at
     /// the next levels, everything at [`Hints::Full`].
     #[must_use]
     pub fn disclose(self, all: Disclosure) -> Option<Disclosure> {
@@ -71,7 +71,8 @@ impl Hints {
         }
     }
 
-    /// Returns the part of a finding that the level shows: nothing at [`Hints::None`], no values below [`Hints::Full`].
+    /// Returns the part of a finding that the level shows: nothing at [`Hints::None`], and no values below
+    /// [`Hints::Full`].
     #[must_use]
     pub const fn finding(self, finding: &Finding) -> Option<DisclosedFinding> {
         match self {

@@ -1,7 +1,7 @@
 //! The judgement of a submission, as values: findings, the outcome of judging a trace by both rule books, explanations,
 //! results of scenes and grades.
 //!
-//! Every fact has one type, which all crates use: `judge` and `mistakes` fill the values, `grading` keeps them,
+//! Every fact has one type, which all crates use: `judge` and `mistakes` create the values, `grading` stores them,
 //! `report` and `server` read them. Serialized values are read back bit for bit. The data of an assignment (known
 //! mistakes, formulas, letters) are named by their keys.
 //!

@@ -18,7 +18,7 @@ fosssim_num::closed_set! {
     pub enum FailureKind {
         /// The program is killed by a signal.
         Crash = "crash",
-        /// The program ends with its own exit code.
+        /// The program ends with an exit code that means an error.
         Error = "end with an error code",
         /// The program exceeds the time limit.
         Time = "run out of time",
@@ -36,9 +36,10 @@ fosssim_num::closed_set! {
 pub struct LocatedFailure {
     /// The way in which the program fails.
     pub failing: FailureKind,
-    /// The common contents of all failing scenes, the most general first. The scenes cannot distinguish them.
+    /// The common contents of all failing scenes, the most general first. The scenes cannot show which of these
+    /// contents is the cause.
     pub contents: Vec<Content>,
-    /// The number of scenes in which the program fails; all of them have the contents.
+    /// The number of scenes in which the program fails; all of these scenes have the contents.
     pub failed: usize,
     /// The number of scenes with the contents.
     pub with: usize,

@@ -9,7 +9,7 @@ use fosssim_model::{
 /// The reason why grading stopped before its end.
 #[derive(Debug, Clone)]
 pub enum Stop {
-    /// The trace cannot be read further. The original reports that and stops.
+    /// The trace cannot be read further. The original reports this error and stops.
     Trace {
         /// The frame that could not be read, from 0.
         frame: u64,
@@ -22,7 +22,7 @@ pub enum Stop {
         /// The kind of damage.
         what: Malformation,
     },
-    /// Judging needed more work than a trace may cause, or a step has no result by the original's rules.
+    /// Judging needed more work than is allowed, or a step has no result by the original's rules.
     Step(StepError),
 }
 
@@ -46,8 +46,8 @@ pub struct Outcome {
     pub stop: Option<Stop>,
     /// The first damage that the original's reader skips silently.
     pub damage: Option<Damage>,
-    /// The number of judged steps whose records are damaged, or come after a damaged one. Their findings count for the
-    /// original, but prove nothing about the program. They do not count as wrong steps, and no example is from them.
+    /// The number of judged steps whose records are damaged, or come after a damaged one. Findings in such steps count
+    /// for the original, but prove nothing about the program. The steps do not count as wrong, and give no examples.
     pub damaged_steps: u32,
     /// Whether bytes follow the last record, which the original does not read.
     pub trailing_bytes: bool,

@@ -8,11 +8,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Overall {
-    /// All five conditions hold.
+    /// All five conditions of the original are met.
     Passed,
     /// A residual is too large, or a message was written.
     Failed,
-    /// Grading did not reach its end, so there is no verdict.
+    /// Grading stopped early, so there is no verdict.
     #[default]
     None,
 }
@@ -55,13 +55,13 @@ impl Residuals {
 /// The result of the original's rules for a trace.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
-    /// The verdict.
+    /// The original's verdict; `None` if judging stopped early.
     pub overall: Overall,
-    /// The residuals, which exist for an incomplete run, too.
+    /// The residuals, which exist even if judging stopped early.
     pub residuals: Residuals,
     /// Whether collisions passed, including polynomials; `None` without a verdict.
     pub collisions_passed: Option<bool>,
-    /// The findings.
+    /// The findings by the original's rules.
     pub findings: BookFindings,
     /// The first step without a result, because the original does not terminate or gives up; later steps are not
     /// judged.
@@ -77,7 +77,7 @@ impl Judgement {
         }
         let passed = self.findings.counts.collisions() == 0;
         self.collisions_passed = Some(passed);
-        // The comparison is strict, and NaN fails.
+        // The comparison is strict, so NaN fails.
         let residuals_pass = self.residuals.with_bounds().iter().all(|(residual, bound)| residual < bound);
         self.overall = if passed && residuals_pass && is_complete { Overall::Passed } else { Overall::Failed };
     }

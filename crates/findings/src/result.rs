@@ -1,4 +1,4 @@
-//! Results of scenes, as values; `report::words` makes sentences of them, and `grading::score` points.
+//! Results of scenes, as values. `report::words` turns them into sentences, and `grading::score` into points.
 use super::{
     cause::Cause,
     disclosure::Disclosure,
@@ -16,8 +16,8 @@ use std::{path::PathBuf, time::Duration};
 
 pub use fosssim_ended::{RunEnd, StartProblem};
 
-/// The result of one scene: everything but its points, which follow from the suite. It holds everything that staff may
-/// see; `mistakes::together::told_to_students` makes the reduced version for students.
+/// The result of one scene: everything but its points, which follow from the suite. It contains everything that staff
+/// may see; `mistakes::together::told_to_students` makes the reduced version for students.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneResult {
     /// The scene's name, `Group/name`.
@@ -48,7 +48,7 @@ pub struct SceneResult {
     pub stderr: String,
     /// The name of the card that shows the trace.
     pub card: Option<String>,
-    /// The name of the students' card, if hints show them less and such a card was requested.
+    /// The name of the card for students, if it was requested and hints show students less than staff.
     pub card_for_students: Option<String>,
 }
 
@@ -122,7 +122,7 @@ pub enum Reason {
     NoTrace,
     /// The program failed. The end is in [`SceneResult::ended`]; the value is the program's progress.
     Program(ProgramProgress),
-    /// The scene was left out.
+    /// The scene was skipped, for this reason.
     LeftOut(NotRunReason),
     /// Grading was interrupted.
     Stopped,
@@ -136,7 +136,7 @@ pub enum Reason {
     Failed(Failure),
 }
 
-/// The fault of a trace, as far as hints allow.
+/// The fault of a trace, with the details that hints allow.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum WrongTrace {
     /// Hints hide the fault.
@@ -175,14 +175,14 @@ pub enum BadTrace {
         frame: u64,
         /// The step to which it belongs; 0 for the first record.
         step: u32,
-        /// The part of the record, or the reason why it cannot be read.
+        /// The part of the record that cannot be read, or the reason.
         cause: Unreadable,
         /// The byte offset of the damage.
         offset: u64,
         /// The damage that the reader reported.
         damage: Malformation,
     },
-    /// The trace holds the states of all steps, but no collisions.
+    /// The trace contains the states of all steps, but no collisions.
     StatesOnly,
     /// Fair rules: the trace is damaged.
     Damaged,
@@ -202,7 +202,7 @@ pub struct ProgramProgress {
 /// A limit of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Limit {
-    /// The limit of processor time or wall time; the program's end says which.
+    /// The limit of processor time or wall time; the program's end shows which.
     Time(Duration),
     /// The memory limit, in bytes.
     Memory(u64),
@@ -213,14 +213,14 @@ pub enum Limit {
 pub enum NotRunReason {
     /// Several scenes in a row exceeded a limit of time, memory or output.
     Limits {
-        /// The number of those scenes.
+        /// The number of scenes in the row.
         scenes: u32,
-        /// The worst verdict of those scenes.
+        /// The worst verdict of the scenes in the row.
         verdict: Verdict,
     },
     /// The submission has used up its total time, which is the value.
     Total(Duration),
-    /// A scene is not accepted, and the grading stops at the first such scene.
+    /// An earlier scene is not accepted, and grading stops at the first such scene.
     FailFast,
 }
 
@@ -231,7 +231,7 @@ pub enum UnusableReason {
     CouldNotStart(StartProblem),
     /// The folder has no program of the expected name.
     NoProgram {
-        /// The expected name.
+        /// The expected name of the program.
         sought: String,
         /// The contents of the folder.
         found: FolderContents,
@@ -240,20 +240,20 @@ pub enum UnusableReason {
     Unreadable(String),
 }
 
-/// The contents of a submission's folder that lacks the program.
+/// The contents of a submission's folder that does not contain the program.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FolderContents {
     /// The folder cannot be read; the value is the system's error message.
     Unreadable(String),
     /// The folder is empty.
     Nothing,
-    /// The folder holds other files and folders.
+    /// The folder contains other files and folders.
     Others {
         /// The first names, sorted; names of folders end in a slash.
         names: Vec<String>,
-        /// The number of further names.
+        /// The number of names that are not listed.
         more: usize,
-        /// The path of a file of the right name in another folder, if there is one.
+        /// The path of a file with the expected name in a subfolder, if there is one.
         elsewhere: Option<String>,
     },
 }
@@ -294,7 +294,7 @@ pub enum SavedTrace {
     In(PathBuf),
     /// The trace could not be kept.
     Lost {
-        /// The folder for the run.
+        /// The folder in which the trace should have been saved.
         folder: PathBuf,
         /// The system's error message.
         error: String,

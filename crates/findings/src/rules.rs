@@ -1,6 +1,7 @@
 //! The rule books, the choice between them, and the result of each in common words.
 //!
-//! The parity book is always computed, because everything else builds on its replay; the fair one only if requested.
+//! The parity book is always computed, because everything else uses its replay; the fair book is computed only if
+//! requested.
 use super::{
     book_findings::BookFindings,
     fair,
@@ -29,7 +30,8 @@ fosssim_num::closed_set! {
         Parity = "parity",
         /// The fair rules, which give the official verdict.
         Fair = "fair",
-        /// Both books: the original's gives the official verdict, and a report says where the fair rules differ.
+        /// Both books: the original's rules give the official verdict, and the report shows where the fair rules
+        /// differ.
         #[default]
         Both = "both",
     }
@@ -53,7 +55,7 @@ impl Rules {
 }
 
 fosssim_num::closed_set! {
-    /// The verdict of one rule book, in words that both share.
+    /// The verdict of one rule book, in words that both books share.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Ruling {
         /// The trace meets all rules.
@@ -90,8 +92,8 @@ impl Outcome {
         }
     }
 
-    /// Returns the number of right steps by a book. It is the number of all steps only if the trace is accepted: a
-    /// fault outside of the steps, such as a wrong first record or small errors that add up, counts as one step.
+    /// Returns the number of steps that are right by a book. A fault outside the steps, such as a wrong first record or
+    /// small errors that add up, counts as one wrong step. Therefore only an accepted trace has all steps right.
     #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
         let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);

@@ -15,7 +15,7 @@ pub struct SmallestScene {
     pub bodies: usize,
     /// The number of steps.
     pub steps: u32,
-    /// The command that reproduces the scene.
+    /// The command that makes the same scene again.
     pub again: String,
     /// The number of times that the program was run.
     pub runs: u32,
@@ -36,20 +36,20 @@ pub struct SmallestScene {
 }
 
 impl SmallestScene {
-    /// Returns the size by which scenes are compared.
+    /// Returns the size of the scene, for comparing scenes.
     #[must_use]
     pub const fn size(&self) -> (u32, usize, usize) {
         (self.steps, self.bodies, self.xml.len())
     }
 
-    /// Returns whether `found` holds no scene with the same content or cause.
+    /// Returns whether `found` contains no scene with the same content or cause.
     #[must_use]
     pub fn is_new(&self, found: &[Self]) -> bool {
         let cause = |one: &Self| one.explanations.first().filter(|cause| cause.is_vote()).map(Explanation::statement);
         found.iter().all(|one| one.xml != self.xml && (cause(one).is_none() || cause(one) != cause(self)))
     }
 
-    /// Reduces the scene to the level of hints, except for its explanations.
+    /// Removes everything that the hints do not allow, except for the explanations.
     pub fn cut(&mut self, hints: Hints) {
         if hints < Hints::Full {
             (self.differs, self.by_hand, self.card) = (None, None, None);

@@ -1,5 +1,5 @@
 //! Points for speed: the processor time of a submission compared with that of the reference program. Both run
-//! alternately on one machine. Wall time is not used, because other programs change it.
+//! alternately on one machine. Wall time is not used, because it depends on other running programs.
 use super::{
     result::SceneResult,
     timing::{TimedRun, Timing},
@@ -15,7 +15,8 @@ pub struct SpeedMarking {
     pub points: f64,
     /// The largest ratio to the reference's time that gives all points.
     pub full_at: f64,
-    /// The smallest ratio that gives no points; greater than `full_at`. Between both, points fall linearly.
+    /// The smallest ratio that gives no points; greater than `full_at`. Between the two ratios, points decrease
+    /// linearly.
     pub none_at: f64,
     /// The number of timed runs of each scene.
     pub runs: u32,
@@ -29,25 +30,25 @@ impl SpeedMarking {
     }
 }
 
-/// The points of a group for speed, and their origin.
+/// The points of a group for speed, and how they were computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedGrade {
     /// The rules for marking speed.
     pub marking: SpeedMarking,
     /// The points reached; `None` if the grader could not measure. A failure of the grader never gives zero points.
     pub points: Option<f64>,
-    /// The origin of the points.
+    /// The way in which the points were computed.
     pub source: SpeedSource,
 }
 
-/// The origin of points for speed.
+/// The way in which points for speed were computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SpeedSource {
     /// Some scenes of the group are not accepted, so there are no points for speed.
     NotAccepted,
     /// All scenes were timed.
     Measured(SpeedRatio),
-    /// A timed run of this scene had another verdict than the graded run.
+    /// A timed run of this scene had a different verdict than the graded run.
     Failed {
         /// The name of the scene.
         scene: String,
@@ -63,7 +64,7 @@ pub enum SpeedSource {
 /// The submission's processor time, divided by the reference program's.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedRatio {
-    /// The ratio of the minimum times of all runs, which other programs disturb least.
+    /// The ratio of the minimum times of all runs, which other running programs affect least.
     pub ratio: f64,
     /// The smallest ratio of a round of runs.
     pub least: f64,
@@ -109,7 +110,7 @@ fn source(scenes: &[&SceneResult]) -> SpeedSource {
 
 /// Returns the ratios of the sums over all scenes: of the minimum times, and of each round.
 fn ratio(scenes: &[&[TimedRun]]) -> SpeedRatio {
-    // A clock with a resolution of a microsecond may measure zero.
+    // The clock has a resolution of a microsecond, so it may measure zero.
     let seconds = |time: Duration| time.as_secs_f64().max(1e-6);
     let sum = |of: &dyn Fn(&[TimedRun]) -> TimedRun| {
         let (submission, reference) = scenes

@@ -6,7 +6,7 @@ use std::time::Duration;
 /// The timed runs of one scene.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Timing {
-    /// The name of the machine that measured. Times of different machines are not compared.
+    /// The name of the machine that measured. Times that were measured on different machines are not compared.
     pub machine: String,
     /// The runs, in the order of time.
     pub runs: Vec<TimedRun>,

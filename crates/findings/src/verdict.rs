@@ -2,7 +2,7 @@
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The verdicts, from best to worst; of several, the worst counts.
+    /// The verdicts, from best to worst; of several verdicts, the worst counts.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     pub enum Verdict {
         /// The trace meets all rules.
@@ -25,7 +25,7 @@ fosssim_num::closed_set! {
         TimeLimit = "time limit", "TLE";
         /// The program crashed or ended with an error code.
         RuntimeError = "run-time error", "RTE";
-        /// The submission cannot be run: it has no program, or none that this machine can start.
+        /// The submission cannot be run: it has no program that this machine can start.
         Unusable = "unusable submission", "US";
         /// The program's sources do not build.
         CompileError = "compile error", "CE";

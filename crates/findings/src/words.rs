@@ -1,7 +1,7 @@
 //! Findings as sentences, each with the place, the expected and the actual value.
 //!
-//! Vectors have as many digits as distinguish them. Other numbers are written so that reading them back gives the same
-//! value, with an exponent if they would be long otherwise. Reports that show values side by side use the fields of
+//! Vectors are written with as many digits as are needed to distinguish them. Other numbers are written exactly, with
+//! an exponent if they would otherwise be long. Reports that show values side by side use the fields of
 //! [`FindingDetail`] instead.
 use super::finding::{Finding, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart, Role};
 use fosssim_model::{
@@ -32,8 +32,8 @@ impl Finding {
     }
 }
 
-/// The reason for a different decision, and the likely loss of coefficients. The trace's other polynomials show whether
-/// a factor explains it.
+/// The text about a decision that differs because coefficients are missing. The trace's other polynomials show whether
+/// a factor explains the loss.
 const MISSING_COEFFICIENTS: &str = "the trace's polynomials lack the coefficients for it";
 const OTHER_FORM: &str = "the other of the two accepted forms; a program must use one of them throughout";
 const LEFT_OUT: &str = "are near enough for the penalty force, but no force was applied between them";
@@ -139,14 +139,15 @@ const fn difference_of_records(part: RecordPart, is_first: bool) -> &'static str
     }
 }
 
-/// Writes by how many whole detection passes a log is too long (`true`) or too short, if the number is whole.
+/// Writes the number of detection passes by which a log is too long (`true`) or too short, if the number is whole.
 fn write_passes(f: &mut Formatter<'_>, passes: Option<(usize, bool)>) -> fmt::Result {
     let Some((passes, more)) = passes else { return Ok(()) };
     let plural = if passes == 1 { "pass" } else { "passes" };
     write!(f, ": {passes} detection {plural} too {}", if more { "many" } else { "few" })
 }
 
-/// Two vectors and their distance, the wrong vector first, with as many digits as distinguish the vectors.
+/// Two vectors and their distance, the wrong vector first, with as many digits as are needed to distinguish the
+/// vectors.
 struct VectorDifference {
     expected: [f64; 2],
     actual: [f64; 2],
@@ -158,7 +159,7 @@ impl Display for VectorDifference {
         let distance = vector::length(Vec2::new(ax - ex, ay - ey));
         let power =
             |number: f64| format!("{number:e}").split_once('e').and_then(|(_, power)| power.parse::<i32>().ok());
-        // Show two digits of the distance, and at least six of each vector, whatever the other's size.
+        // Show two digits of the distance, and at least six digits of each vector.
         let short = |vector: [f64; 2]| {
             let size = vector.into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
             let least = power(size).map(|power| 5 - power);
@@ -173,7 +174,7 @@ impl Display for VectorDifference {
 
 /// Returns a value cut to a number of decimal places; a negative number cuts places before the point.
 fn cut_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
-    // More than seventeen digits add nothing.
+    // Seventeen digits determine a double, so more are not needed.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
     let text = match (usize::try_from(digits), usize::try_from(places.max(0))) {
         (Ok(digits), _) if places > 15 || value.abs() >= 1e9 => format!("{value:.digits$e}"),
@@ -211,8 +212,8 @@ pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize,
         .then(|| (difference / per_pass, actual > expected))
 }
 
-/// Returns whether a text has only visible ASCII characters and blanks. It is in this crate because reports check each
-/// of their texts, and their crate is compiled without optimization.
+/// Returns whether a text has only visible ASCII characters and blanks. The function is in this crate because it is
+/// optimized: reports check all their texts with it, and their crate is compiled without optimization.
 #[must_use]
 pub fn is_visible_ascii(text: &str) -> bool {
     text.bytes().all(|byte| (b' '..=b'~').contains(&byte))

@@ -24,7 +24,7 @@ pub struct JudgedTrace<'a> {
     pub name: &'a str,
     /// The likely mistakes that the reader may see.
     pub explanations: &'a [Explanation],
-    /// The outcome of judging, which holds more than the reader may see.
+    /// The outcome of judging, which contains more than the reader may see.
     pub outcome: &'a Outcome,
     /// The rulings of the rule books on each step.
     pub rulings: &'a [StepRuling],
@@ -38,7 +38,7 @@ pub struct JudgedTrace<'a> {
     pub hints: Hints,
 }
 
-/// A function that draws the card of a trace; `None` if there is nothing to show.
+/// A function that draws the card of a trace, or returns `None` if there is nothing to show.
 pub type Draw<'a> = dyn Fn(&JudgedTrace<'_>) -> Option<String> + Sync + 'a;
 
 /// The folder for cards, and the function that draws them.
@@ -96,7 +96,7 @@ pub fn store(folder: &Place, card: &str) -> io::Result<String> {
     let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
     let path = file(folder, &name);
     if !path.is_file() {
-        // The file is renamed into place, because another job may draw the same card.
+        // The file is renamed when it is complete, because another job may write the same card.
         path.write(&zstd::encode_all(card.as_bytes(), COMPRESSION_LEVEL)?)?;
     }
     Ok(name)
@@ -109,7 +109,7 @@ pub fn read(folder: &Place, name: &str) -> Option<String> {
     let (packed, _) = is_name.then(|| file(folder, name).file(MAX_CARD_BYTES).ok()).flatten()?;
     let mut text = String::new();
     io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, MAX_CARD_BYTES), &mut text).ok()?;
-    // A file that was changed since is ignored.
+    // A file whose digest does not match its name was changed, and is ignored.
     (blake3::hash(text.as_bytes()).to_hex()[..32] == *name).then_some(text)
 }
 

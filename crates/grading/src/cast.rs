@@ -1,4 +1,4 @@
-//! Programs for tests. Each does what its name says, and is played by the sandbox's stand-in.
+//! Fake programs for tests, which the sandbox runs instead of real ones. The name of each says what it does.
 use super::{
     batch,
     cancellation::Cancellation,
@@ -62,13 +62,13 @@ impl Observer for ZonesMoved {
     }
 }
 
-/// Runs a program of the cast, whose name says what it does.
+/// Runs the fake program that the job's program names.
 fn run_fake(job: &Job) -> FakeRun {
     match job.program.file_name().and_then(|name| name.to_str()) {
         Some("right") => FakeRun::wrote(right_trace(job)),
         Some("wrong") => {
             let mut trace = right_trace(job);
-            // The first particle starts at another position, so only the first step is wrong.
+            // The first particle starts at a different position, so only the first step is wrong.
             let x = f64::from_le_bytes(trace[..8].try_into().expect("eight bytes"));
             trace[..8].copy_from_slice(&(x + 1.0).to_le_bytes());
             FakeRun::wrote(trace)
@@ -80,7 +80,7 @@ fn run_fake(job: &Job) -> FakeRun {
         Some("unwritten") => {
             let (scene, trace) = (scene(job), right_trace(job));
             let layout = Layout::for_scene(&scene);
-            // The first record's lists are empty.
+            // The lists of the first record are empty.
             let record = &trace[..layout.state_bytes() + 8];
             FakeRun::wrote(record.repeat(usize::try_from(layout.records()).expect("small")))
         }

@@ -1,7 +1,7 @@
 //! Derives the verdict on one scene from the program's end and the trace.
 //!
-//! The functions are pure: they use no processes and no files. The worse of both sides counts: a right trace does not
-//! excuse a crash, and a clean exit does not excuse a wrong trace.
+//! The functions are pure: they use no processes and no files. The worse of the two counts: a crash is reported even if
+//! the trace is right, and a wrong trace even if the program ended well.
 use super::{
     config::{Hints, RunLimits},
     disclosure::Disclosure,
@@ -38,7 +38,7 @@ pub struct ProgramRun {
 }
 
 impl ProgramRun {
-    /// Returns the values of a program that was not run, as if it had ended well after it wrote its trace.
+    /// Returns the values for a trace without a program, as if a program had written the trace and ended well.
     #[must_use]
     pub fn not_run() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
@@ -79,7 +79,7 @@ pub struct Run<'a> {
     pub judged: &'a Outcome,
     /// The number of trace bytes that arrived.
     pub trace_bytes: u64,
-    /// The rule books; the official one gives verdict, findings and right steps.
+    /// The rule books. The official one decides the verdict, the findings and the number of right steps.
     pub rules: Rules,
     /// The highest hints of any reader.
     pub hints: Hints,
@@ -104,9 +104,9 @@ impl<R: Read> Read for CountedReader<'_, R> {
 /// The depth of the search for explanations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchDepth {
-    /// Only the first value that is not finite, which is quick.
+    /// Only the first value that is not finite is searched, which is quick.
     NotFinite,
-    /// Likely mistakes, too.
+    /// The first value that is not finite and likely mistakes are searched.
     Mistakes,
 }
 
@@ -128,7 +128,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanat
     let Run { program, judged, rules, hints, .. } = *run;
     let of_program = verdict_of_program(&program.ended, judged);
     let (of_trace, trace_says) = verdict_of_trace(run);
-    // A stopped program leaves an incomplete trace; reporting both would blame it twice.
+    // A stopped program leaves an incomplete trace. Reporting both would count one fault twice.
     let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
     let blames_program = of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace);
     let (verdict, reason) = match blames_program || of_program > of_trace {
@@ -160,7 +160,8 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanat
     result
 }
 
-/// Returns the size of a complete trace of the scene with empty lists; `None` if the reference's lists are empty, too.
+/// Returns the size that a complete trace of the scene has if all its lists are empty; `None` if the reference's lists
+/// are empty, too.
 fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
     let layout = Layout::for_scene(scene);
     let has_pairs = scene.particles.len() > 1 || !(scene.particles.is_empty() || scene.half_planes.is_empty());
@@ -170,7 +171,7 @@ fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
 }
 
 /// Returns the verdict by the program's end alone. The number of bytes after the last record does not matter: a program
-/// that is stopped because of them counts as ended when the judge had all records.
+/// that was stopped because of them counts as ended, because the judge had all records.
 fn verdict_of_program(ended: &RunEnd, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {
@@ -200,7 +201,7 @@ fn find_progress(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> Progra
 /// Returns the verdict by the trace alone, with its reason.
 fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
-    // States without collision handling may have no next state; the trace is still complete.
+    // A step without collision handling may have no next state; the trace is still complete.
     let is_complete = !matches!(judged.stop, Some(Stop::Trace { .. }));
     let is_empty = is_complete && bytes_of_nothing(&run.task.scene) == Some(trace_bytes);
     if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {

@@ -1,6 +1,6 @@
 //! `suite.toml`: the scenes to grade, with limits, points and visibility.
 //!
-//! Reading yields every problem at once, each with line and column. The file's grammar is documented by the template
+//! Reading reports all problems together, each with line and column. The file's grammar is documented by the template
 //! that `suite init` writes ([`template`]).
 use super::{
     near::closest,
@@ -34,7 +34,7 @@ pub struct Suite<Scene = Pattern> {
     pub run: Vec<String>,
     /// The rule books that judge; the official one gives verdicts and points.
     pub rules: Rules,
-    /// The hints for staff; full hints unless the user of the grader reduces them.
+    /// The hints for staff; by default all hints.
     pub staff_hints: Hints,
     /// Whether students see the output of their programs even if some groups are hidden from them.
     pub show_output: bool,
@@ -212,7 +212,7 @@ pub fn read(text: &str) -> Result<Suite, SuiteError> {
     if problems.is_empty() { Ok(suite) } else { Err(SuiteError { problems }) }
 }
 
-/// Reads a suite and all of its problems, in order; faulty parts are left out or get defaults.
+/// Reads a suite and all of its problems, in order; invalid parts are omitted or get their defaults.
 pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     let (table, mut problems, is_readable) = shape::check_shape(text);
     let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
@@ -363,7 +363,7 @@ fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw
     Group { name, scenes: scenes.map(pattern).collect(), marking, note }
 }
 
-/// Reads the course's note on a mistake of the catalogue, or on what an explanation says without naming one.
+/// Reads the course's note on a mistake of the catalogue, or on an explanation that names no mistake.
 fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String, CourseNote)> {
     let key = raw.key?;
     let word = key.get_ref().as_str();
@@ -402,7 +402,7 @@ fn read_speed(problems: &mut Vec<Problem>, raw: Spanned<RawSpeed>) -> SpeedMarki
     let raw = raw.into_inner();
     let (full_at, none_at) = match (raw.full_at, raw.none_at, raw.second) {
         (Some(full_at), Some(none_at), None) => (full_at, none_at),
-        // The course gives full points up to one second, and none from one minute.
+        // The course gives full points up to one second, and no points from one minute.
         (None, None, Some(second)) => (second, 60.0 * second),
         _ => {
             let text = "speed needs full_at and none_at, or second alone";

@@ -48,7 +48,7 @@ pub struct Runner<'a> {
     pub limits: &'a RunLimits,
     /// The rule books for judging.
     pub rules: Rules,
-    /// The hints for staff, who see most; the result contains no more.
+    /// The hints for staff. The result contains only what these hints allow.
     pub hints: Hints,
     /// The hints for students about the scene.
     pub student_hints: Hints,
@@ -60,9 +60,9 @@ pub struct Runner<'a> {
     pub cancellation: &'a Cancellation,
     /// The folder for traces on which the grader failed; created when it is needed.
     pub faults: &'a Place,
-    /// The file for the trace if it is not accepted, if requested.
+    /// The file to which a trace that is not accepted is saved, if requested.
     pub trace: Option<&'a Place>,
-    /// The drawing and storage of cards for traces that are not simply right, if requested.
+    /// The storage of cards, which are drawn for all traces with findings, if requested.
     pub cards: Option<Cards<'a>>,
     /// The sums of the runs' processor times, for `--timings`.
     pub timings: Option<&'a Timings>,
@@ -70,8 +70,8 @@ pub struct Runner<'a> {
 
 impl Runner<'_> {
     /// Runs `program` on a scene in a new working folder, which is removed afterwards, and judges the trace. After an
-    /// error of the grader or the machine it tries again; a second error is the verdict. `on_step` receives the number
-    /// of every judged step.
+    /// error of the grader or the machine it tries once more; after a second error the verdict is a judge error.
+    /// `on_step` receives the number of every judged step.
     #[must_use]
     pub fn grade(&self, program: &StagedProgram, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
         let mut attempt = 1;
@@ -105,7 +105,7 @@ impl Runner<'_> {
         }
         watch.end(RunPart::Start);
         let (trace, trace_bytes) = self.open_trace(&left)?;
-        // The trace is kept outside of judging, which may panic; it is saved for developers then.
+        // The trace is kept outside the judging code, so that it can be saved for developers if that code panics.
         let mut kept = KeptTrace::new(MAX_KEPT_BYTES);
         let mut rulings = StepRulings::default();
         let mut told = StepReporter(on_step);
@@ -218,7 +218,7 @@ impl Runner<'_> {
         Ok((self.backend.start(&job).map_err(|error| error.to_string())?, folder))
     }
 
-    /// Judges the trace of a program. Reads the rest of the trace too, so that it is kept whole.
+    /// Judges the trace of a program. The rest of the trace is also read, so that the whole trace is kept.
     fn judge_trace(
         &self,
         program: &StagedProgram,
@@ -231,7 +231,7 @@ impl Runner<'_> {
             fault::inject(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
-        // If reading fails here, the judge has met the same error.
+        // An error of reading here was already reported by the judge.
         let _ = io::copy(&mut kept.reader(trace), &mut io::sink());
         judged
     }
@@ -282,7 +282,7 @@ impl Runner<'_> {
     }
 }
 
-/// Returns the result of a judged run with its explanations, or the panic.
+/// Returns the result of a judged run with its explanations, or the panic that the search caused.
 fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
     let mut explaining = catch_panic(|| fault::inject(Activity::Explaining, program)).err();
     let explain = |look: SearchDepth| {

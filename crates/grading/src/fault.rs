@@ -1,4 +1,5 @@
-//! Scenes on which the grader failed. Each is a judge error, and its trace is saved for the developer who fixes it.
+//! Handles scenes on which the grader failed. Each becomes a judge error, and its trace is saved for the developer who
+//! fixes the grader.
 use super::{
     guard::Fault,
     result::{Activity, Failure, SavedTrace, SceneResult},
@@ -29,7 +30,7 @@ fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     Ok(path.path())
 }
 
-/// Makes the grader fail in tests: a program of this name causes a panic in this stage.
+/// Makes the grader fail in tests: a program with this name causes a panic in this stage.
 #[cfg(test)]
 pub(super) fn inject(stage: Activity, program: &Path) {
     let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();

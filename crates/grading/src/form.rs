@@ -13,13 +13,13 @@ pub struct Entry {
     form: u32,
     /// The key of the result.
     pub key: Key,
-    /// The submission's name, for people.
+    /// The submission's name, which is only for people.
     pub submission: String,
     /// The result.
     pub result: SceneResult,
 }
 
-/// Returns the line that stores a result under its key, with a line end; the submission's name is for people.
+/// Returns the line that stores a result under its key, with a line end; the submission's name is only for people.
 #[must_use]
 pub fn format_line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
     let (key, submission, result) = (key.clone(), submission.to_owned(), result.clone());

@@ -1,4 +1,4 @@
-//! Grades one submission: the unit of which everything that grades consists.
+//! Grades one submission; every kind of grading uses this module.
 //!
 //! A single submission, a class and an autograder all go through a `SubmissionGrading`, scene by scene. A caller with
 //! several jobs distributes the scenes among them ([`batch`](super::batch)). A result is stored before it is reported;
@@ -67,7 +67,7 @@ pub struct Options {
     pub recorded: bool,
 }
 
-/// A function that returns the file for the trace of a submission's scene.
+/// A function that returns the file to which the trace of a submission's scene is saved.
 pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> Place + Sync + 'a;
 
 /// The parts that all submissions of a grading share.
@@ -85,22 +85,22 @@ pub struct Grader<'a> {
     pub faults: &'a Place,
     /// The function that names the files for traces that are not accepted, if requested.
     pub traces: Option<&'a TraceFile<'a>>,
-    /// The drawing and storage of cards for traces that are not simply right, if requested.
+    /// The storage of cards, which are drawn for all traces with findings, if requested.
     pub cards: Option<Cards<'a>>,
     /// The function that describes the smallest scenes, if requested.
     pub smallest: Option<&'a DescribeSmallest<'a>>,
-    /// The function that receives a finished grade, on the job that made it.
+    /// A function that the job with a submission's last result calls with the grade.
     pub finish: Option<&'a (dyn Fn(&Grade) + Sync + 'a)>,
     /// The sums of all runs' processor times, for `--timings`.
     pub timings: Option<&'a Timings>,
-    /// The program that speed is compared with: the original, or a program that plays it under its name. Without it,
-    /// speed is not measured.
+    /// The program with which speed is compared: the original, or a program in its role. Without it, speed is not
+    /// measured.
     pub reference: Option<&'a Path>,
 }
 
 impl Grader<'_> {
-    /// Returns the rules that count. Against recordings these are the original's, because the fair ones follow the
-    /// submission's states.
+    /// Returns the rules that are used. With recordings these are the original's, because the fair rules need a
+    /// simulation from the submission's states.
     pub(super) const fn effective_rules(&self) -> Rules {
         if self.options.recorded { Rules::Parity } else { self.plan.rules }
     }
@@ -124,7 +124,7 @@ pub(super) struct SharedGrading<'a> {
     cancellation: &'a Cancellation,
     results: Option<&'a dyn Results>,
     folders: Folders,
-    /// The parts of keys that are independent of program and scene.
+    /// The parts of keys that do not depend on program and scene.
     words: Vec<String>,
     /// The results that this grading has stored.
     kept: Mutex<BTreeSet<Key>>,
@@ -167,8 +167,8 @@ impl<'a> SharedGrading<'a> {
         Key::from_program(digest, &scene.xml, &words)
     }
 
-    /// Finds an earlier result, or that of an equal program in this grading. A result without requested traces or cards
-    /// does not count.
+    /// Finds a stored result, or the result of an identical program in this grading. A result without requested traces
+    /// or cards does not count.
     fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<FoundResult> {
         let result = self.results?.find(key)?;
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
@@ -177,7 +177,7 @@ impl<'a> SharedGrading<'a> {
         (!lacks_trace && !lacks_card).then_some(FinishedScene { result, cached, claim: None })
     }
 
-    /// Claims the key of a result after no other job works on it, or returns the result if it exists then.
+    /// Waits until no other job works on a key. Then returns its result, if there is one, or claims the key.
     fn claim<'s>(
         &'s self,
         key: Key,
@@ -213,7 +213,8 @@ impl<'a> SharedGrading<'a> {
     }
 }
 
-/// The exclusive right of a job to make the result of a key. Others that need it wait until the claim is dropped.
+/// The exclusive right of a job to make the result of a key. Other jobs that need the result wait until the claim is
+/// dropped.
 struct KeyClaim<'s> {
     shared: &'s SharedGrading<'s>,
     key: Key,
@@ -231,7 +232,7 @@ struct FinishedScene<'s> {
     result: SceneResult,
     /// Whether the result was reused from an earlier run.
     cached: bool,
-    /// The claim for storing the result; `None` for a result that was found.
+    /// The claim for storing the result; `None` for a result that was found, not made.
     claim: Option<KeyClaim<'s>>,
 }
 
@@ -250,14 +251,14 @@ pub(super) enum SceneNews {
     Begins,
     /// Judging has reached a step; not every step is reported.
     Step(u32),
-    /// The scene has its result; the value is whether it was reused from an earlier run.
+    /// The scene has its result. The value tells whether the result was reused from an earlier run.
     Done(bool),
     /// The submission has its grade, after its last scene.
     Graded(Box<Grade>),
 }
 
-/// A submission while it is graded. Any number of jobs may process its scenes. The first job that has to run it stages
-/// it, and the copy stays until the grade is complete.
+/// A submission while it is graded. Any number of jobs may process its scenes. The first job that needs the program
+/// stages it; the copy is removed when the grade is complete.
 pub(super) struct SubmissionGrading<'a> {
     pub(super) grader: &'a Grader<'a>,
     pub(super) shared: &'a SharedGrading<'a>,
@@ -268,13 +269,13 @@ pub(super) struct SubmissionGrading<'a> {
     known: Mutex<SubmissionProgress>,
 }
 
-/// The results of a submission's scenes up to now.
+/// The results of a submission's scenes so far.
 struct SubmissionProgress {
     /// The verdict of every finished scene, with the time of its run and its judging.
     done: Vec<Option<(Verdict, Duration)>>,
-    /// The first scene that is not run, with the reason.
+    /// The first scene that is skipped, with the reason.
     end: Option<(usize, NotRunReason)>,
-    /// The reported results, each with whether it was found.
+    /// The reported results, each with whether it was reused.
     told: Vec<Option<(SceneResult, bool)>>,
     /// The number of results that are still missing in `told`.
     missing: usize,
@@ -335,7 +336,7 @@ impl<'a> SubmissionGrading<'a> {
         let trace = grader.traces.map(|path| path(submission, scene));
         let students = grader.plan.student_hints(&scene.name);
         let find = |key: &Key| shared.find(key, trace.as_ref(), grader.cards, students);
-        // The result is found or claimed before anything is copied, if the digest is known without a copy.
+        // If the digest is known without a copy, the result is found or claimed before anything is copied.
         let known = self.digest().map(|digest| shared.key(&digest, scene, &submission.program_name(), students));
         let known = match known.map(|key| shared.claim(key, find)).transpose() {
             Ok(claim) => claim,
@@ -374,7 +375,7 @@ impl<'a> SubmissionGrading<'a> {
     ) -> SceneResult {
         let mut told = Instant::now();
         let mut on_step = |step| {
-            // A display cannot show more, and a channel should not hold more.
+            // Report at most ten steps per second: more would only fill the channel.
             if told.elapsed() > Duration::from_millis(100) {
                 told = Instant::now();
                 tell(SceneNews::Step(step));
@@ -403,7 +404,7 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    /// Returns the reason why the scene is skipped, if it is.
+    /// Returns the reason why a scene is skipped; `None` if it is run.
     fn left_out(&self, scene: usize) -> Option<NotRunReason> {
         lock(&self.known).end.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
     }
@@ -427,7 +428,7 @@ impl<'a> SubmissionGrading<'a> {
         })
     }
 
-    /// Returns whether the submission is a source folder that must be built.
+    /// Returns whether the submission is a folder of sources that must be built.
     fn builds(&self) -> bool {
         let Submission { path, program, .. } = self.submission;
         self.grader.plan.build.is_some() && program.is_none() && path.is_dir()

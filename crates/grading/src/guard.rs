@@ -2,7 +2,7 @@
 //! grading.
 //!
 //! A panic is caught where the work on one scene begins, with its place in the source, and becomes a judge error of
-//! that scene. The data of the failed work are dropped.
+//! that scene. The data that the failed work changed are dropped.
 use std::{
     any::Any,
     cell::{Cell, RefCell},

@@ -12,7 +12,7 @@ pub struct Key(String);
 
 impl Key {
     /// Returns the key of a run. It consists of digests of program and scene, and of `words` for everything else that
-    /// matters (rules, limits, the command, the way of judging). The judging program is always part of it.
+    /// matters (rules, limits, the command, the kind of judging). The judging program is always part of it.
     #[must_use]
     pub fn from_program(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         Self::from_parts(this_build(), program, scene, words)
@@ -31,8 +31,8 @@ impl Key {
     }
 }
 
-/// Returns the digest of the running program, because two builds of one version may judge differently; its version if
-/// it can't be read.
+/// Returns the digest of the running program, because two builds of one version may judge differently; if the program
+/// can't be read, returns its version.
 ///
 /// The GNU build ID, a digest by the linker, is used instead if there is one: reading a program of this size takes as
 /// long as judging ten small scenes.
@@ -54,8 +54,8 @@ pub fn this_build() -> &'static str {
     })
 }
 
-/// Returns the build ID of a 64-bit ELF file, if its first bytes hold one of the length of a digest, as linkers write
-/// it.
+/// Returns the build ID of a 64-bit ELF file, if its first bytes contain one with the length of a digest, as linkers
+/// write it.
 fn build_id(file: &mut File) -> Option<Vec<u8>> {
     const NOTES: u32 = 4;
     const BUILD_ID: u32 = 3;
@@ -67,7 +67,7 @@ fn build_id(file: &mut File) -> Option<Vec<u8>> {
     let word = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
     let long =
         |bytes: &[u8], at: usize| usize::try_from(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?)).ok();
-    // A 64-bit ELF file, least significant byte first.
+    // Check for a 64-bit, little-endian ELF file.
     if !start.starts_with(b"\x7fELF\x02\x01") {
         return None;
     }

@@ -13,7 +13,8 @@ static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
 #[cfg(target_os = "linux")]
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
 
-/// The example of a wrong trace: its scene, and the sample's output with the mistake `pe-linear-one-ab`.
+/// The example of a wrong trace: the scene's name, and the trace that the sample writes with the mistake
+/// `pe-linear-one-ab`.
 pub const FLAWED_TRACE: (&str, &[u8]) = (
     "ContinuousTimeTests/spinning-edge-sweeps-balls",
     include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/traces/flawed.bin")),
@@ -27,7 +28,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     stems(&ASSETS, ".xml")
 }
 
-/// Returns the names of all scenes of the program: embedded ones, and generated ones, which have no recordings.
+/// Returns the names of all built-in scenes: embedded ones, and generated ones, which have no recordings.
 pub fn all_names() -> impl Iterator<Item = &'static str> {
     names().chain(TIMING.iter().map(|made| made.name))
 }
@@ -51,7 +52,7 @@ pub fn recording(name: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, &format!("{name}.bin.zst"))
 }
 
-/// Returns no recording, because programs cannot be run here.
+/// Returns `None`: a build that cannot run programs has no recordings.
 #[must_use]
 #[cfg(not(target_os = "linux"))]
 pub const fn recording(_: &str) -> Option<&'static [u8]> {
@@ -129,7 +130,7 @@ fn subfolder(folder: &'static Dir<'static>, name: &str) -> Option<&'static Dir<'
     folder.dirs().find(|inner| is_called(inner.path(), name))
 }
 
-/// Returns whether the last part of the path is `name`.
+/// Returns whether the last component of the path is `name`.
 fn is_called(path: &Path, name: &str) -> bool {
     let before = path.as_os_str().as_encoded_bytes().strip_suffix(name.as_bytes());
     before.is_some_and(|before| before.is_empty() || before.ends_with(b"/"))

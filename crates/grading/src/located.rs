@@ -57,8 +57,8 @@ impl ContentIndex {
         Content { family: family.name.into(), value: self.value.map(value) }
     }
 
-    /// Returns the rank of a content, for sorting. A later place in a step is narrower (zones, then contacts, then the
-    /// whole step), and absent events come last.
+    /// Returns the rank of a content, for sorting. Narrower contents come first: those of zones, then of contacts, then
+    /// of whole steps. Absent events come last.
     const fn rank(self) -> (bool, usize) {
         let place = match self.family {
             4 => 0,
@@ -82,8 +82,8 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         let scenes = tried.iter().filter(|one| one.contents.contains(&content)).count();
         with.entry(scenes).or_default().push(content);
     }
-    // Every failing scene contains them, so Ochiai's measure is the root of failed / with: fewer scenes with the
-    // content are better.
+    // Every failing scene contains the value, so Ochiai's measure is the square root of `failed / with`: the fewer
+    // scenes contain it, the better.
     let (with, mut contents) = with.into_iter().next()?;
     let looked_at: BTreeSet<Vec<bool>> = tried
         .iter()
@@ -98,7 +98,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         return None;
     }
     contents.sort_by_key(|content| content.rank());
-    // Values that all events of a kind have are left out, because the kind says the same.
+    // Values that all events of a kind have are left out, because the kind alone describes them.
     let kinds: Vec<usize> =
         contents.iter().filter(|content| content.value.is_none()).map(|content| content.family).collect();
     contents.retain(|content| content.value.is_none() || !kinds.contains(&content.family));

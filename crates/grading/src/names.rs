@@ -1,10 +1,10 @@
-//! File names as text in which nothing is hidden: different names look different, and no name changes the text around
-//! it.
+//! Converts file names to text in which nothing is hidden: different names look different, and no name changes the text
+//! around it.
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
 use unicode_normalization::UnicodeNormalization;
 use unicode_properties::{GeneralCategory, UnicodeGeneralCategory};
 
-/// The maximum number of marks on one letter; further ones only cover the text around.
+/// The maximum number of combining marks that are kept on one letter. More marks would cover the surrounding text.
 const MAX_MARKS: usize = 4;
 
 /// Returns a file's name as text, in the usual form of letters with marks (NFC). Invisible or ambiguous characters
@@ -20,7 +20,7 @@ pub fn printable(name: &OsStr) -> String {
 /// texts.
 #[must_use]
 pub fn exact(name: &OsStr) -> String {
-    // A letter that is not in its normalized form changes its length or its identity.
+    // A letter that normalization changes has another length or another code point.
     each_chunk(name, |valid| escape(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))
 }
 

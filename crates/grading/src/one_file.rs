@@ -1,22 +1,23 @@
-//! Finds the owner of a file that has several names. Backups and tools that save space make such files, which is
-//! allowed. A submission is rejected only if the search found that it has another's file.
+//! Finds the owner of a file with several names (hard links). Backup and deduplication tools create such files, which
+//! is allowed. A submission is rejected only if its file was found to belong to another submission.
 use fosssim_files::Identity;
 use std::{fs::File, io, os::unix::fs::MetadataExt};
 
-/// The identity of a program's file, and whether it is shared with other submissions. A file may have several names.
+/// The identity of a program's file, and whether it is shared with other submissions. A file may have several names
+/// (hard links).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OneFile {
     /// The identity of the file.
     pub identity: Identity,
     /// Whether another submission has the same file.
     pub is_shared: bool,
-    /// Whether the file is another submission's: the owner of that one's folder owns the file, and the owner of this
-    /// one's does not.
+    /// Whether the file belongs to another submission: the owner of the other submission's folder owns the file, and
+    /// the owner of this submission's folder does not.
     pub is_anothers: bool,
 }
 
-/// The message about two submissions with one file whose owner is unknown. It contains no names, because students read
-/// it, too.
+/// The message if two submissions have the same file and its owner is unknown. It contains no names, because students
+/// read it, too.
 pub(super) const SHARED_FILE: &str =
     "the program is the same file as another submission's (a hard link), and its owner is unknown";
 
@@ -29,8 +30,7 @@ pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bo
     match noted {
         _ if metadata.nlink() == 1 => Ok(false),
         Some(noted) if noted.identity == Identity::from_metadata(&metadata) => Ok(noted.is_anothers),
-        // The owner was not searched, because the machine failed or somebody exchanged the file. That must not cost
-        // points.
+        // The owner is unknown, because the machine failed or the file was exchanged. This must not cost points.
         _ => Err(io::Error::other("the file was replaced while submissions were graded; grade again")),
     }
 }

@@ -1,7 +1,7 @@
 //! Decides when the rest of a submission is skipped: a class must not wait for one program that never ends.
 //!
 //! The functions are pure, and depend only on the results so far, in the suite's order. Further results can only move
-//! the end forward. A decision while scenes still run is therefore final, and the same scenes are skipped whatever the
+//! the end forward. A decision while scenes still run is therefore final, and the same scenes are skipped with any
 //! number of jobs.
 use super::{
     config::Patience,
@@ -11,7 +11,7 @@ use super::{
 };
 use std::time::Duration;
 
-/// Returns the result of a skipped scene. All reasons but the last are the submission's own fault, so such a scene
+/// Returns the result of a skipped scene. For all reasons but a cancellation the submission is at fault, so the scene
 /// counts like the scenes that caused the end.
 pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {

@@ -26,8 +26,8 @@ impl Plan {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
-    /// Returns the part of the plan with the scenes that `takes` selects by name. Each keeps its points; empty groups
-    /// are left out, and the name says that it is a part.
+    /// Returns the part of the plan with the scenes that `takes` selects by name. Each scene keeps its points, empty
+    /// groups are removed, and the plan's name says that it is a part.
     #[must_use]
     pub fn part(mut self, takes: impl Fn(&str) -> bool) -> Self {
         let all = self.scenes().count();
@@ -97,7 +97,7 @@ pub fn built_in(name: &str) -> Option<&'static str> {
 /// The names and the XML of the scenes that a pattern matches.
 pub type MatchingScenes = Vec<(String, Vec<u8>)>;
 
-/// Finds the scenes of a suite; `files` finds those of patterns that name files. Patterns that match nothing, and
+/// Finds the scenes of a suite; `files` finds the scenes of patterns that name files. Patterns that match nothing, and
 /// scenes that can't be read or are invalid, are reported at the pattern's position.
 fn resolve(
     suite: Suite,
@@ -137,7 +137,8 @@ fn resolve(
                 }
                 match scene::read(&name, &xml) {
                     Ok(loaded) => {
-                        // A file with an embedded scene's name has a recording only if its content is that scene's.
+                        // A file with the name of an embedded scene uses its recording only if the contents are the
+                        // same.
                         let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
                         let recording = known.then(|| library::recording(&name)).flatten();
                         let beyond = milestone.filter(|_| !known).into_iter();

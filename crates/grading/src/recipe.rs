@@ -1,4 +1,5 @@
-//! The steps from a submission to a program that can be run: a program, an archive with one, or sources to build.
+//! Turns a submission into a program that can be run. The submission is a program, an archive with one, or sources to
+//! build.
 use super::{
     cancellation::Cancellation,
     config::BuildStep,
@@ -84,7 +85,7 @@ impl Recipe<'_> {
         Ok(StagedProgram::unusable(&path, why))
     }
 
-    /// Stages the build of the sources in a folder, or in the only archive that it holds.
+    /// Stages the build of the sources in a folder, or in the only archive in it.
     ///
     /// # Errors An error of the grader or the machine.
     pub fn folder(&self, path: &Path) -> Result<StagedProgram, String> {
@@ -99,7 +100,7 @@ impl Recipe<'_> {
     fn stage_opened(&self, mut file: File, path: &Path) -> Result<StagedProgram, String> {
         match kind_of(&mut file) {
             Ok(FileKind::Archive(_)) => self.stage_unpacked(file, path),
-            // The copy reports why the file can't be read.
+            // An error of reading is reported when the file is copied.
             _ => copy_program(file, path, self.backend),
         }
     }
@@ -135,8 +136,8 @@ fn kind_of(file: &mut File) -> io::Result<FileKind> {
     Ok(FileKind::from_start(&start))
 }
 
-/// Opens the archive in a folder, if it has exactly one: learning platforms make a folder around each upload.
-/// `is_alone` requires that the folder holds only the archive.
+/// Opens the archive in a folder, if it has exactly one: learning platforms make a folder around each upload. With
+/// `is_alone`, the folder must contain only the archive.
 fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
     /// The maximum number of entries of a learning platform's folder.
     const MAX_PLATFORM_ENTRIES: usize = 100;
@@ -147,7 +148,7 @@ fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
         return Ok(None);
     }
     let archive = |name: &OsString| {
-        // A file with several names has no known owner.
+        // The owner of a file with several names is unknown.
         let (mut file, _) = opened.regular_file(name.to_str()?, MAX_FOLDER_BYTES).ok()?;
         matches!(kind_of(&mut file), Ok(FileKind::Archive(_))).then_some(file)
     };

@@ -11,7 +11,7 @@ use fosssim_model::{
 use similar::TextDiff;
 use std::io::{self, Read};
 
-/// The compression level of zstd. It is high, because recordings are made rarely and shipped often.
+/// The compression level of zstd. It is high, because recordings are rarely made but part of every release.
 const COMPRESSION_LEVEL: i32 = 19;
 
 /// The reference trace of one scene.
@@ -98,8 +98,8 @@ pub fn manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> Stri
     recordings.into_iter().map(Recording::line).collect()
 }
 
-/// Returns a unified diff from the recording to the present simulation; empty if they are equal. Git may have changed
-/// the line ends of the recorded text.
+/// Returns a unified diff from the recording to the present simulation; empty if they are equal. Line ends are ignored,
+/// because Git may have changed them in the recorded text.
 #[must_use]
 pub fn diff(name: &str, recorded: &str, now: &str) -> String {
     let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));
@@ -117,7 +117,7 @@ pub(super) fn simulate_trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
     Ok(recorder.finish()?.0)
 }
 
-/// Returns the trace of a recording, cut after one byte more than expected, which is enough to differ.
+/// Returns the trace of a recording, cut after one byte more than expected, which is enough to show a difference.
 fn unpack(packed: &[u8], expected: usize) -> io::Result<Vec<u8>> {
     let mut trace = Vec::with_capacity(expected);
     zstd::stream::read::Decoder::new(packed)?.take(expected as u64 + 1).read_to_end(&mut trace)?;

@@ -13,12 +13,13 @@ use fosssim_mistakes::diagnose::{self, Explanation};
 use fosssim_model::scene::Scene;
 use std::time::Duration;
 
-/// Shares a group's points evenly among its scenes and adds up the points reached. Each result comes with whether it
-/// was reused from an earlier run.
+/// Shares a group's points evenly among its scenes and adds up the points reached. Each result comes with a flag:
+/// whether it was reused from an earlier run.
 ///
 /// With [`Credit::Steps`] a scene with a complete trace and a wrong answer gets the share of its steps without a
-/// finding, never all; any other verdict but accepted gets nothing. With [`Credit::All`] every scene has to be
-/// accepted. Scenes on which the grader failed, or which it did not run, have no points; neither has their group.
+/// finding, but never all its points. An accepted scene gets all its points, and every other scene none. With
+/// [`Credit::All`] every scene has to be accepted. Scenes on which the grader failed, or which it did not run, have no
+/// points; neither has their group.
 #[must_use]
 pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
     let each = scene_points(marking.points, results.len());
@@ -66,7 +67,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         verdict,
         points,
         max_points,
-        // No program was run, so no output can reveal a hidden scene.
+        // Without a run there is no output that could reveal a hidden scene.
         shows_output: true,
         refuted: find_refuted(plan, &groups),
         groups,
@@ -121,7 +122,7 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
         (_, Verdict::NotRun | Verdict::JudgeError) => return None,
         (Credit::All, _) => f64::from(u8::from(all_accepted)),
         (_, Verdict::Accepted) => 1.0,
-        // A wrong trace can have only right steps, if its first record is wrong or small errors add up.
+        // All steps of a wrong trace can be right: the first record may be wrong, or small errors may add up.
         (Credit::Steps, Verdict::WrongAnswer) => {
             let right = result.right_steps.min(result.steps.saturating_sub(1));
             f64::from(right) / f64::from(result.steps.max(1))
@@ -130,8 +131,8 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
     })
 }
 
-/// Returns a contradiction in a grade, whose points or verdict do not follow from its scenes. A grade from another
-/// program is checked before its points are used.
+/// Finds a contradiction in a grade: points or a verdict that do not follow from its scenes. A grade from an untrusted
+/// file is checked before its points are used.
 #[must_use]
 pub fn find_contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
@@ -146,7 +147,7 @@ pub fn find_contradiction(grade: &Grade) -> Option<&'static str> {
     }
 }
 
-/// Returns whether a group's points and verdict follow from its scenes' verdicts by some kind of credit.
+/// Returns whether a group's points and verdict follow from its scenes' verdicts with some rule for credit.
 fn is_consistent(group: &GroupGrade) -> bool {
     let all_accepted = group.scenes.iter().all(|scene| scene.verdict.is_accepted());
     let max_points = group.max_points_of_scenes();
@@ -163,10 +164,10 @@ fn is_consistent(group: &GroupGrade) -> bool {
         && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
-/// The number of accepted scenes that are checked for evidence against a likely mistake.
+/// The maximum number of accepted scenes that are checked for evidence against a likely mistake.
 const MAX_WITNESSES: usize = 12;
 
-/// Returns the likely mistakes that accepted scenes contradict; the smallest of these scenes are tried.
+/// Returns the likely mistakes that accepted scenes refute. The smallest of these scenes are tried.
 fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
     let wrong: Vec<(&Scene, &[Explanation])> = graded()
@@ -182,7 +183,7 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .collect();
     right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
     right.truncate(MAX_WITNESSES);
-    // Bundled scenes are in their milestone's folder; the milestone of others follows from their contents.
+    // The folder of a built-in scene names its milestone; for other scenes the milestone follows from the contents.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
     let whose = bundled.or_else(|| diagnose::milestone(plan.scenes().map(|task| &task.scene)));
     diagnose::refuted_keys(whose, &wrong, &right)

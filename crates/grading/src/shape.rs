@@ -1,6 +1,6 @@
 //! The shape of a suite file: its keys, and the type of each value.
 //!
-//! The check finds all faults together, and removes wrong parts, so that the others can still be checked.
+//! The check reports all errors together, and removes wrong parts, so that the rest can still be checked.
 use super::near::closest;
 use fosssim_findings::{Hints, Visibility};
 use fosssim_judge::Rules;
@@ -34,12 +34,12 @@ pub enum Credit {
 enum ValueKind {
     Text,
     Texts,
-    /// A number in a range; the message about a number out of range begins with the table's name.
+    /// A number in a range; the text is the table's name, for messages about a number out of range.
     Number(&'static str, Range<f64>),
     /// A whole number of at least 0.
     Whole,
     Flag,
-    /// A word of a list.
+    /// One of several words.
     Choice(&'static [&'static str]),
     Table(&'static [Key]),
     Tables(&'static [Key]),
@@ -151,7 +151,7 @@ pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bo
     if is_readable {
         remove_unknown(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
     } else {
-        // The meaning of a broken line is unknown.
+        // A line that cannot be parsed may contain any key, so nothing is checked.
         table.get_mut().clear();
     }
     (table, problems, is_readable)
@@ -160,7 +160,7 @@ pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bo
 /// Removes unknown keys and values of the wrong type from a table, and reports them.
 fn remove_unknown(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
     for Key(name, _, required) in keys {
-        // A misspelled key is reported at its position.
+        // A missing key may be misspelled, which is already reported.
         let meant = |key: &Spanned<Cow<'_, str>>| {
             key.get_ref() == name || closest(key.get_ref(), keys.iter().map(|Key(name, ..)| *name)) == Some(name)
         };

@@ -1,4 +1,5 @@
-//! The smallest scene for each cause of a program's mistakes: runs the program in the sandbox on ever smaller scenes.
+//! Finds the smallest scene for each cause of wrong results, by running the program in the sandbox on smaller and
+//! smaller scenes.
 use super::{config::RunLimits, execute::Runner, located::FailureKind, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
 pub use fosssim_findings::smallest::SmallestScene;
@@ -19,14 +20,14 @@ pub const MAX_BODIES: usize = 400;
 /// The maximum number of causes without a name for which a scene is made.
 const MAX_UNNAMED_CAUSES: usize = 2;
 
-/// The limits where the smallest scenes are only the end of a report.
+/// The limits for smallest scenes that are only one part of a report.
 pub const QUICK_LIMITS: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2), step: None };
 
 /// The limits of processor time and wall time of a run.
 const RUN_TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
-/// Returns limits with no more time than a program needs on a small scene. A trace that is complete at the time limit
-/// is still read.
+/// Returns limits that allow only as much time as a program needs on a small scene. A trace that is complete at the
+/// time limit is still read.
 #[must_use]
 pub fn shorten_limits(limits: &RunLimits) -> RunLimits {
     RunLimits { cpu: limits.cpu.min(RUN_TIME_LIMITS[0]), wall: limits.wall.min(RUN_TIME_LIMITS[1]), ..*limits }
@@ -35,7 +36,7 @@ pub fn shorten_limits(limits: &RunLimits) -> RunLimits {
 /// Describes a smallest scene for staff.
 pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene) -> SmallestScene + Sync + 'a;
 
-/// The most that may be spent on one cause, and where it begins.
+/// The limits of the work for one cause, and the step at which the search begins.
 #[derive(Debug, Clone, Copy)]
 pub struct ShrinkLimits {
     /// The maximum number of runs of the program.
@@ -46,7 +47,7 @@ pub struct ShrinkLimits {
     pub step: Option<u32>,
 }
 
-/// A cause, if it is known before a run is judged, and the scenes on which a program is wrong because of it.
+/// A cause (`None` if it is known only after a run) and the scenes on which the program is wrong because of it.
 pub type Cause<'a> = (Option<WrongReason>, Vec<&'a SceneTask>);
 
 /// The smallest scene for a cause.
@@ -100,7 +101,7 @@ pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause
     all
 }
 
-/// Runs a program on ever smaller scenes.
+/// Runs a program on smaller and smaller scenes.
 pub struct Shrinker<'a> {
     /// The runner of the program.
     pub runner: Runner<'a>,
@@ -121,7 +122,7 @@ impl Shrinker<'_> {
         tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let mut spent = Duration::ZERO;
-        // Other threads may grade; their time does not count.
+        // Only the time of this thread counts, because other threads may be grading.
         let begun = processor_time(TimeOf::Thread);
         let is_over = |spent: Duration| {
             let own = processor_time(TimeOf::Thread).saturating_sub(begun);

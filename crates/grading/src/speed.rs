@@ -1,8 +1,8 @@
 //! Times a submission and the reference program, if a suite gives points for speed.
 //!
 //! Both run alternately in the same sandbox, on the same scene and machine. Both traces are judged, so that a program
-//! gets no points if it leaves something out in its timed runs. The reference is the running program itself, in its
-//! role as the course's original.
+//! that omits work in its timed runs gets no points. The reference is this program itself, in the role of the course's
+//! original.
 use super::{
     config,
     execute::Runner,
@@ -21,8 +21,8 @@ use std::{fs, time::Instant};
 
 impl SubmissionGrading<'_> {
     /// Times the scenes of each group that marks speed, if all of the group's scenes are accepted. Earlier times of the
-    /// same program on this machine stay. Timed runs have as much time as the graded ones. When it is used up, each
-    /// further scene is timed once.
+    /// same program on this machine are reused. Timed runs together may take as long as the graded runs. When it is
+    /// used up, each further scene is timed once.
     pub(super) fn time_scenes(&self, results: &mut [(SceneResult, bool)]) {
         let mut rest = results;
         let begin = Instant::now();
@@ -40,7 +40,7 @@ impl SubmissionGrading<'_> {
                 result.timing = self.time_scene(scene, marking, begin + self.grader.plan.patience.total);
                 *cached = false;
                 self.keep_timed(scene, result);
-                // The time is used up.
+                // The time for timed runs is used up.
                 if result.timing.as_ref().is_none_or(|timing| timing.failed.is_some()) {
                     break;
                 }
@@ -103,7 +103,7 @@ impl SubmissionGrading<'_> {
     }
 }
 
-/// Returns whether the times were measured on this machine, with enough runs.
+/// Returns whether the times come from this machine and from enough runs.
 fn is_of_here(timing: &Timing, marking: SpeedMarking) -> bool {
     timing.machine == machine_name() && (timing.failed.is_some() || timing.runs.len() >= marking.runs as usize)
 }

@@ -1,5 +1,5 @@
-//! Copies a submission to a folder in which it can run. No other process can read or change the copy, which is digested
-//! while it is written.
+//! Copies a submission to a folder in which it can run. No other process can read or change the copy. Its digest is
+//! computed while it is written.
 //!
 //! Each file is opened once, below the submission's folder, without following links or blocking, and all checks use the
 //! open file. A user who may write in that folder can exchange a name, but not the open file. If a file can't be copied
@@ -44,7 +44,7 @@ const BLOCK_BYTES: usize = 1 << 16;
 pub struct StagedProgram {
     /// The path of the program.
     pub program: PathBuf,
-    /// The digest of the program's bytes; of its path if there is no runnable program.
+    /// The digest of the program's bytes; the digest of its path if there is no runnable program.
     pub digest: blake3::Hash,
     /// The result of the build, if there was one.
     pub build: Option<Build>,
@@ -75,10 +75,10 @@ impl From<String> for CopyError {
     }
 }
 
-/// Returns the kind of an error when a part of a submission is opened or read: inaccessible or vanished files are the
-/// submission's own fault.
+/// Decides who is at fault if a part of a submission cannot be opened or read: for inaccessible or missing files it is
+/// the submission.
 pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
-    // The length of a path is the submission's choice, and a failing disk is the machine's fault.
+    // A path that is too long is the submission's fault; a failing disk is the machine's.
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
     match closed || error.kind() == io::ErrorKind::InvalidFilename {
         true => CopyError::Submission(format!("{} can't be read: {error}", name.to_string_lossy().escape_debug())),
@@ -86,8 +86,8 @@ pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
     }
 }
 
-/// Copies the program that speed is compared with. The copy has the name of the course's original, by which it takes
-/// that role.
+/// Copies the program that speed is compared with. The copy has the name of the course's original, which makes it run
+/// in that role.
 ///
 /// # Errors
 ///
@@ -147,7 +147,7 @@ pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result
     let metadata = file.metadata().map_err(at(path))?;
     let mut room = MAX_FOLDER_BYTES;
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
-    // A changed copy of the grader with this name would also write right traces.
+    // A modified copy of the grader with this name would also write right traces.
     let is_oracle = name.as_encoded_bytes().starts_with(b"FOSSSimOracle");
     let why = match copy_as(name, file, path, &mut room) {
         Ok(staged)
@@ -241,7 +241,8 @@ pub(super) fn build(
 }
 
 /// Copies an open regular file and digests its bytes. Holes stay holes. `room` is the remaining byte budget, which is
-/// reduced by the file's size. The copy is executable if the file is, if it begins like a program, or if `is_program`.
+/// reduced by the file's size. The copy is executable if the file is executable, begins like a program, or `is_program`
+/// is set.
 fn copy_file(
     mut source: File,
     from: &Path,
@@ -263,7 +264,7 @@ fn copy_file(
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
             Err(error) => return Err(classify_error(from, error)),
         };
-        // The file may have grown after its length was read.
+        // The file may have grown since its length was read.
         *room = room.checked_sub(read.len() as u64).ok_or_else(too_large_error)?;
         hasher.update(read);
         executable |= length == 0 && FileKind::from_start(read) == FileKind::Program;
@@ -342,7 +343,7 @@ fn copy_folder(
     Ok(())
 }
 
-/// Finds a command by its path, relative to the sources, or by its name in the system's folders.
+/// Finds a build command: by its path relative to the sources, or by its name in the system's folders.
 fn find_tool(command: &str, sources: &Path) -> Option<PathBuf> {
     let candidates: Vec<PathBuf> = if command.contains('/') {
         vec![sources.join(command)]

@@ -27,7 +27,7 @@ impl SceneTask {
         format!("{}{}", if is_embedded { "asset:" } else { "" }, self.name)
     }
 
-    /// Returns the result of a scene without a judged run.
+    /// Creates the result of a scene that has no judged run.
     #[must_use]
     pub fn without_run(&self, verdict: Verdict, why: Reason) -> SceneResult {
         SceneResult::without_run(&self.name, self.scene.steps(), verdict, why)

@@ -1,7 +1,7 @@
 //! The grader's temporary folders, which no other user can read, and the leftovers of killed graders.
 //!
-//! All folders of a grader are in one, in which a locked file shows that the grader is alive. Graders in other
-//! containers see the lock, too, while process numbers are different there.
+//! All folders of a grader are in one folder, where a locked file shows that the grader is alive. A lock also works
+//! between containers, unlike process numbers.
 use fosssim_sandbox::collect;
 use std::{
     fs::{self, File, Permissions},
@@ -21,7 +21,7 @@ const LOCK_FILE: &str = "lock";
 #[derive(Debug)]
 pub(super) struct TemporaryFolder {
     path: PathBuf,
-    // Removed after the folders in it.
+    // This folder is removed after the folders in it.
     _grader: Arc<Grader>,
 }
 
@@ -32,8 +32,8 @@ impl TemporaryFolder {
         let made = make_closed(&format!("{purpose}-"), &grader.path)?;
         let path = made.keep();
         if purpose == "build" && is_root() {
-            // Build tools name files by their whole path, and run as another user. The entries have restrictive
-            // permissions themselves.
+            // Build tools use whole paths and run as another user, so the folder must be accessible. Its entries have
+            // restrictive permissions.
             fs::set_permissions(&path, Permissions::from_mode(0o711))?;
         }
         Ok(Self { path, _grader: grader })
@@ -51,8 +51,8 @@ impl Drop for TemporaryFolder {
     }
 }
 
-/// Working folders that no program has changed, for further runs. Creating a folder takes as long as a small run on
-/// some file systems.
+/// Working folders that no program has changed, kept for further runs. Creating a folder takes as long as a small run
+/// on some file systems.
 #[derive(Debug, Default)]
 pub struct Folders(Mutex<Vec<TemporaryFolder>>);
 
@@ -97,7 +97,7 @@ impl Grader {
             let lock = path.join(LOCK_FILE);
             let made = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
                 file.try_lock().map_err(io::Error::from)?;
-                // Another grader's sweep may have removed the folder before it was locked.
+                // The sweep of another grader may have removed the folder before it was locked.
                 let (held, there) = (file.metadata()?, fs::metadata(&lock)?);
                 if (held.dev(), held.ino()) == (there.dev(), there.ino()) {
                     Ok(file)
@@ -108,7 +108,8 @@ impl Grader {
             match made {
                 Ok(lock) => {
                     if is_root() {
-                        // Programs run as other users, who have to reach their own folders but may not list names here.
+                        // Programs run as other users. They must be able to reach their own folders, but not to list
+                        // this one.
                         fs::set_permissions(&path, Permissions::from_mode(0o711))?;
                     }
                     return Ok(Self { path, _lock: lock });
@@ -152,16 +153,16 @@ fn sweep_in(place: &Path) {
         }
         match collect::open_file(&path.join(LOCK_FILE), false) {
             Ok((lock, _)) if lock.try_lock().is_ok() => remove_folder_of(&path),
-            // The grader was killed before it made the lock, or is about to make it and will use another folder. A
-            // folder that is not empty stays.
+            // The grader was killed before it created the lock, or is about to create it, and will then use another
+            // folder. A folder that is not empty stays.
             Err(collect::CollectError::Missing { .. }) => drop(fs::remove_dir(&path)),
             _ => {}
         }
     }
 }
 
-/// Removes a grader's folder, and its lock last: a folder without a lock would count as new. A supervisor may still use
-/// the folder for a moment after the end of its grader.
+/// Removes a grader's folder. The lock is removed last, because a folder without a lock counts as new. A supervisor may
+/// use the folder for a moment after its grader has ended.
 fn remove_folder_of(path: &Path) {
     const MAX_TRIES: u32 = 20;
     const PAUSE: Duration = Duration::from_millis(50);

@@ -53,7 +53,7 @@ impl Timings {
     }
 }
 
-/// Measures the parts of one run on its thread; it reads no clock without `--timings`.
+/// Measures the parts of one run on its thread; without `--timings` no clock is read.
 pub(super) struct Stopwatch<'a> {
     timings: Option<&'a Timings>,
     last: Duration,

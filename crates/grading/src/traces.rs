@@ -1,4 +1,4 @@
-//! Grades existing traces. No program is run, so its time and its end are unknown.
+//! Grades existing traces. No program is run, so its duration and its exit status are unknown.
 use super::{
     conclude::{CountedReader, ProgramRun, Run, conclude},
     grade::Grade,
@@ -45,7 +45,7 @@ pub fn judge_trace<'a, R: Read + Send>(
 #[must_use]
 pub fn grade(plan: &Plan, submission: String, results: Vec<SceneResult>, warnings: Vec<String>) -> Grade {
     let results = results.into_iter().map(|result| (result, false)).collect();
-    // The time that it took to write the traces is unknown.
+    // The run times are unknown, because the traces exist already.
     let mut grade = Grade { warnings, ..score::grade(plan, submission, false, results) };
     reconcile_explanations(&mut grade);
     grade

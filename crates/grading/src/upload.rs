@@ -1,4 +1,4 @@
-//! The contents of a submission's folder, for messages about a submission without a program.
+//! Describes the contents of a submission's folder, for messages about a missing program.
 use super::{
     names,
     result::{FolderContents, UnusableReason},
@@ -8,7 +8,7 @@ use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
 /// The maximum number of entries that a message names.
 const MAX_NAMED: usize = 6;
-/// The maximum number of entries that are searched for a program in another place, and their maximum depth.
+/// The maximum number of entries that are searched for a program in a subfolder.
 const MAX_SCANNED_ENTRIES: u32 = 2000;
 const MAX_DEPTH: u32 = 3;
 

@@ -1,4 +1,4 @@
-//! The kinds of files, found by their first bytes; no other bytes of a submitted file are read for that.
+//! Recognizes the kinds of files by their first bytes.
 
 /// The kind of a file, by its first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -43,14 +43,15 @@ const MAX_DEPTH: usize = 64;
 
 /// The maximum size of an archive's list of files, in bytes. A list of 20,000 usual names has 4 MiB.
 const MAX_LIST_BYTES: u64 = 16 << 20;
-/// The maximum size of an archive's data about a single file in addition to its contents, in bytes.
+/// The maximum size of an archive's header data for one file, in bytes.
 const MAX_HEADER_BYTES: u64 = 1 << 20;
 
 /// The number of bytes that may be read for a file in addition to its contents: headers, padding, and read-ahead.
 const BESIDE: u64 = 64 << 10;
 
 impl ArchiveLimits {
-    /// Enough for a suite with all its scenes, and for a student's sources including a library.
+    /// The usual limits, which are sufficient for a suite with all its scenes, or for a student's sources with a
+    /// library.
     pub const USUAL: Self = Self { bytes: 1 << 30, entries: 20_000 };
 
     /// Adjusts the limits to an archive of `packed` bytes: an archive that unpacks to 200 times its size is a bomb,
@@ -112,7 +113,7 @@ pub fn unpack(archive: File, folder: &Path, limits: ArchiveLimits) -> Result<Vec
     walk(archive, limits, Some(folder))
 }
 
-/// Returns the folder that holds the submission in an unpacked archive with the given files. Many archives have a
+/// Returns the folder that contains the submission in an unpacked archive with the given files. Many archives have a
 /// single folder at their top.
 #[must_use]
 pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
@@ -165,8 +166,8 @@ fn describe_damage(error: impl std::fmt::Display) -> ArchiveError {
     ArchiveError::Damaged(error.to_string())
 }
 
-/// Returns the number of entries that a zip archive claims, from its end record (APPNOTE 4.3.16), or from that of large
-/// archives (4.3.14) if the end record refers to it.
+/// Returns the number of entries that a zip archive claims, from its end record (APPNOTE 4.3.16), or from the end
+/// record of large archives (4.3.14) if there is one.
 fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
     /// The size of both records, the pointer between them, and the longest comment after them.
     const MAX_END_BYTES: u64 = 56 + 20 + 22 + 0xffff;
@@ -218,16 +219,16 @@ impl Walk<'_> {
 
     fn walk_zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let announced = count_announced(&mut file).map_err(ArchiveError::Read)?;
-        // The library reads the list of all files before it returns one.
+        // The library reads the whole list of files before it returns the first one.
         if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
             return Err(ArchiveError::Entries(self.limits.entries));
         }
         let packed = file.metadata().map_err(ArchiveError::Read)?.len();
         let meter = Meter::new(MAX_LIST_BYTES);
         let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(describe_damage)?;
-        // Files may overlap in the archive, and be empty however long they are.
+        // Entries may overlap in the archive, and compress to almost nothing, so their sizes prove nothing.
         meter.set(packed.saturating_mul(2).saturating_add(BESIDE * archive.len() as u64));
-        // The library keeps one entry per name, and the intended one would be unclear.
+        // The library keeps only one of several entries with the same name, which may be the wrong one.
         if announced.is_some_and(|announced| announced > archive.len() as u64) {
             return Err(ArchiveError::Twice("a name".to_owned()));
         }
@@ -251,7 +252,7 @@ impl Walk<'_> {
     fn walk_tar(&mut self, input: impl Read) -> Result<(), ArchiveError> {
         let meter = Meter::new(self.limits.bytes.saturating_add(BESIDE * self.limits.entries as u64));
         let mut archive = tar::Archive::new(meter.reader(input));
-        // The name that a separate header gives the next file. The library would read such a header completely.
+        // The library would read this header, which names the next file, completely.
         let mut long_name = None;
         for entry in archive.entries().map_err(describe_damage)?.raw(true) {
             let mut entry = entry.map_err(describe_damage)?;
@@ -282,7 +283,7 @@ impl Walk<'_> {
                     let executable = entry.header().mode().is_ok_and(|mode| mode & 0o111 != 0);
                     self.unpack_file(&name, executable, &mut entry)?;
                 }
-                // The header describes the archive, and is not an entry.
+                // This header describes the archive, and is not an entry.
                 tar::EntryType::XGlobalHeader => {}
                 _ => return Err(ArchiveError::Kind(escape_name(&name))),
             }
@@ -365,7 +366,8 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Copies a file and returns its kind. The unpacked bytes are counted, because an archive may claim any sizes.
+    /// Copies a file and returns its kind. The unpacked bytes are counted, because the sizes in an archive may be
+    /// wrong.
     fn copy(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<FileKind, ArchiveError> {
         const AT_ONE_GO: u64 = 64 << 10;
         let mut chunk = Vec::new();

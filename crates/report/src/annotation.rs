@@ -12,12 +12,12 @@ pub(crate) fn join_annotation<'a>(level: &str, title: &str, lines: impl IntoIter
     format!("::{level} title={}::{}\n", escape_property(title), lines.join("%0A"))
 }
 
-/// Returns the text after `::` in a workflow command.
+/// Escapes the text after `::` in a workflow command.
 fn escape_data(text: &str) -> String {
     one_line(text).replace('%', "%25")
 }
 
-/// Returns a property's value in a workflow command.
+/// Escapes the value of a property in a workflow command.
 fn escape_property(text: &str) -> String {
     escape_data(text).replace(':', "%3A").replace(',', "%2C")
 }

@@ -1,5 +1,5 @@
-//! The first step of a scene by hand: what each force adds, what the integrator makes of it, and how collisions are
-//! found and answered.
+//! Shows the first step of a scene as a calculation by hand: the forces, the integrator, the detection of collisions,
+//! and the responses.
 mod collisions;
 #[cfg(test)]
 mod tests;
@@ -24,8 +24,9 @@ use std::collections::BTreeSet;
 /// Matrices with more rows are not printed.
 const MOST_ROWS: usize = 8;
 
-/// Renders a scene's first step, which is the `step`-th of a run: forces and integrator where there are forces, then
-/// passes and responses, with all of one pair's detection if one is named. `None` if the step has no result.
+/// Renders a scene's first step, which has the number `step` in the original run: forces and integrator if there are
+/// forces, then passes and responses. If a pair is named, its detection is shown completely. `None` if the step has no
+/// result.
 #[must_use]
 pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
     let mut walk = CollisionWalk::new(scene, pair);
@@ -71,7 +72,7 @@ fn integration(scene: &Scene, step: u32) -> Option<String> {
     let (end, particles) = (simulation.state(), 0..scene.particles.len());
     let names = scene.forces.iter().map(|force| force.kind().element()).chain(["penalty"]);
     let mut parts: Vec<(&str, &Vec<f64>)> = names.zip(&all).collect();
-    // A force of the scene is computed even if it comes to nothing.
+    // A force of the scene is shown even if it is zero.
     parts.retain(|(name, gradient)| *name != "penalty" || has_any(gradient));
     if parts.len() > 1 {
         parts.push(("together", &sum));

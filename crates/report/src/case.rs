@@ -1,4 +1,4 @@
-//! One trace of a program, and the report on it.
+//! The report on one trace of a program.
 use fosssim_findings::disclosure::DisclosedFinding;
 use fosssim_mistakes::diagnose::Explanation;
 
@@ -11,7 +11,7 @@ pub struct Case {
     pub trace: String,
     /// Whether the fair rules accept the trace.
     pub accepted: bool,
-    /// A further remark, such as the end of the program, or the reason why the trace can't be read.
+    /// A note, such as the end of the program, or the reason why the trace can't be read.
     pub note: Option<String>,
     /// The first fault, if hints show it.
     pub first: Option<DisclosedFinding>,

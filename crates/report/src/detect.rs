@@ -32,7 +32,7 @@ pub struct Place<'a> {
     pub trace: Option<&'a str>,
     /// The step, from 1.
     pub step: u32,
-    /// The pair.
+    /// The pair that is examined.
     pub pair: Pair,
     /// The detection pass; `None` if the scene has no continuous-time detection.
     pub pass: Option<Pass>,
@@ -50,7 +50,7 @@ pub(crate) type ShownNumber = fn(f64) -> String;
 pub struct Detect<'a> {
     /// The reference's study of the pair.
     pub study: &'a Study,
-    /// The place that the pair is from; `None` if its numbers were typed.
+    /// The place in a scene's run at which the pair was examined; `None` if its numbers were typed.
     pub place: Option<Place<'a>>,
 }
 
@@ -128,7 +128,8 @@ impl Detect<'_> {
                 CallLog::These(logged) => {
                     for (number, (curve, own)) in study.curves.iter().zip(logged).enumerate() {
                         let expected = curve.logged.coefficients();
-                        // The lengths may differ by the coefficients that the course's library drops.
+                        // The lists may differ in length, because the course's library drops small leading
+                        // coefficients.
                         text += &if expected.len() != own.len() && study.is_right(number, own) {
                             let mark = "right except for a factor and small leading coefficients, which are allowed";
                             format!(
@@ -229,7 +230,7 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
     text
 }
 
-/// Returns the text about the effect of the right approach polynomial.
+/// Describes the effect of the mathematically right approach polynomial.
 fn compare_approach(course: &Answer, right: &Answer, number: ShownNumber) -> String {
     let says = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
@@ -351,7 +352,7 @@ pub(crate) struct DetectView<'a> {
     polynomials: Vec<CurveView>,
     /// The reference's decision.
     answer: AnswerView,
-    /// Whether the pair collides in every correct program; null if round-off may flip the decision.
+    /// Whether the pair collides in every correct program; null if round-off may change the decision.
     certain: Option<bool>,
     /// The mathematically right particle-edge approach polynomial, and its result; null if the course's polynomial is
     /// the same.
@@ -426,7 +427,8 @@ view! {
     struct CurveView from curve: Curve {
         /// The meaning of the polynomial if it is positive.
         role: Role = curve.role,
-        /// The coefficients as logged and searched, highest power first, without leading coefficients below 1e-12.
+        /// The coefficients that are logged and passed to the root finder, highest power first, without leading
+        /// coefficients below 1e-12.
         coefficients: Polynomial = curve.logged,
         /// All coefficients, highest power first.
         untrimmed: Polynomial = curve.untrimmed,

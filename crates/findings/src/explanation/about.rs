@@ -22,9 +22,9 @@ pub enum About {
     },
     /// Wrong polynomials.
     Polynomials {
-        /// The polynomials that are wrong.
+        /// The wrong polynomials.
         subjects: Vec<Subject>,
-        /// The facts that are known about the wrong polynomials.
+        /// The facts that are known about these polynomials.
         found: OfPolynomials,
     },
     /// A stage of a step. Its results are wrong, and all earlier stages are right.
@@ -53,6 +53,6 @@ pub enum OfPolynomials {
     Missing,
     /// The polynomials are right except for too much round-off.
     NearlyRight,
-    /// No fact is known.
+    /// Nothing else is known.
     Nothing,
 }

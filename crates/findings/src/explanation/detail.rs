@@ -1,4 +1,4 @@
-//! The exact form of a fault, as values, which may give a right formula away.
+//! The exact form of a fault, as values. It may reveal a right formula.
 use super::{area::Area, fault::ChangedQuantity, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
@@ -11,8 +11,8 @@ pub enum Detail {
     Term(Cow<'static, str>),
     /// A hint to check the code of one area of the assignment.
     Look(Area),
-    /// The meanings of the letters in the preceding lines, for pairs of these kinds. The line is left out if no letter
-    /// needs it.
+    /// The meanings of the letters in the preceding lines, for pairs of these kinds. Reports omit the line if there are
+    /// no letters to explain.
     Letters(Vec<PairKind>),
     /// A fault of polynomials.
     Polynomial(PolynomialDetail),
@@ -20,7 +20,7 @@ pub enum Detail {
     Stage(StageDetail),
 }
 
-/// The exact form of a fault of polynomials.
+/// The exact form of a fault in polynomials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum PolynomialDetail {
     /// Each detection logs a wrong number of polynomials.
@@ -30,7 +30,7 @@ pub enum PolynomialDetail {
         /// The number of polynomials that a detection should log.
         of: usize,
     },
-    /// The polynomials are right up to a round-off error, given relative to the size of their terms.
+    /// The polynomials are right except for an error, given relative to the size of their terms.
     RightUpTo(#[serde(with = "fosssim_num::written")] f64),
     /// A coefficient differs in some samples.
     Differs {
@@ -43,7 +43,7 @@ pub enum PolynomialDetail {
         /// The number of compared samples.
         of: usize,
     },
-    /// The list holds a single number.
+    /// The list contains only this number.
     Holds(#[serde(with = "fosssim_num::written")] f64),
     /// Every coefficient is the same number.
     Every(#[serde(with = "fosssim_num::written")] f64),
@@ -61,9 +61,9 @@ pub enum PolynomialDetail {
         /// The two powers of t.
         powers: [usize; 2],
     },
-    /// Only the last coefficients are there; the value is their number.
+    /// Only the last coefficients are logged; the value is their number.
     LastOnly(usize),
-    /// Only the first coefficients are there; the value is their number.
+    /// Only the first coefficients are logged; the value is their number.
     FirstOnly(usize),
     /// Every displacement is multiplied by a factor.
     Displacements(#[serde(with = "fosssim_num::written")] f64),
@@ -74,9 +74,9 @@ pub enum PolynomialDetail {
         /// Whether all pairs are particle-edge pairs, whose radii have their own names.
         of_edges: bool,
     },
-    /// Another quantity is used for a letter of a formula.
+    /// A different quantity is used for a letter of a formula.
     StandsFor {
-        /// The form in which the formula is written.
+        /// The formula, in one of its forms.
         reading: Reading,
         /// The letter whose value is replaced.
         letter: Cow<'static, str>,
@@ -98,7 +98,7 @@ pub enum PolynomialDetail {
     },
     /// A product has the wrong weight.
     Weight(Weight),
-    /// Other weights that would have the same effect together.
+    /// Weights that would give the same polynomial as the reported ones.
     Alternative(Vec<Weight>),
 }
 
@@ -107,7 +107,7 @@ pub enum PolynomialDetail {
 pub enum Substitute {
     /// The letter itself, multiplied by a factor.
     Scaled(#[serde(with = "fosssim_num::written")] f64),
-    /// Another letter of the formula.
+    /// A different letter of the same formula.
     Letter(Cow<'static, str>),
     /// A dot product of vectors that the detection uses.
     Dot {
@@ -123,7 +123,7 @@ pub enum Substitute {
 /// A product of letters in a coefficient, with a wrong weight.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Weight {
-    /// The form in which the formula is written; it may lack some of the letters.
+    /// The formula, in a form that may lack some of the letters.
     pub reading: Reading,
     /// The power of t that the coefficient belongs to.
     pub power: usize,
@@ -165,7 +165,7 @@ pub enum StageDetail {
     Times(Ratios),
     /// The largest error of the times of impact, in steps.
     TimesOff(#[serde(with = "fosssim_num::written")] f64),
-    /// The use of times of impact.
+    /// The times of impact are not used correctly.
     TimesUsed,
     /// The number of detection passes in the impulse rounds.
     Passes {
@@ -176,13 +176,13 @@ pub enum StageDetail {
         /// The number of rounds that the scene allows.
         most: i32,
     },
-    /// The changes by isolated contacts.
+    /// The changes that isolated contacts cause.
     Change {
         /// The quantity that changes, and its owner.
         changed: ChangedQuantity,
         /// The amount of the change.
         amount: Amount,
-        /// Whether the quantity also changes across the contact vector.
+        /// Whether the quantity also changes perpendicular to the contact vector.
         across: bool,
         /// The number of contacts that change the quantity wrongly.
         wrong: usize,
@@ -196,22 +196,22 @@ pub enum StageDetail {
         /// The number of zones that could be compared.
         of: usize,
     },
-    /// The velocities of zones that must stop, divided by their velocities before.
+    /// The velocities of zones that must stop, divided by their earlier velocities.
     Stopped(Ratios),
     /// The ratio of the motion of the center of mass to the expected one.
     CenterMoves(Ratios),
-    /// The direction of the center's motion.
+    /// The center of mass moves in a wrong direction.
     CenterDirection,
     /// The ratio of the rotation of zones to the expected rotation.
     Turns(Ratios),
-    /// The velocities of zones, divided by their motion per step size.
+    /// The velocities of zones, divided by their displacement over the step size.
     Velocities(Ratios),
 }
 
 /// The amount by which a contact changes a quantity.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Amount {
-    /// The quantity should not change.
+    /// The quantity changes although it should not.
     Unwanted,
     /// The change along the contact vector is right.
     Right,

@@ -21,10 +21,10 @@ pub struct Example {
     pub actual: Vec<f64>,
 }
 
-/// The place of an example in its step, which decides the meaning of its numbers.
+/// The place of an example in its step. It determines the meaning of the numbers.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ExamplePlace {
-    /// The coefficients of a polynomial whose inputs are given.
+    /// The numbers are the coefficients of a polynomial whose inputs are given.
     Given {
         /// The pair that the polynomial belongs to.
         pair: Pair,
@@ -33,7 +33,7 @@ pub enum ExamplePlace {
         /// The polynomial of the pair.
         subject: Subject,
     },
-    /// The coefficients of a polynomial.
+    /// The numbers are the coefficients of a polynomial.
     Polynomial {
         /// The pair that the polynomial belongs to.
         pair: Pair,
@@ -44,9 +44,9 @@ pub enum ExamplePlace {
     },
     /// A surplus polynomial of the step's list, given by its index.
     NumberedPolynomial(usize),
-    /// The number of polynomials in the step.
+    /// The number is that of the polynomials in the step.
     PolynomialCount,
-    /// The normal and the time of a contact of the trace.
+    /// The numbers are the normal and the time of a contact of the trace.
     Contact {
         /// The kind of the pair, if the objects form one.
         kind: Option<PairKind>,
@@ -55,9 +55,9 @@ pub enum ExamplePlace {
         /// The other object's number in the trace.
         second: i32,
     },
-    /// The number of contacts in the step.
+    /// The number is that of the contacts in the step.
     ContactCount,
-    /// The position and the velocity of a particle in a record.
+    /// The numbers are the position and the velocity of a particle in a record.
     Particle {
         /// The particle's index.
         particle: usize,

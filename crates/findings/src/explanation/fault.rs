@@ -24,14 +24,14 @@ pub enum StageFault {
     Order,
     /// Polynomials are right, but decisions are wrong.
     Decisions {
-        /// The kind of all affected pairs, if they have one.
+        /// The kind of all affected pairs, if they are of one kind.
         kind: Option<PairKind>,
         /// The way in which the decisions are wrong.
         wrong: WrongDecisions,
     },
     /// The choice of colliding bodies is wrong among those that overlap at the end of a step.
     Overlaps {
-        /// The kind of all affected pairs, if they have one.
+        /// The kind of all affected pairs, if they are of one kind.
         kind: Option<PairKind>,
         /// The way in which the decisions are wrong.
         wrong: WrongDecisions,
@@ -42,45 +42,46 @@ pub enum StageFault {
     ContactTimes,
     /// Contact vectors are wrong.
     ContactVectors {
-        /// The kind of all affected pairs, if they have one.
+        /// The kind of all affected pairs, if they are of one kind.
         kind: Option<PairKind>,
         /// The fault of the vectors.
         wrong: WrongVectors,
     },
-    /// The changes by isolated contacts are wrong.
+    /// The changes that isolated contacts cause are wrong.
     Responses {
-        /// The kind of all affected pairs, if they have one and other kinds are right.
+        /// The kind of all affected pairs, if they are of one kind and other kinds are right.
         kind: Option<PairKind>,
         /// The fault of the changes.
         wrong: WrongResponses,
-        /// Whether the fault occurs only in impulse rounds, which hand the changed values on.
+        /// Whether the fault occurs only in impulse rounds, which pass the changed values on.
         in_rounds: bool,
     },
     /// The state after several contacts is wrong, although isolated contacts are right.
     ManyContacts,
     /// Contacts of the first impulse round have no effect.
     Unresolved {
-        /// All ratios are wrong.
+        /// Whether no contact of the first round has an effect; otherwise some have one.
         all: bool,
     },
     /// The number of impulse rounds is wrong.
     Rounds(WrongNumber),
-    /// The impulse rounds are right, but hand over wrong values.
+    /// The impulse rounds are right, but pass on wrong values.
     HandedOver {
         /// The wrong quantity: positions or velocities; `None` for both.
         quantity: Option<Quantity>,
-        /// The loop end after which the values are wrong; `None` if they are always wrong.
+        /// The way in which the loop ends when the values are wrong; `None` if they are always wrong.
         when: Option<LoopEnd>,
-        /// Whether wrong changes by contacts could also cause the fault.
+        /// Whether wrong responses could also cause the fault.
         or_response: bool,
     },
-    /// The changes by the contacts of the first impulse round are wrong.
+    /// The changes that contacts of the first impulse round cause are wrong.
     FirstRound,
-    /// The changes by several contacts of the first impulse round are wrong, although isolated contacts are right.
+    /// The changes that several contacts of the first impulse round cause together are wrong, although isolated
+    /// contacts are right.
     LaterRounds,
-    /// Rounds after the first one detect on the predicted positions again.
+    /// Rounds after the first one use the predicted positions again for detection.
     RoundsOfPrediction,
-    /// Rounds after the second detection are wrong; that detection is right.
+    /// The second detection is right, but the rounds after it are wrong.
     BehindFirstRound,
     /// The geometric part runs, or does not run, at the wrong time.
     Geometric(WrongGeometric),
@@ -104,8 +105,8 @@ pub enum StageFault {
 /// The properties that wrong changes of states have in common.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongChange {
-    /// The wrong quantity. If it is the position, velocities are right; if it is the velocity, positions follow from
-    /// it.
+    /// The wrong quantity. If positions are wrong, velocities are right. If velocities are wrong, positions agree with
+    /// them.
     pub quantity: Quantity,
     /// The only wrong component: 0 for x or 1 for y; `None` for both.
     pub axis: Option<usize>,
@@ -142,9 +143,9 @@ fosssim_num::closed_set! {
         Any = "",
         /// Only fixed particles.
         Fixed = " of fixed particles only",
-        /// Only the first contact.
+        /// Only the first particle.
         First = " of the first particle only",
-        /// Only the last contact.
+        /// Only the last particle.
         Last = " of the last particle only",
     }
 }
@@ -157,7 +158,7 @@ fosssim_num::closed_set! {
         Nothing = "stay as they were",
         /// The change has the opposite direction.
         Opposite = "change the opposite way",
-        /// The change is multiplied by another factor.
+        /// The change is multiplied by some other factor.
         Factor = "change by a wrong factor, which is always the same",
         /// The changes have no ratio in common.
         Other = "change wrongly",
@@ -222,7 +223,7 @@ pub struct ChangedQuantity {
     /// The body: 0 is the pair's (first) particle; 1 is the second particle, or the edge's first endpoint; 2 is the
     /// edge's second endpoint.
     pub body: usize,
-    /// The quantity.
+    /// The quantity that changes.
     pub quantity: Quantity,
 }
 
@@ -251,7 +252,7 @@ fosssim_num::closed_set! {
 /// The way in which the geometric part runs at the wrong time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongGeometric {
-    /// The geometric part makes no pass although the rounds have run out.
+    /// The geometric part makes no pass although the maximum number of rounds was used.
     Left {
         /// Whether the geometric part is always missing; otherwise only in some steps.
         always: bool,
@@ -267,7 +268,7 @@ fosssim_num::closed_set! {
         /// The first round uses the predicted positions of the integrator.
         Prediction =
             "the first zones are searched on the predicted positions, not on those after the impulse rounds",
-        /// The first round uses other positions than those after the impulse rounds.
+        /// The first round uses positions other than those after the impulse rounds.
         First = "the first zones are searched on wrong positions, not on those after the impulse rounds",
         /// The detection after the failsafe uses the positions before it.
         BeforeFailsafe = "the detection after the failsafe uses the positions before it",
@@ -277,7 +278,7 @@ fosssim_num::closed_set! {
 /// The reason why impulse rounds end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopEnd {
-    /// The maximum number of rounds was made.
+    /// The maximum number of rounds was used.
     RanOut,
     /// No pair collides.
     Settled,
@@ -374,7 +375,7 @@ impl StageFault {
         }
     }
 
-    /// Returns the parts of the assignment that may hold the mistake.
+    /// Returns the parts of the assignment that may contain the mistake.
     #[must_use]
     pub const fn areas(&self) -> &'static [Area] {
         match self {
@@ -390,7 +391,7 @@ impl StageFault {
             },
             Self::ContactVectors { .. } => &[Area::ContactVector],
             Self::Responses { in_rounds: false, .. } | Self::ManyContacts => &[Area::Response],
-            // The trace of a hybrid step holds no contact vector.
+            // The trace of a hybrid step contains no contact vector.
             Self::Responses { wrong: WrongResponses::Across(_), .. } => {
                 &[Area::ContactVector, Area::Response, Area::ImpulseLoop]
             }
@@ -410,7 +411,7 @@ impl StageFault {
             | Self::Zones(WrongZones::Partly | WrongZones::NotMerged | WrongZones::Joined | WrongZones::Others) => {
                 &[Area::ImpactZones]
             }
-            // Wrong effects of a larger zone may also come from the code that moves it.
+            // The wrong effect of a larger zone may also be caused by the code that moves it.
             Self::AfterRounds
             | Self::ZoneRounds(WrongZoneRounds::Growth | WrongZoneRounds::Later)
             | Self::Motion { or_zones: true, .. }
@@ -468,10 +469,10 @@ impl StageFault {
     }
 }
 
-/// The values of a trace that are not finite, and their first place.
+/// The first value of a trace that is not finite, and its place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NotFinite {
-    /// The step, from 1; 0 is the first record. `None` for several traces.
+    /// The step, from 1, where 0 is the first record; `None` if the explanation covers several traces.
     pub step: Option<u32>,
     /// The stage that computes such a value from finite ones.
     pub stage: NanStage,
@@ -485,7 +486,7 @@ pub struct NotFinite {
 /// The first stage of a step that has finite inputs and an output that is not finite.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NanStage {
-    /// The first record already holds such a value.
+    /// The first record already contains such a value.
     FirstRecord,
     /// The motion of the step, before any contact.
     Motion,
@@ -495,7 +496,7 @@ pub enum NanStage {
     Detection(Option<PairKind>),
     /// Contact vectors and times of impact.
     ContactVectors,
-    /// The changes by a contact.
+    /// The response to a contact.
     Responses,
     /// The impulse rounds, whose contacts are not in the trace.
     ImpulseRounds,

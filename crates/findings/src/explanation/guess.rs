@@ -1,4 +1,4 @@
-//! Guesses about wrong polynomials, without the values that would give a formula away
+//! Guesses about wrong polynomials, without the values that would reveal a formula
 //! ([`PolynomialDetail`](super::PolynomialDetail)).
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
@@ -28,7 +28,7 @@ impl Guess {
         format!("{:08x}", digest(self.key()) >> 32)
     }
 
-    /// Returns whether the guess may be made of several polynomials, as one mistake.
+    /// Returns whether the guess can apply to several polynomials as one mistake.
     #[must_use]
     pub const fn is_general(&self) -> bool {
         matches!(self, Self::List(_) | Self::Named(_))
@@ -58,7 +58,7 @@ fosssim_num::closed_set! {
     pub enum ListGuess {
         /// All coefficients are zero or missing.
         AllZero = "all-zero", "All coefficients are zero, or none is logged";
-        /// The list holds the same single number in every sample.
+        /// The list consists of one number, the same in every sample.
         Constant = "constant", "A constant is used instead of the polynomial";
         /// All coefficients are the same number in every sample.
         AllEqual = "all-equal", "All coefficients are the same constant";
@@ -99,7 +99,7 @@ fosssim_num::closed_set! {
 }
 
 fosssim_num::closed_set! {
-    /// A guess about one quantity of a formula, wherever it occurs.
+    /// A guess about one quantity of a formula, in all its occurrences.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum QuantityGuess {
         /// The sign of the quantity is wrong.
@@ -108,7 +108,7 @@ fosssim_num::closed_set! {
         Zero = "letter-factor", "A quantity of the formula is zero";
         /// The quantity is multiplied by a factor.
         Factor = "letter-factor", "A quantity of the formula has a wrong factor";
-        /// Another quantity is used.
+        /// A quantity that is not in the formula is used.
         Other = "letter", "Another quantity is used instead of a dot product of the formula";
     }
     /// Returns the text of the guess.

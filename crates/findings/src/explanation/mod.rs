@@ -35,10 +35,9 @@ pub struct Explanation {
     /// A stable key for machines: the id of a known mistake (such as `pe-square-no-eh`) or of a general finding (such
     /// as `reversed`).
     pub key: String,
-    /// The subject of the explanation, with the facts that a sentence can state without giving a formula away.
+    /// The subject of the explanation, with the facts that a sentence can state without revealing a formula.
     pub about: About,
-    /// The exact form, one line each: which term of which coefficient has which weight. It may give the right formula
-    /// away.
+    /// The exact form, line by line: the terms of each coefficient and their weights. It may reveal the right formula.
     pub details: Vec<Detail>,
     /// The number of checked samples that the mistake reproduces to round-off.
     pub reproduced: u64,
@@ -48,16 +47,16 @@ pub struct Explanation {
     pub example: Option<Example>,
     /// Keys of other known mistakes that reproduce the same samples; this trace cannot distinguish them.
     pub same_as: Vec<String>,
-    /// Keys of mistakes that the trace contradicts, because no program with one of them could write it.
+    /// Keys of mistakes that the trace contradicts, because no program with such a mistake could write the trace.
     pub denies: Vec<String>,
     /// All guesses that would produce the polynomials, one word each. A word consists of the polynomial and the known
-    /// mistake, or of the polynomial, a digest of the guess and a digest of its exact form. Digests do not give a
-    /// formula away. The explanation's own guess comes first. A polynomial without a guess has a word of its name only.
+    /// mistake, or of the polynomial, a digest of the guess and a digest of its exact form. Digests do not reveal a
+    /// formula. The explanation's own guess comes first. For a polynomial without a guess, the word is only its name.
     pub claims: Vec<String>,
 }
 
 impl Explanation {
-    /// The key of the doubt whether a trace belongs to its scene. It is reported without other explanations.
+    /// The key of the explanation that the trace probably belongs to another scene. It is reported alone.
     pub const OTHER_SCENE: &'static str = "other-scene";
 
     /// The key of unwritten stages, which are reported together.
@@ -116,20 +115,20 @@ impl Explanation {
         }
     }
 
-    /// Creates the doubt whether a trace belongs to its scene; `has_length` says whether the number of records is
-    /// right.
+    /// Creates the explanation that a trace probably belongs to another scene. `has_length` is whether the number of
+    /// records is right.
     #[must_use]
     pub fn for_other_scene(has_length: bool) -> Self {
         Self::about(Self::OTHER_SCENE, About::Scene { has_length })
     }
 
-    /// Creates an explanation of wrong polynomials, without an exact form.
+    /// Creates an explanation of wrong polynomials without an exact form.
     #[must_use]
     pub fn for_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
         Self::about(Self::UNEXPLAINED, About::Polynomials { subjects, found })
     }
 
-    /// Returns whether the explanation is the doubt whether the trace belongs to its scene.
+    /// Returns whether the explanation is that the trace probably belongs to another scene.
     #[must_use]
     pub fn is_other_scene(&self) -> bool {
         matches!(self.about, About::Scene { .. })
@@ -191,11 +190,11 @@ impl Explanation {
         all.filter(|subject| claims.contains_key(format!("{subject:?}").as_str())).collect()
     }
 
-    /// Returns the claims of each polynomial: the guess or known mistake, and the whole word.
+    /// Groups the claims by polynomial, each with its guess or known mistake, and the whole word.
     #[must_use]
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
-        // A guess that reproduces only a part does not produce any whole polynomial.
+        // A guess that reproduces only a part explains no polynomial completely.
         let is_part =
             matches!(self.about, About::Polynomials { found: OfPolynomials::Guess(_), .. }) && !self.is_complete();
         for (number, claim) in self.claims.iter().enumerate() {
@@ -236,7 +235,7 @@ impl Explanation {
         self.reproduced == self.samples && self.samples > 0
     }
 
-    /// Returns whether the explanation describes the program, so that other traces may confirm it.
+    /// Returns whether the explanation is about the program, so that other traces may confirm it.
     #[must_use]
     pub fn is_vote(&self) -> bool {
         use OfPolynomials::{NearlyRight, Nothing};

@@ -2,7 +2,7 @@
 use fosssim_model::sim::{Pair, PairKind};
 use serde::{Deserialize, Serialize};
 
-/// The near pairs that a search misses or reports twice, and the others.
+/// The near pairs that a search misses or reports twice, and those that it reports once.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongPairs {
     /// The first wrong pair and its step, in one trace.
@@ -14,7 +14,7 @@ pub struct WrongPairs {
 /// The near pairs of a kind.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PairCounts {
-    /// The kind.
+    /// The kind of the pairs.
     pub kind: PairKind,
     /// The numbers of pairs that are reported zero times, once and twice.
     pub times: [u64; 3],

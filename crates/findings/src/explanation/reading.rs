@@ -1,12 +1,12 @@
-//! Ways to write a polynomial, by number.
+//! The forms in which a polynomial can be written, by number.
 use super::subject::Subject;
 use serde::{Deserialize, Serialize};
 
-/// One way to write a polynomial.
+/// One form of a polynomial's formula.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reading {
     /// The polynomial.
     pub subject: Subject,
-    /// The number of the way; 0 is the assignment's.
+    /// The number of the form; 0 is the assignment's.
     pub number: usize,
 }

@@ -8,7 +8,7 @@ mod timing;
 
 pub use timing::{MadeScene, TIMING};
 
-/// The settings of a suite, with comments, up to its groups.
+/// The part of the suite template before its groups: the settings, with comments.
 const SETTINGS: &str = include_str!("settings.toml");
 
 /// Returns a commented suite file to start from: the settings, and the groups of a built-in suite.
@@ -20,8 +20,8 @@ pub fn template(name: &str) -> Option<String> {
     Some(SETTINGS.replace("TITLE", title).replace("MILESTONE", key) + groups)
 }
 
-/// A version of an assignment's suite. More scenes change the points of all scenes, so they make a new version;
-/// published versions stay.
+/// A version of an assignment's suite. Additional scenes change the points of all scenes, so they need a new version;
+/// published versions do not change.
 #[derive(Debug, Clone, Copy)]
 pub struct Version {
     /// The suite file's text.
@@ -31,14 +31,14 @@ pub struct Version {
 }
 
 impl Version {
-    /// Returns whether the version has a scene of the assignment.
+    /// Returns whether the version contains a scene of the assignment.
     #[must_use]
     pub fn has(&self, scene: &str) -> bool {
         self.scenes.is_none_or(|scenes| scenes.lines().any(|line| line == scene))
     }
 }
 
-/// The suite of the milestones before t2m2, under the name that existing servers and courses may use.
+/// The suite of the milestones before t2m2, under a name that existing servers and courses may still use.
 const EARLIER: Version = Version { suite: include_str!("earlier/suite.toml"), scenes: None };
 
 /// The two versions in an assignment's folder.

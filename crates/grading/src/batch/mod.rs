@@ -26,7 +26,7 @@ pub enum Event<'a> {
         /// The scene's number in the plan.
         scene: usize,
     },
-    /// A running scene has been judged up to a step; not every step is reported.
+    /// A running scene has been judged up to this step. Not every step is reported.
     Step {
         /// The submission's number.
         submission: usize,
@@ -53,7 +53,7 @@ pub enum Event<'a> {
     },
 }
 
-/// The result of a grading.
+/// The grades of a batch, and an error outside the grades, if there was one.
 #[derive(Debug)]
 pub struct BatchResult {
     /// The grades, in the order of the submissions.
@@ -95,14 +95,14 @@ pub fn run(
     let mut grades = distribute(grader, &gradings, &mut tell);
     Grade::note_same_programs(&mut grades);
     drop(gradings);
-    // Sweep again: the processes of killed graders may have needed a moment to end.
+    // Sweep again, because processes of killed graders may have ended only after the first sweep.
     temporary::sweep();
     let fault = shared.full.into_inner().map(GradeFault::Keeping).or(telling.map(GradeFault::Telling));
     BatchResult { grades, fault }
 }
 
-/// Lets each job process one scene after the other. The job with a submission's last result makes its grade; this
-/// thread receives all events.
+/// Starts the jobs, each of which processes scenes one after the other. The job with a submission's last result makes
+/// the grade. This thread receives all events.
 fn distribute(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
     let scenes: Vec<&SceneTask> = grader.plan.scenes().collect();
     let tasks = gradings.len() * scenes.len();

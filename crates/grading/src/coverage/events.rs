@@ -12,7 +12,7 @@ use fosssim_num::{
     vector::{Vec2, at, divide},
 };
 
-/// The part of an edge, from each end, within which positions count as near the end.
+/// The share of an edge's length, from each end, in which positions count as near the end.
 const NEAR_END: f64 = 0.05;
 
 /// Returns the stage in which a pair is checked, as a property.
@@ -113,7 +113,7 @@ pub(super) fn masses(scene: &Scene, bodies: &[usize]) -> Likeness {
     if bodies.iter().all(|&body| scene.particles[body].mass == first) { Likeness::Equal } else { Likeness::Unequal }
 }
 
-/// Returns whether all radii are the same: those of the particles, or for an edge its own and the particle's.
+/// Returns whether all radii of a pair are the same: those of the particles, or of the edge and the particle.
 pub(super) fn radii(scene: &Scene, bodies: &[usize], edge: Option<&Edge>) -> Radii {
     let first = scene.particles[bodies[0]].radius;
     let equal = match edge {

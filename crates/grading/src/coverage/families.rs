@@ -145,11 +145,11 @@ family!(HybridStep, 6, "a step of hybrid" {
     LoopEnd::RunOut with Rounds::{None},
     LoopEnd::NotAllowed with Rounds::{None},
     Limit::Zero with Rounds::{None},
-    // A new zone causes a second round.
+    // A new zone always causes a second round.
     ZoneCount::None with Rounds::{Two, More},
     ZoneCount::One with Rounds::{None},
     ZoneCount::Several with Rounds::{None},
-    // The loop ends that each limit allows.
+    // The ways in which the loop can end with each limit.
     Limit::Zero with LoopEnd::{Nothing, Within, JustEnough, RunOut},
     Limit::One with LoopEnd::{Within, JustEnough, NotAllowed},
     Limit::More with LoopEnd::{NotAllowed},

@@ -72,7 +72,7 @@ pub struct Coverage {
 }
 
 impl Coverage {
-    /// Returns the events of one scene; `None` if its collision handling is not that of the assignment.
+    /// Returns the events of one scene; `None` if the scene's collision handling is not that of the assignment.
     ///
     /// # Errors
     ///

@@ -15,11 +15,11 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// The bodies of a contact of the current pass, and its event in two forms: as their only contact, and as one of
-/// several. The end of the pass decides which applies.
+/// The bodies of a contact of the current pass, and its event in two forms: for bodies with no other contact, and for
+/// bodies with several contacts. The end of the pass decides which applies.
 type WatchedContact = (Vec<usize>, [Event; 2]);
 
-/// A zone of the last round.
+/// A zone of the last round, and whether it was moved.
 type EarlierZone = (Vec<usize>, bool);
 
 pub(super) struct Watch<'a> {
@@ -32,7 +32,7 @@ pub(super) struct Watch<'a> {
 /// The events of the current step.
 #[derive(Default)]
 struct StepEvents {
-    /// The positions of bodies at the start and at the end of the step, as the current pass sees them.
+    /// The positions of bodies at the start and at the end of the step, in the current pass.
     q_start: Vec<f64>,
     q_end: Vec<f64>,
     contacts: Vec<WatchedContact>,

@@ -13,7 +13,7 @@ pub const MAX_SCENES: usize = 10_000;
 /// The maximum number of bytes in all scenes of a suite.
 pub const MAX_SCENE_BYTES: u64 = 256 << 20;
 
-/// The reason why there is no plan: no such suite, an unreadable file, or a suite with errors.
+/// The reason why a suite cannot be used: there is no such suite, a file is unreadable, or the suite has errors.
 #[derive(Debug, thiserror::Error)]
 #[error("{words}")]
 pub struct FindError {
@@ -36,7 +36,7 @@ fn describe_errors(name: &str, SuiteError { problems }: &SuiteError) -> String {
     format!("the suite has {} problem{plural}:{lines}", problems.len())
 }
 
-/// Finds a suite: one of the program's by its name, or a file. Files that it names are relative to its folder.
+/// Finds a suite: a built-in one by its name, or one in a file. Files that it names are relative to its folder.
 ///
 /// # Errors
 ///

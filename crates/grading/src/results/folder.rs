@@ -71,7 +71,8 @@ impl FolderResults {
         let mut found = BTreeMap::new();
         let sound = if fresh { 0 } else { read(&file, &mut found).map_err(at(JOURNAL))? };
         if metadata.nlink() > 1 {
-            // The journal has other names, from a backup or a student's link: copy it, so that the other file stays.
+            // The journal has several names (hard links), from a backup or a student. Copy it, so that the other file
+            // does not change.
             file = copy(&file, sound, &opened).map_err(at(JOURNAL))?;
         }
         // Remove the bytes after the last whole line, which a crash left.
@@ -101,7 +102,7 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
     let mut sound = 0;
     for_each_line(BufReader::new(file), |line| -> io::Result<()> {
         sound += line.len() as u64;
-        // A damaged line loses only its own result.
+        // A damaged line is skipped; the other lines stay valid.
         if let Some(entry) = read_line(line) {
             found.insert(entry.key, entry.result);
         }
@@ -114,7 +115,7 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
 ///
 /// # Errors
 ///
-/// Fails if the journal can't be read or has a line longer than any result, and the errors of `take`.
+/// Fails if the journal can't be read or has a line longer than any result, and if `take` fails.
 pub fn for_each_line<E: From<io::Error>>(
     mut journal: impl BufRead,
     mut take: impl FnMut(&[u8]) -> Result<(), E>,

@@ -1,7 +1,7 @@
 //! Storage of results, so that nothing is lost or done twice.
 //!
 //! Results are found by a key that digests everything they depend on ([`Key`]), so the results of a changed program,
-//! scene, rule or grader are not found. The outcome of a grading does not depend on the storage.
+//! scene, rule or grader are not found. The grades do not depend on the storage.
 mod folder;
 
 pub use super::form::{Entry, format_line, read_line};
@@ -14,8 +14,8 @@ pub trait Results: Sync {
     /// Finds the newest result that was stored under a key.
     fn find(&self, key: &Key) -> Option<SceneResult>;
 
-    /// Stores a result. A persistent storage has written it when this function returns. The submission's name is for
-    /// people only.
+    /// Stores a result. With persistent storage, the result is written when this function returns. The submission's
+    /// name is for people only.
     ///
     /// # Errors
     ///

@@ -24,7 +24,7 @@ use fosssim_model::assignments::Assignment;
 const MAX_CAUSES: usize = 4;
 
 impl SubmissionGrading<'_> {
-    /// Returns the grade of the results of all scenes, in the plan's order, each with whether it was found. If the
+    /// Returns the grade of the results of all scenes, in the plan's order, each with whether it was reused. If the
     /// suite gives points for speed, the submission is timed first.
     pub(crate) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {
         let (plan, options) = (self.grader.plan, self.grader.options);
@@ -44,7 +44,7 @@ impl SubmissionGrading<'_> {
         if self.grader.smallest.is_some() && results.iter().any(|(result, _)| is_wrong(result)) {
             drop(self.staged_program());
         }
-        // This removes the submission's copy.
+        // Dropping the value removes the submission's copy.
         let staged = lock(&self.staged).take();
         let (program, build) = match staged.as_deref() {
             Some(Ok(staged)) => (staged.program_digest(), staged.build.clone()),
@@ -73,7 +73,7 @@ impl SubmissionGrading<'_> {
         }
         reconcile_explanations(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
-            // A panic here must not lose the grade.
+            // A panic in this part must not lose the grade.
             grade.smallest = catch_panic(|| self.smallest(&grade, staged, describe)).unwrap_or_default();
         }
         grade
@@ -114,8 +114,9 @@ impl SubmissionGrading<'_> {
         found
     }
 
-    /// Returns the milestone that the program seems to implement, if its library lacks features of the suite's. The
-    /// search is made if no scene is accepted, and at least half of them leave no readable trace.
+    /// Infers the milestone that the program implements, if the milestone's library lacks features that the suite's
+    /// milestone has. This is tried only if no scene is accepted, and at least half of the scenes have no readable
+    /// trace.
     fn looks_like(&self, results: &[(SceneResult, bool)]) -> Option<Assignment> {
         let expected = self.grader.plan.milestone?;
         let count = |is: fn(Verdict) -> bool| results.iter().filter(|(result, _)| is(result.verdict)).count();
@@ -125,7 +126,7 @@ impl SubmissionGrading<'_> {
         }
         let (staged, first) = (self.staged_program(), self.grader.plan.scenes().next()?);
         let program = &staged.as_ref().as_ref().ok()?.program;
-        // An error here must not lose the grade.
+        // An error in this part must not lose the grade.
         let found = milestone::infer_milestone(&self.runner(first, None), program).ok().flatten();
         found.filter(|found| milestone::lacks(*found, expected))
     }
@@ -138,7 +139,7 @@ fn is_wrong(result: &SceneResult) -> bool {
 }
 
 /// Returns the contents that all failing scenes have in common. `contents` are those of all scenes, in order; they are
-/// computed only if some scenes fail and others do not.
+/// computed only if some scenes fail and some do not.
 fn locate_failure<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
     let failing = |ended: &Option<RunEnd>| ended.as_ref().and_then(FailureKind::from_end);
     let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));

@@ -1,9 +1,9 @@
 //! The evidence for a mistake: the symptoms in all traces that it would explain.
 //!
-//! Each explanation of a trace is a symptom with its alternatives: all statements ([`Explanation::statement`]) that
-//! would explain it as well. The statement that most traces allow is the likeliest. Statements allowed by exactly the
-//! same symptoms cannot be distinguished, unless other traces with wrong polynomials of the same kind do not allow one
-//! of them.
+//! Each explanation of a trace is a symptom. Its alternatives are all statements ([`Explanation::statement`]) that
+//! would explain the trace as well. The statement that most traces allow is the likeliest. Statements allowed by
+//! exactly the same symptoms cannot be distinguished, unless other traces with wrong polynomials of the same kind do
+//! not allow one of them.
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
@@ -75,7 +75,7 @@ struct Support<'a> {
     symptoms: BTreeSet<(usize, usize)>,
     traces: usize,
     complete: usize,
-    /// The number of traces that report it first.
+    /// The number of traces whose first explanation is the statement.
     first: usize,
     /// The number of traces in which the same quantity is wrong, in any way.
     kin: usize,
@@ -107,7 +107,7 @@ fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
                 let evidence = all.entry(word.as_str()).or_default();
                 evidence.symptoms.insert((number, place));
                 evidence.first += usize::from(place == 0 && *word == said);
-                // Of explanations with the same statement, the one with the longest exact form counts.
+                // Of several explanations with the same statement, the one with the longest exact form is used.
                 let rank_of = |one: &Explanation| (one.is_settled(), !one.details.is_empty());
                 let says_more = |told: &Explanation| rank_of(told) < rank_of(&symptom.one);
                 if *word == said && evidence.told.is_none_or(says_more) {
@@ -144,8 +144,9 @@ fn contradicts(one: &Explanation, told: &Explanation) -> bool {
     is_of_formula && one.subjects().iter().any(|subject| subjects.contains(subject))
 }
 
-/// Returns the likeliest mistake behind the open symptoms, which is the mistake that most traces allow. Ties go to
-/// mistakes of the catalogue, then to the one more often reported first, then to the earlier one.
+/// Returns the likeliest mistake behind the open symptoms, which is the mistake that most traces allow. On a tie,
+/// mistakes of the catalogue come first, then the mistake that is more often the first explanation, then the earlier
+/// one.
 pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let all = evidence(open);
     let is_known = |word: &str| find(word).is_some();
@@ -155,7 +156,7 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
         let order = b.symptoms.first().cmp(&a.symptoms.first());
         a.weight().cmp(&b.weight()).then(known).then(a.first.cmp(&b.first)).then(order)
     })?;
-    // Statements allowed by the same symptoms cannot be distinguished.
+    // Statements that the same symptoms allow cannot be distinguished.
     let is_rival = |(other, rival): &(&&str, &Support<'_>)| {
         **other != word && is_known(other) && rival.symptoms == best.symptoms && rival.weight() == best.weight()
     };
@@ -174,7 +175,7 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
 fn unite(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let mut told = told.clone();
     let said = told.statement();
-    // A contradicting trace is not reproduced at all.
+    // Nothing of a contradicting trace is reproduced.
     let against = open.iter().filter(|trace| !trace.allows_statement(&said)).flat_map(|trace| &trace.symptoms);
     told.samples +=
         against.filter(|symptom| contradicts(&symptom.one, &told)).map(|symptom| symptom.one.samples).sum::<u64>();
@@ -204,7 +205,7 @@ const fn is_alternative(detail: &Detail) -> bool {
     matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)))
 }
 
-/// Returns the whole form with each alternative of an exact form.
+/// Returns the whole exact form once for each of its alternatives.
 fn other_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
     let polynomial = |detail: &Detail| match detail {
         Detail::Polynomial(detail) => Some(detail.clone()),

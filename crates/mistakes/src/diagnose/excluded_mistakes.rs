@@ -10,7 +10,7 @@ use std::{cell::Cell, collections::BTreeMap};
 /// The maximum number of traces that are simulated to find out whether a mistake leads to values that are not finite.
 const MAX_TRACES: usize = 6;
 
-/// The number of polynomials in a step after which a program counts as endless.
+/// The number of polynomials in a step above which a program counts as never ending.
 const MAX_STEP_POLYNOMIALS: usize = 200_000;
 
 /// Returns the named keys of mistakes in code that a student of this milestone does not write.
@@ -42,9 +42,9 @@ fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> b
 
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
 /// program does not make: they are in code that a student of this milestone does not write, or right scenes contradict
-/// them. The program was right there, and with the mistake it would not have been
-/// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with it
-/// show its mistakes. The key of values that are not finite is included if the reported mistakes lead to such values.
+/// them. In those scenes the program is right, although it would be wrong with the mistake
+/// ([`shows`](super::known::shows)). Each integrator has its own file, so only scenes with an integrator show its
+/// mistakes. The key of values that are not finite is included if the reported mistakes lead to such values.
 #[must_use]
 pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);
@@ -59,7 +59,7 @@ pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])
     let mut refuted: Vec<String> = whose.map_or_else(Vec::new, |whose| supplied_keys(whose, wrong));
     loop {
         let likely = explain_together(traces(), &refuted);
-        // An explanation of unfinished work covers its stages.
+        // An explanation of unfinished work includes all its empty stages.
         let stages = likely.iter().filter(|one| one.is_unfinished()).flat_map(|one| &one.same_as);
         let mut keys = likely.iter().map(|one| &one.key).chain(stages).filter(|key| !refuted.contains(key));
         match keys.find(|key| is_denied(key, &Cell::new(0))).cloned() {

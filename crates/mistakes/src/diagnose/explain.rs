@@ -18,7 +18,8 @@ use fosssim_model::{
 use fosssim_student::{Area, Row, assignments::t2m2::Subject, find};
 
 /// The maximum number of pairs for explanations if steps log polynomials. Explanations keep whole steps of the
-/// reference, which take a few hundred bytes per pair. The first value that is not finite is reported nevertheless.
+/// reference, which take a few hundred bytes per pair. Above the limit, only the first value that is not finite is
+/// reported.
 const MAX_PAIRS: usize = 400_000;
 
 /// Returns the likely mistakes of the program that wrote the trace, the likeliest first; empty if nothing is wrong, or
@@ -46,7 +47,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         return not_finite::find_in_trace(scene, source);
     }
     let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);
-    // In a contest's program the student writes only the search for near pairs.
+    // In the contest, students write only the search for near pairs.
     let is_contest = scene.assignment() == Assignment::T2M3;
     let pairs = if is_contest { near::explain(&mut reference, scene, &scan) } else { None };
     let KnownMistakes { explanations: mut known, open, denies } = known_or_open(&mut reference, scene, scan);
@@ -72,10 +73,10 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         && find(&explanation.key).is_some_and(|row| is_formula(row.area))
         && explanation.is_complete()
     {
-        // The same mistake under another name, with its terms and its own example.
+        // A guess about all polynomials is the same mistake in other words, so its terms and its example are added.
         let is_told = |own: &Explanation| !own.is_unexplained() && own.is_complete();
         for own in std::mem::take(&mut polynomials).into_iter().filter(is_told) {
-            // The remedy stays last. The same mistake under the same name is already reported.
+            // The hint for a remedy stays last, and a mistake that is already reported is not repeated.
             let remedy = explanation.details.len().saturating_sub(1);
             if !explanation.key.ends_with(&own.key) {
                 explanation.details.splice(remedy..remedy, own.details);
@@ -84,10 +85,10 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         }
     }
     if known.iter().any(Explanation::is_complete) {
-        // It also reproduces the polynomials: their other faults only follow from it.
+        // The stage's mistake also reproduces the polynomials, so their other faults only follow from it.
         polynomials.clear();
     }
-    // If another mistake keeps it from explaining whole steps, it may nevertheless explain all polynomials.
+    // A known mistake may explain all polynomials even if another mistake prevents it from explaining whole steps.
     known.retain(|one| {
         let is_told = |other: &Explanation| {
             other.is_complete() && find(&one.key).is_some_and(|row| is_in_other_words(other, row))
@@ -108,14 +109,14 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     all.extend(pairs);
     all.iter_mut().for_each(explain_letters);
     all.extend(stage);
-    // The sort is stable: among equals the known mistake stays first.
+    // The sort is stable, so a known mistake stays before equally good guesses.
     all.sort_by_key(|one| (one.is_unexplained(), !one.is_complete()));
     all.extend(not_finite);
     all.iter_mut().for_each(|one| one.denies.clone_from(&denies));
     all
 }
 
-/// Notes once, after an explanation's formulas, that their letters need an explanation.
+/// Adds a note, once, after an explanation's formulas, that the report must explain their letters.
 fn explain_letters(explanation: &mut Explanation) {
     if explanation.is_unexplained() {
         return;

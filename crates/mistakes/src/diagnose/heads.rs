@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The maximum number of mistakes reported for a program, in addition to empty stages.
 const MAX_MISTAKES: usize = 3;
 
-/// The number of traces from which a single trace is no evidence for an empty stage.
+/// With at least this many traces, a single one is no evidence for an empty stage.
 const MANY_TRACES: usize = 8;
 
 /// Returns the likely mistakes of a program that wrote several traces, at most three in addition to stages that are
@@ -31,7 +31,7 @@ pub fn explain_together<'a>(
     refuted: &[String],
 ) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
-    // A stage that is visible in one trace is not empty, whatever the other traces look like.
+    // A stage that is visible in one trace is not empty, even if other traces do not show it.
     let denied: BTreeSet<&String> = traces.iter().copied().flatten().flat_map(|one| &one.denies).collect();
     let is_refuted = |key: &String| refuted.contains(key) || denied.contains(key);
     let mut open: Vec<OpenTrace> = traces
@@ -73,10 +73,10 @@ pub fn explain_together<'a>(
         let rows = empty.iter().filter_map(|one| find(&one.key));
         rows.filter(|row| is_formula(row.area)).any(|row| row.kind_of_pair().is_none_or(|kind| kind == subject.kind()))
     };
-    // A trace of unwritten stages shows no other mistakes.
+    // A trace in which stages are empty shows no other mistakes.
     wrong.retain(|list| !empty.iter().any(|one| is_named_in(one, list)));
     if let Some(head) = wrong_polynomials(&wrong, &found, is_unwritten) {
-        // The stages after a wrong formula are wrong because of it.
+        // After a wrong formula, later stages are wrong as a consequence.
         found.retain(|one| !one.is_of_stage());
         found.insert(0, head);
     }
@@ -85,7 +85,7 @@ pub fn explain_together<'a>(
     unite_unfinished(empty).into_iter().chain(found).chain(end).collect()
 }
 
-/// Returns the first values that are not finite, for the stage in which most traces have them.
+/// Returns the explanation of the first values that are not finite, for the stage in which most traces have them.
 fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
     let agreeing = |one: &Explanation| ends().filter(|other| other.statement() == one.statement()).count();
@@ -100,7 +100,7 @@ fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     Some(likeliest)
 }
 
-/// Returns the detections whose coefficients are all zero, if the explanation is about them.
+/// Returns an explanation for each kind of pair whose coefficients are all zero, if `one` is about such coefficients.
 fn zeros(one: &Explanation) -> Vec<Explanation> {
     let is_zero =
         matches!(&one.about, About::Polynomials { found: OfPolynomials::Guess(Guess::List(ListGuess::AllZero)), .. });
@@ -142,7 +142,7 @@ fn unite_unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
 }
 
 /// Returns the polynomials that are wrong in most traces, if no exact form holds in most and the first explanation does
-/// not cover them. They come with their place and the most frequent report without an exact form.
+/// not cover them. The result names their place, and the most frequent explanation without an exact form.
 fn wrong_polynomials(
     traces: &[Vec<Explanation>],
     found: &[Explanation],
@@ -159,7 +159,7 @@ fn wrong_polynomials(
     let named_in = |one: &Explanation| traces.iter().filter(|list| is_named_in(one, list)).count();
     let is_told = found.iter().any(|one| !one.subjects().is_empty())
         || found.first().is_some_and(|first| named_in(first) >= most);
-    // A fault in few traces may follow from another mistake.
+    // A fault in only a few traces may follow from another mistake.
     if is_told || most * 2 <= traces.len() {
         return None;
     }
@@ -221,7 +221,7 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
     found.iter().any(is_said)
 }
 
-/// Drops explanations that may follow from a mistake that explains one of the traces, if steps log only states.
+/// Drops explanations that may be consequences of a mistake that explains one of the traces, if steps log only states.
 fn drop_what_follows(open: &mut Vec<OpenTrace>) {
     let is_of_states = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
     let names_one = |symptom: &Symptom| symptom.allowed.iter().any(|(word, is_whole)| *is_whole && is_of_states(word));
@@ -249,7 +249,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation of a stage's fault covers explanations that only name the stage.
     let is_said = all().any(|one| is_of_it(one) && !one.is_vague());
-    // In another order, polynomials of one pair are in the places of another's.
+    // If pairs are in another order, the polynomials of one pair are in the place of another pair's.
     let is_misread = |one: &Explanation| find(&one.key).is_none() && one.stage().is_none();
     let has_order = all().any(|one| one.key == Explanation::ORDER);
     for trace in open.iter_mut() {
@@ -281,7 +281,7 @@ fn is_confirmed(open: &[OpenTrace], said: &str) -> bool {
 
 /// Returns whether enough of the open symptoms name a further mistake: an unexplained trace, a trace that needs it in
 /// addition to a reported mistake, or, if there are several traces, two others. Traces with a wrong stage count only if
-/// nothing explains them. A single one may follow from an earlier mistake, as missing polynomials do.
+/// nothing explains them. A single symptom may follow from an earlier mistake, as missing polynomials do.
 fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
     let said = next.statement();
     let naming = |is_covered: bool| {
@@ -294,7 +294,8 @@ fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
     !next.is_of_missing() && (naming(false) > 0 || is_partner || naming(true) >= open.len().min(2))
 }
 
-/// Removes everything that a mistake explains; of a trace that it explains, only other complete explanations stay.
+/// Removes everything that a mistake explains; of a trace that the mistake explains, only other complete explanations
+/// are kept.
 fn leave_open(open: &mut [OpenTrace], said: &str) {
     for trace in open.iter_mut().filter(|trace| trace.allows_statement(said)) {
         trace.is_covered = true;

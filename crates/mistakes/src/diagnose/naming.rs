@@ -47,7 +47,8 @@ pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
     if one.is_complete() {
         all.extend(all_rows().filter(|row| is_in_other_words(one, row)).map(|row| (row.id.to_owned(), true)));
     }
-    // A statement that explains one polynomial explains all of them only if it is a known mistake or a general guess.
+    // If a statement explains one of several polynomials, it explains all of them only if it is a known mistake or a
+    // general guess.
     let made = one.claims_by_subject().into_values().map(|claims| {
         let words = claims.into_iter().map(|(guess, claim)| {
             let is_of_all = find(guess).is_some() || claim.ends_with('/');

@@ -1,4 +1,4 @@
-//! Finds the step from which a trace holds values that are not finite, and the stage of the step that first computes
+//! Finds the step from which a trace contains values that are not finite, and the stage of the step that first computes
 //! one from finite values.
 //!
 //! NaN spreads: every result that is computed from it is NaN, and comparisons with it are false. Only the first stage
@@ -51,7 +51,8 @@ impl FirstNotFinite {
         }
     }
 
-    /// Records whether the step is the first with a value that is not finite, or finite again.
+    /// Examines a step: whether it is the first one with a value that is not finite, and whether values are finite
+    /// again.
     pub(super) fn step(&mut self, reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) {
         if self.is_found {
             let is_finite = || ![&frames.before, &frames.mid, &frames.end].into_iter().any(is_wild);

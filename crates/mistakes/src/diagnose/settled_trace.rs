@@ -1,4 +1,4 @@
-//! One trace's explanations, corrected by all traces of its program together.
+//! Corrects the explanations of one trace with those of all traces of its program.
 use super::{About, Explanation, WrongPairs, is_named_in, naming::as_row};
 use fosssim_student::find;
 
@@ -12,9 +12,10 @@ pub struct SettledTrace {
     pub agreed: usize,
 }
 
-/// Corrects a trace's own explanations by those of all traces together ([`explain_together`](super::explain_together)).
-/// If any of those explains the trace, they replace the trace's less informed ones, but keep its counts and its
-/// example. Otherwise the trace keeps its own, without those that are `refuted`.
+/// Corrects a trace's own explanations with those of all traces together
+/// ([`explain_together`](super::explain_together)). If one of the common explanations applies to the trace, they
+/// replace the trace's own, but keep its counts and its example. Otherwise the trace keeps its own explanations,
+/// without those that are `refuted`.
 #[must_use]
 pub fn settle_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> SettledTrace {
     let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreed(own, one));
@@ -25,7 +26,7 @@ pub fn settle_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Stri
             agreed: 0,
         };
     }
-    // Each trace separately reports where values stop being finite.
+    // The step from which values are not finite is reported for each trace.
     explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
     SettledTrace { agreed: explanations.len(), explanations }
 }
@@ -44,11 +45,11 @@ fn remove_refuted(one: &Explanation, refuted: &[String]) -> Option<Explanation> 
 /// not name it.
 fn find_agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
     if likely.is_unexplained() {
-        // Each trace may show several of them.
+        // A trace may show several of the mistakes.
         return Vec::new();
     }
     if likely.is_unfinished() {
-        // Each stage separately, because some traces do not show all of them.
+        // Each stage is checked separately, because a trace may not show all of them.
         return own.iter().filter(|one| likely.same_as.contains(&one.key)).cloned().collect();
     }
     let shown = own.iter().find(|one| is_named_in(likely, std::slice::from_ref(one)));

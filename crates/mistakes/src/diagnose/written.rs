@@ -1,4 +1,4 @@
-//! Finds the mistakes that a student of a milestone can make, which are in the parts written by the student.
+//! Decides which mistakes a student of a milestone can make: those in the parts that the student writes.
 use fosssim_model::{
     assignments::{Assignment, Part},
     scene::Scene,

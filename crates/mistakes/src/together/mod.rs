@@ -1,4 +1,4 @@
-//! The likely mistakes of one submission, from all its scenes together.
+//! Finds the likely mistakes of one submission from all its scenes together.
 
 use crate::diagnose::{explain_together, is_named_in, settle_trace};
 use fosssim_findings::{
@@ -36,9 +36,9 @@ pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
     Cow::Owned(told)
 }
 
-/// Returns the grade with only what students see immediately: points and verdict are those of the remaining groups, and
-/// hints limit the reports on their scenes ([`told_to_students`]). Unless the suite shows the output of programs,
-/// scenes have only their verdicts ([`withhold`](fosssim_findings::SceneResult::withhold)).
+/// Returns only the part of the grade that students see immediately: points and verdict are those of the remaining
+/// groups, and hints limit the reports on their scenes ([`told_to_students`]). Unless the suite shows the output of
+/// programs, scenes have only their verdicts ([`withhold`](fosssim_findings::SceneResult::withhold)).
 #[must_use]
 pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
     if grade.is_visible() {
@@ -83,7 +83,7 @@ fn visible_smallest(grade: &Grade) -> Vec<SmallestScene> {
 #[must_use]
 pub fn worth(grade: &Grade, mistake: &Explanation) -> f64 {
     let is_mended = |scene: &SceneGrade| {
-        // If several are proven, they reproduce the steps only together.
+        // If several mistakes are proven, they reproduce the steps only together.
         let mut proven = scene.explanations.iter().filter(|one| one.is_proven()).peekable();
         proven.peek().is_some() && proven.all(|one| is_named_in(mistake, std::slice::from_ref(one)))
     };
@@ -95,7 +95,7 @@ pub fn worth(grade: &Grade, mistake: &Explanation) -> f64 {
         let lost = |scene: &SceneGrade| scene.points.map_or(0.0, |points| scene.max_points - points);
         group.scenes.iter().filter(|scene| group.all_or_nothing || is_mended(scene)).map(lost).sum()
     };
-    // An empty sum is -0.
+    // The sum of no numbers is -0.
     grade.groups.iter().filter(|group| !group.extra).map(of_group).sum::<f64>() + 0.0
 }
 
@@ -127,8 +127,8 @@ pub fn explained_by(grade: &Grade, mistake: &Explanation) -> usize {
     grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations)).count()
 }
 
-/// Corrects the explanations of each scene by all scenes together: by several wrong ones, or by right ones that
-/// contradict a mistake. A caller that removes groups from a grade must call it again, so that nothing about them is
+/// Corrects each scene's explanations with those of all other scenes: several wrong scenes can confirm a mistake, and a
+/// right one can refute it. A caller that removes groups from a grade must call it again, so that nothing about them is
 /// revealed.
 pub fn reconcile_explanations(grade: &mut Grade) {
     let speak_together = !grade.refuted.is_empty() || likely_mistake(grade).is_some();

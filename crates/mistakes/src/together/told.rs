@@ -38,7 +38,7 @@ pub fn cut_smallest(hints: Hints, mut small: SmallestScene) -> Option<SmallestSc
 pub fn cut(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),
-        // The place, but no guesses.
+        // Keep the place, but no guesses.
         Hints::Where => explanations.into_iter().filter(Explanation::is_not_finite).collect(),
         Hints::What => explanations
             .into_iter()

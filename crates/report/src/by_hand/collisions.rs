@@ -1,4 +1,5 @@
-//! The passes of a step by hand, with the impulses and the rigid motions that answer them (collisions.md 3 to 6).
+//! Shows the passes of a step as a calculation by hand, with the impulses and the rigid motions that follow
+//! (collisions.md 3 to 6).
 use super::{states, table, vector};
 use crate::{
     detect::{self, Detect, Overlap},
@@ -18,26 +19,26 @@ use fosssim_student::assignments::t2m2::{
     formulas::{Formula, readings},
 };
 
-/// Writes down a step while it is computed.
+/// Describes a step while it is computed.
 pub(super) struct CollisionWalk<'a> {
     scene: &'a Scene,
     /// The pair whose detection is written in full, once.
     pair: Option<(Pair, Option<Pass>)>,
     text: String,
-    /// The positions at the begin of the step.
+    /// The positions at the start of the step.
     start: Vec<f64>,
-    /// The positions at its end, as the last pass or collision saw them, and velocities for `simple`.
+    /// The end positions that the last pass or collision used; for `simple` also the velocities.
     seen: State,
 }
 
 impl<'a> CollisionWalk<'a> {
-    /// Begins with a scene's first step.
+    /// Creates the description of a scene's first step.
     pub(super) fn new(scene: &'a Scene, pair: Option<(Pair, Option<Pass>)>) -> Self {
         let start = State::for_scene(scene).positions;
         Self { scene, pair, text: String::new(), start, seen: State::default() }
     }
 
-    /// Returns what was written, if collisions are handled at all.
+    /// Returns the description; `None` if the scene does not handle collisions.
     pub(super) fn finish(self) -> Option<String> {
         (!self.text.is_empty()).then_some(self.text)
     }
@@ -117,7 +118,7 @@ impl Observer for CollisionWalk<'_> {
             false => (1.0 / scene.time_step) * self.shift(particle),
         };
         let rate = |particle: usize| match &scene.particles[particle] {
-            // A half-plane moves fixed particles, too.
+            // A contact with a half-plane moves even a fixed particle.
             body if body.fixed && pair.kind != PairKind::ParticleHalfPlane => 0.0,
             body => 1.0 / body.mass,
         };
@@ -192,7 +193,7 @@ fn zone_name(zone: &Zone<'_>) -> String {
     format!("{{{}}}", parts.join(", "))
 }
 
-/// Renders the motion of a zone as one rigid body, from the positions at the begin of the step and their changes.
+/// Renders the motion of a zone as one rigid body, from the positions at the start of the step and their changes.
 fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(usize) -> Vec2) -> String {
     let members = || zone.particles.iter().map(|&particle| particle as usize);
     if zone.half_plane || members().any(|particle| scene.particles[particle].fixed) {

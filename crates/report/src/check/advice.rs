@@ -1,5 +1,5 @@
-//! The advice where to look in the program. If no likely mistake is named, the kind of the first finding suggests a
-//! place.
+//! Advice about the place to check in the program. If there is no likely mistake, the kind of the first finding
+//! suggests the place.
 use super::{Check, first};
 use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};

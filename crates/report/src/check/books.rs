@@ -1,4 +1,4 @@
-//! The verdicts of the rule books, one line each; their tables are shown on request.
+//! The verdicts of the rule books, with one line for each. Their tables are shown on request.
 use super::{Check, fair, follows};
 use crate::{
     number::format_count,
@@ -28,7 +28,7 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     Some([parity, ("the fair rules", look, word, fair::summary(judgement, outcome))])
 }
 
-/// Renders the section; `None` if the headline contains the verdicts.
+/// Renders the section about the rule books; `None` if the headline contains the verdicts.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let mut text = format!("{}\n", style.paint(Look::Strong, "Rule books"));
     for (name, look, word, grounds) in verdicts(check)? {

@@ -1,4 +1,4 @@
-//! The first difference: expected and actual values side by side.
+//! Shows the first difference, with expected and actual values side by side.
 use super::super::{
     number::{exact, format_g},
     style::{Look, Style},
@@ -68,7 +68,7 @@ pub(crate) struct Row {
 /// The values of a finding side by side, with the remarks before and after them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct SideBySide {
-    /// The position of the preceding records in the trace, for readers who inspect its bytes.
+    /// Lines above the table: the position in the trace, for readers who inspect its bytes.
     before: Vec<String>,
     pub(crate) rows: Vec<Row>,
     pub(crate) after: Vec<String>,
@@ -123,7 +123,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
         } => {
             let (reference, trace) = (expected_polynomial.coefficients(), actual_polynomial.coefficients());
             let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
-            // The factor by which the finding was made.
+            // This is the factor that was used for the finding.
             let factor = if own == 0.0 { factor(reference, trace) } else { expected / own };
             let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
             sides.original = rescaled.as_ref().map(|RescaledCoefficient { power, expected, actual, .. }| {
@@ -162,7 +162,7 @@ fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual:
     polynomials_with(place, expected, actual, factor(expected, actual), None)
 }
 
-/// Compares two polynomials by power, where `factor` scales the expected values; one power is known to differ.
+/// Compares two polynomials by power, where `factor` scales the expected values; `power` is known to differ.
 fn polynomials_with(
     place: &fosssim_judge::PolynomialPlace,
     expected: &[f64],

@@ -11,7 +11,7 @@ use fosssim_judge::{
     fair::{FairRefusal, FairVerdict, Form, Judgement, cause},
 };
 
-/// Renders the section; `None` if the fair rules did not judge.
+/// Renders the section about the fair rules; `None` if they did not judge.
 pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let fair = outcome.fair.as_deref()?;
     let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
@@ -133,7 +133,7 @@ fn format_percent(share: f64) -> String {
     if share < 0.01 { "< 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
 }
 
-/// Returns the sentence which book accepts and which one rejects the trace.
+/// Returns the sentence about which book accepts and which one rejects the trace.
 pub(crate) const fn describe_sides(cause: Cause) -> &'static str {
     if cause.original_fails() {
         "the original fails this trace, the fair rules accept it"

@@ -11,7 +11,7 @@ view! {
     #[derive(Debug)]
     #[schemars(deny_unknown_fields)]
     pub(super) struct FairView<'a> from fair: Judgement {
-        /// The verdict; none if judging stopped early without a fault.
+        /// The verdict; none if judging stopped early and had found no fault.
         verdict: FairVerdict = fair.verdict,
         /// The reason why the whole trace is rejected.
         refusal: Option<FairRefusal> = fair.refusal,
@@ -20,8 +20,8 @@ view! {
         /// The first finding; null if there is none.
         first_divergence: Option<FindingView> =
             fair.findings.first_divergence.as_ref().map(|first| FindingView::from_finding(Book::Fair, first)),
-        /// The first finding of each kind, and the number of each kind. Tolerances depend on the values, so they are
-        /// null.
+        /// The first finding of each kind, and the number of each kind. The tolerance is null, because it depends on
+        /// the values.
         findings: Vec<CountedView> =
             CountedView::count(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
         /// The smallest and the largest factor of the polynomials; null if it is 1.
@@ -30,8 +30,7 @@ view! {
         factor: Option<[f64; 2]> = fair.factor,
         /// The accepted form of the particle-edge approach polynomial that the trace uses.
         approach_form: Form = fair.form,
-        /// The decisions that round-off may flip and that differ from the reference's; they are not counted as
-        /// findings.
+        /// The decisions that differ from the reference's, but may do so because of round-off. They are not findings.
         borderline: BorderlineView<'a> =
             BorderlineView { count: fair.borderline, examples: &fair.borderline_examples },
         /// The largest shares of the tolerances that right values use, 0 to 1.

@@ -1,4 +1,4 @@
-//! Consequences: polynomials that differ only because their input positions differ.
+//! Counts polynomials that differ only as a consequence of wrong input positions.
 use crate::number::count as number;
 use fosssim_judge::{Finding, FindingKind, Outcome, fair::FairVerdict};
 
@@ -38,7 +38,7 @@ pub(crate) fn count(outcome: &Outcome) -> u64 {
     FORMULA_KINDS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()
 }
 
-/// Returns the number of consequential polynomials with its noun.
+/// Describes how many polynomials follow from wrong positions.
 pub(super) fn describe(follow: u64) -> String {
     format!("polynomials that follow from wrong positions: {}", number(follow))
 }

@@ -1,6 +1,6 @@
-//! The detection of files that are not traces.
+//! Recognizes files that are not traces.
 
-/// The number of bytes at the start of a file that are checked for its kind.
+/// The number of bytes at the start of a file from which its kind is recognized.
 pub const SNIFFED_BYTES: u64 = 512;
 
 /// Returns the kind of a file that begins with the given bytes, if it can't be a trace. A trace begins with the bits of

@@ -74,12 +74,12 @@ impl Check<'_> {
         self.outcome.ruling(self.book()).name()
     }
 
-    /// Returns whether the file is not a trace at all, so that the report says only that.
+    /// Returns whether the file is not a trace at all, so that the report contains only this fact.
     pub(crate) fn is_not_a_trace(&self) -> bool {
         self.looks_like.is_some() && !self.is_accepted()
     }
 
-    /// Returns the text which book accepts the trace, if the rule books disagree.
+    /// Returns the text about which book accepts the trace, if the rule books disagree.
     #[must_use]
     pub fn difference(&self) -> Option<&'static str> {
         cause(self.outcome).map(fair::describe_sides)
@@ -156,8 +156,8 @@ fn count_messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
 }
 
 view! {
-    /// The report on one trace. A version of the shape may get further fields, but the meaning of a field does not
-    /// change. Numbers that are not finite are the texts nan, -nan, inf and -inf.
+    /// The report on one trace. Within a version, fields may be added, but the meaning of a field does not change.
+    /// Numbers that are not finite are the texts nan, -nan, inf and -inf.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct CheckView<'a> from check: Check<'a> {
         /// The version of this shape.
@@ -169,7 +169,7 @@ view! {
         trace: &'a str = check.trace,
         /// The requested rule books.
         rules: Rules = check.rules,
-        /// The book that gives the verdict, the first difference, findings and wrong steps.
+        /// The book from which the verdict, the first difference, the findings and the wrong steps are taken.
         official: Book = check.book(),
         /// The verdict of the official book. Undecided: no fault was found, but judging stopped early. Bad trace: the
         /// trace could not be read to the scene's last step. By the fair rules it may also be damaged, or have bytes
@@ -196,7 +196,7 @@ view! {
         commands: Vec<String> = closer::commands(check),
         /// Other facts, such as damage or bytes after the end.
         notes: Vec<String> = text::notes(check),
-        /// Likely mistakes, the likeliest first; empty if nothing is wrong, and with --no-explain.
+        /// Likely mistakes, the likeliest first; empty if nothing is wrong, or with --no-explain.
         explanations: Vec<ExplanationView> = check.explanations.iter().map(ExplanationView::from).collect(),
         /// The number of steps of the scene.
         steps: u32 = check.outcome.steps,

@@ -1,4 +1,4 @@
-//! The wrong steps of a trace, one by one. They are collected during judging, and shown with expected and actual
+//! The wrong steps of a trace, one by one. The steps are collected during judging, and shown with expected and actual
 //! values.
 use super::super::{
     number::{count, format_count},
@@ -115,7 +115,7 @@ impl Steps {
     }
 }
 
-/// Returns the steps of the official book, or of the other one if the official book has none.
+/// Returns the steps of the official book, or the other book's if the official book has none.
 fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     let of = |book| (book, check.steps.findings_of(book, check.outcome.findings_by(book)));
     let official = of(check.book());
@@ -130,7 +130,7 @@ pub(super) fn numbers(check: &Check<'_>) -> Vec<u32> {
     check.steps.findings_of(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 
-/// Returns whether only certain steps are requested, so that the report has nothing else.
+/// Returns whether the report contains only requested steps.
 pub(super) fn shows_only_these(check: &Check<'_>) -> bool {
     matches!(check.steps.shown, StepChoice::These(_))
 }

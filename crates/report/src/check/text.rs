@@ -1,4 +1,4 @@
-//! The check report for people: first the verdict, then its reasons.
+//! Renders the check report for people: first the verdict, then the reasons.
 use super::{
     super::{
         explain,
@@ -46,7 +46,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     // Show the cause first, then its first occurrence.
     let is_told = !is_other_scene(check);
     parts.extend(render_mistakes(check, style).filter(|_| is_told));
-    // If all steps are shown, the first finding appears there.
+    // If all steps are shown, the first finding is among them.
     let first = first(check).filter(|_| !steps::are_all_requested(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
     parts.extend(render_section("Where to look", "  - ", &advice::lines(check), style));
@@ -56,7 +56,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         parts.push(render_residuals(outcome, style));
         parts.extend(fair::render(outcome, style));
         let account = outcome.findings_by(check.book());
-        // The fair section shows the fair rules' findings.
+        // The fair rules' findings are in their own section.
         if !account.examples.is_empty() && check.book() == Book::Parity {
             parts.push(render_findings(account, follows::count(outcome), style));
         }
@@ -77,11 +77,11 @@ fn render_section(heading: &str, mark: &str, lines: &[impl Display], style: Styl
     (!lines.is_empty()).then(|| heading + &lines)
 }
 
-/// Returns the likely mistakes of the program, limited to a screen.
+/// Renders the likely mistakes of the program, as many as fit on a screen.
 fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
     let most = if check.tables { usize::MAX } else { MAX_EXPLANATIONS };
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
-    // The first difference, which is also an example, follows below.
+    // The example is left out, because the first difference, which is also an example, follows.
     let has_example = check.tables || first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
@@ -165,7 +165,7 @@ fn describe_damage(outcome: &Outcome) -> String {
     }
 }
 
-/// Returns a line with the place and the reason of the end of judging.
+/// Returns a line about where and why judging stopped.
 #[must_use]
 pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
     let (place, message, _) = describe_problem(stop, outcome);
@@ -181,7 +181,7 @@ const fn is_limit(stop: &Stop) -> bool {
     matches!(stop, Stop::Trace { cause: Unreadable::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
-/// Returns the place and the reason of the end of judging, and advice where to look, if there is any.
+/// Describes where and why judging stopped, with advice about the place to check if there is any.
 pub(crate) fn describe_problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
     let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {

@@ -1,5 +1,5 @@
-//! The contest's timing scenes, as large as the course's. They are generated on demand, because their files would have
-//! megabytes.
+//! The contest's timing scenes, as large as the course's. They are generated on demand, because their files would be
+//! several megabytes large.
 use std::{fmt::Write, sync::OnceLock};
 
 /// A generated scene.
@@ -23,7 +23,7 @@ impl MadeScene {
     }
 }
 
-/// Pseudo-random whole numbers below 1000 (a linear congruential generator).
+/// A linear congruential generator of pseudo-random whole numbers below 1000.
 struct DrawnNumbers(u32);
 
 impl DrawnNumbers {
@@ -33,7 +33,7 @@ impl DrawnNumbers {
     }
 }
 
-/// Formats a number of thousandths as a decimal number.
+/// Formats thousandths as a decimal number.
 fn format_thousandths(number: i32) -> String {
     format!("{}{}.{:03}", if number < 0 { "-" } else { "" }, number.abs() / 1000, number.abs() % 1000)
 }

@@ -1,5 +1,5 @@
-//! Finds records that are missing throughout. Every later record is then in the place of another, and no step looks
-//! right.
+//! Finds records that are missing throughout. Every later record is then at the place of another record, so no step
+//! looks right.
 use super::{explain, resimulate::resimulate};
 use crate::diagnose::{
     Explanation,
@@ -8,8 +8,8 @@ use crate::diagnose::{
 use fosssim_model::{scene::Scene, sim::State, trace::Layout};
 use fosssim_student::{Mistake, Row, StepLog, Student, World, find};
 
-/// Returns the record that this program leaves out, if the trace's beginning is right with this record taken into
-/// account.
+/// Returns the record that this program leaves out, if the beginning of the trace is right once the missing record is
+/// taken into account.
 pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let layout = Layout::for_scene(scene);
     ["log-no-initial", "log-no-mid"].into_iter().filter_map(find).find_map(|row| {
@@ -18,7 +18,7 @@ pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> 
             return None;
         }
         let steps = aligned_steps(scene, layout, &scan.outline.opening, row)?;
-        // A scene in which nothing moves is right in any case, so only the number of records decides.
+        // If nothing moves in a scene, every record is right, so only the number of records counts.
         let tells = !scan.wrong.is_empty() || scan.outline.records == Some(expected);
         tells.then(|| explain(row, (steps, steps)))
     })

@@ -85,7 +85,7 @@ impl<'a> Candidates<'a> {
                 break;
             }
             tried = number + 1;
-            // A candidate that has failed in more than half of the sampled steps is dropped.
+            // A candidate that fails on more than half of the sampled steps is dropped.
             let allowed = spread.len().max(tried) / 2;
             left.retain_mut(|(candidate, reproduced)| {
                 *reproduced += usize::from(self.reproduces(candidate, sample));

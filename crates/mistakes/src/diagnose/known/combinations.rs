@@ -16,11 +16,11 @@ const MAX_WORK: u64 = 700_000;
 
 /// Rows that reproduce a trace together.
 pub(super) struct SeveralRows {
-    /// The rows: empty stages first, then in the order in which they were found.
+    /// The rows: first empty stages, then the others in the order in which they were found.
     pub(super) rows: Vec<&'static Row>,
     /// For each row, the rows that are equally good.
     pub(super) same_as: Vec<Vec<&'static Row>>,
-    /// Rows that explain the trace without the empty stages.
+    /// Other rows that explain the trace without any empty stage.
     pub(super) rivals: Vec<&'static Row>,
     /// The number of tried wrong steps, all of which are reproduced.
     pub(super) samples: u64,
@@ -38,7 +38,7 @@ pub(super) fn find_set(
         return search.together();
     }
     let mut found = search.starts().into_iter().find_map(|start| search.complete(start))?;
-    // An unwritten stage may look like a mistake in a written one.
+    // An empty stage may look like a mistake in another stage.
     if found.rows.iter().any(|row| is_empty_stage(row))
         && let Some(other) = search.complete(Vec::new())
         && other.rows.len() <= found.rows.len()
@@ -110,9 +110,9 @@ impl<'a> Search<'a> {
         Some(SeveralRows { rows: set, same_as: alike, rivals: Vec::new(), samples })
     }
 
-    /// Finds mistakes of a program whose steps log states: no single mistake reproduces more of a step, but all
-    /// together do. Unwritten functions come first, then one mistake with such functions, then two mistakes; `None` if
-    /// two disjoint sets reproduce everything.
+    /// Finds several mistakes of a program whose steps log only states. There, a single mistake does not reproduce a
+    /// larger part of a step, but all mistakes together reproduce all of it. Unwritten functions come first, then one
+    /// mistake with such functions, then two mistakes; `None` if two disjoint sets reproduce everything.
     fn together(&self) -> Option<SeveralRows> {
         let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable(self.scene).filter(is_asked).collect();
@@ -140,7 +140,7 @@ impl<'a> Search<'a> {
         self.unique_set(beside(1)).or_else(|| self.unique_set(beside(2))).or_else(|| self.unique_set(of_two))
     }
 
-    /// Returns the only set that reproduces everything, with rows that are equally good as one of its rows.
+    /// Returns the only set that reproduces everything, with the alternatives for one of its rows.
     fn unique_set(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
@@ -173,8 +173,8 @@ impl<'a> Search<'a> {
             && self.count_confirmed(set).is_some()
     }
 
-    /// Returns initial sets of empty stages: the set that reproduces most, and the detections without which the numbers
-    /// of polynomials are those of whole passes, in case another mistake hides it.
+    /// Returns the initial sets of empty stages. One is the set that reproduces most. The others are sets of detections
+    /// without which the number of polynomials fits whole passes, in case another mistake hides the first set.
     fn starts(&self) -> Vec<Vec<&'static Row>> {
         let mut starts = vec![self.empty_stages()];
         let counts: Vec<usize> = self.scan.wrong.iter().map(|sample| sample.records.end.polynomials.len()).collect();
@@ -202,7 +202,7 @@ impl<'a> Search<'a> {
     /// Returns the smallest set of empty stages that reproduces most; empty if none helps.
     fn empty_stages(&self) -> Vec<&'static Row> {
         let mut sets = subsets(&self.stages());
-        // One variant of the loop is enough, and a failsafe that is never called shows nothing.
+        // One variant of an empty loop is enough, and an empty failsafe is not visible if it is never called.
         sets.retain(|set: &Vec<&Row>| {
             let has = |mistake| set.iter().any(|row| row.mistake == mistake);
             let loops = has(Mistake::ImpulsesEmpty) && has(Mistake::ImpulsesEmptySuccess);
@@ -224,7 +224,7 @@ impl<'a> Search<'a> {
 
     /// Returns the rows of empty stages that show on the scene. An unwritten detection logs nothing, or zeros.
     fn stages(&self) -> Vec<&'static Row> {
-        // The approach of bodies that do not move is zero as well, but the overlap before it never is.
+        // For bodies at rest the approach polynomial is zero, too, but the overlap polynomial before it is not.
         let logs_zeros = self.scan.wrong.iter().any(|kept| {
             let are_zero = |list: &[f64]| list.iter().all(|&coefficient| coefficient == 0.0);
             let all: Vec<bool> = kept.records.end.polynomials.iter().map(are_zero).collect();
@@ -256,7 +256,7 @@ impl<'a> Search<'a> {
             }
         }
         let (progress, mut rows) = best;
-        // A stage that reaches the same share but makes right steps wrong is not in the set.
+        // Leave out a stage that reproduces as much but breaks steps that are right.
         let spoils = |row: &&'static Row| {
             let program = self.trials.program(&[set, &[*row]].concat());
             self.scan.right.iter().any(|kept| self.trials.reproduced_share(&program, kept) < 1.0)

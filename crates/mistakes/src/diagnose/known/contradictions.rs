@@ -1,5 +1,5 @@
-//! Finds mistakes that a trace contradicts, whatever other mistakes it has: its stages are not empty, its zones do not
-//! stop.
+//! Finds mistakes that a trace contradicts, no matter which other mistakes it has: its stages are not empty, or its
+//! zones do not stop.
 use crate::diagnose::sampling::{KeptStep, LoggedNumbers, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference};
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -43,7 +43,7 @@ fn right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
         if next > right {
             break;
         }
-        // A constant equals any other constant of its sign, of whatever pair.
+        // A constant polynomial matches any constant with the same sign, even that of another pair.
         let list = &sample.records.end.polynomials;
         let says_something = (next - pair.kind.polynomials()..next).any(|index| list.get(index).len() > 1);
         if says_something && !kinds.contains(&pair.kind) {

@@ -12,7 +12,7 @@ use fosssim_student::{StepLog, World};
 /// Returns the example of a wrong step: the first difference, with the expected and the logged value.
 pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: ApproachForm, kept: &KeptStep) -> Example {
     let mut capture = Capture::new(&scene.collision);
-    // The step was simulated before, so it does not fail; if it did, the lists below would be empty.
+    // The step was simulated before, so it does not fail. If it failed, the lists below would be empty.
     let _end = reference.step(kept.step, &kept.before, &mut capture);
     if correct == ApproachForm::RightApproach {
         let world = World::new(scene.clone(), correct.with(None));

@@ -53,8 +53,8 @@ pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
     known_or_open(&mut reference, scene, scan).explanations
 }
 
-/// Returns whether a right program with exactly one of the mistakes `keys` makes all kept wrong steps of a trace. Needs
-/// much less work than [`find_known`].
+/// Returns whether a right program with exactly one of the mistakes `keys` makes all kept wrong steps of a trace. This
+/// needs much less work than [`find_known`].
 #[must_use]
 pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
     let TraceSamples { reference, scan, .. } = sample_trace(scene, Source::whole(trace));
@@ -99,8 +99,8 @@ pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut sc
     KnownMistakes { explanations: padded.into_iter().collect(), open: None, denies }
 }
 
-/// Returns the catalogue's explanations, and whether they are complete. It may change the steps to those of a program
-/// with the right approach.
+/// Returns the catalogue's explanations, and whether they are complete. It may replace the expected steps by those of a
+/// program with the right approach.
 fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
     if scan.wrong.is_empty() {
         return (Vec::new(), true);
@@ -133,7 +133,7 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     let samples = std::mem::take(&mut scan.wrong).into_iter().chain(std::mem::take(&mut scan.right));
     for mut sample in samples {
         let logged = sample.records.end.polynomials.len();
-        // A few more polynomials than were logged show that there are too few; further ones do not matter.
+        // A few more polynomials than were logged already show that some are missing; further ones are not needed.
         let guard = |index: usize, _: &[f64]| index < 2 * logged + SPARE;
         let expected = resimulate(&world, &sample.before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
         let Some(expected) = expected else { continue };

@@ -1,4 +1,4 @@
-//! Decides whether a mistake would show on a scene. A program that was right on it does not make the mistake.
+//! Decides whether a mistake would show on a scene. A program that is right on such a scene does not make the mistake.
 use super::{
     applicable_rows::can_show,
     resimulate::{resimulate, step_work},
@@ -14,9 +14,9 @@ use std::cell::Cell;
 /// The maximum number of computed polynomials; each takes about a microsecond.
 const MAX_WORK: u64 = 200_000;
 
-/// Returns whether a program with this mistake logs a plainly wrong value on this scene, which no rule takes for
-/// round-off. Also false if the search would take too long, or if the course's library does that part of the work: in
-/// `simple` and `continuous-time` it responds, so a program's own impulses show only in `hybrid`.
+/// Returns whether the mistake changes a logged value on this scene by more than round-off. If the search would take
+/// too long, this returns `false`. It also does so if the course's library does that part of the work: in `simple` and
+/// `continuous-time` the library responds, so a program's own impulses show only in `hybrid`.
 #[must_use]
 pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
     mistake_is_visible_within(scene, key, &Cell::new(0))
@@ -31,7 +31,7 @@ pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, w
         return false;
     }
     let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
-    // The fair rules also accept the nearest point of an edge, so other contact vectors may pass if it shows.
+    // The fair rules also accept the nearest point of an edge, so a different contact vector proves nothing there.
     let accepted = world.for_student(Student::new(Some(Mistake::ParticleEdgeContactClamped)));
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut capture = Capture::new(&scene.collision);

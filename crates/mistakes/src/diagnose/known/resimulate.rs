@@ -6,7 +6,7 @@ use fosssim_model::{
 };
 use fosssim_student::{Mistake, Record, State, StepLog, Student, World, step};
 
-/// The particle-edge approach of a submission, in one of the two accepted forms.
+/// The form of the particle-edge approach that a submission uses; both are accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ApproachForm {
     /// The program uses the particle-edge approach that the course supplies.

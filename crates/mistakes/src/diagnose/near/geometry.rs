@@ -8,7 +8,7 @@ use fosssim_num::vector::{Vec2, at, length};
 /// A body's extent with its radius, as its lower and upper corner.
 pub(super) type BoundingBox = [Vec2; 2];
 
-/// A scene at the start of a step.
+/// The geometry of a scene at the start of a step.
 pub(super) struct Moment<'a> {
     pub scene: &'a Scene,
     pub before: &'a State,
@@ -118,7 +118,8 @@ impl<'a> PlacedPair<'a> {
         distance(&later) >= distance(positions)
     }
 
-    /// Returns the boxes of all other bodies that begin between the two on an axis, in the order of a sweep.
+    /// Returns the boxes of all other bodies whose lower end on an axis is between those of the two, in the order of a
+    /// sweep.
     pub fn boxes_between(&self, axis: usize) -> impl Iterator<Item = BoundingBox> {
         let own = self.bodies();
         let [one, other] = self.boxes().map(|one| one[0][axis]);

@@ -29,11 +29,11 @@ const MAX_STEPS: usize = 24;
 /// between two.
 const MAX_WORK: usize = 4_000_000;
 
-/// The probability below which a trait that random pairs have in common is reported, divided by the number of variants
-/// of its row.
+/// The maximum probability that a reported trait is common by chance, before it is divided by the number of variants of
+/// its row.
 const CHANCE: f64 = 2e-3;
 
-/// The minimum number of wrong pairs per wrong pair that may lack a trait.
+/// One of this many wrong pairs may lack a trait that the others have in common.
 const EXCEPTION: u64 = 20;
 
 /// The maximum number of reported traits, if several distinguish pairs equally well.
@@ -88,7 +88,7 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
     })
 }
 
-/// Returns the traits that distinguish pairs of a kind that are applied never (0) or twice (2) from those applied once.
+/// Returns the traits that distinguish pairs that are applied `times` times (0 or 2) from pairs that are applied once.
 /// Of several traits, those with the fewest exceptions are returned.
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a share")]
@@ -96,7 +96,7 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let (wrong, right) = (pairs.times[times], pairs.times[1]);
     let counts = traits::variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
     let is_telling = |(one, exceptions, with): &(Variant, u64, u64)| {
-        // The share of all choices of as many pairs in which each pair has the trait.
+        // The probability that as many randomly chosen pairs all have the trait.
         let chance: f64 = (1..=wrong - exceptions).map(|i| (with + i) as f64 / (right + i) as f64).product();
         EXCEPTION * exceptions <= wrong && 2 * with <= right && chance * (one.row.variants() as f64) < CHANCE
     };
@@ -104,7 +104,7 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let Some(fewest) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
     let mut told: Vec<(Variant, u64, u64)> = Vec::new();
     for one in telling.into_iter().filter(|(_, exceptions, with)| exceptions + with == fewest) {
-        // The strictest of a row's variants is reported.
+        // Of a row's variants, the strictest one is reported.
         told.retain(|other| !std::ptr::eq(other.0.row, one.0.row));
         told.push(one);
     }

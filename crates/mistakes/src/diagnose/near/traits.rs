@@ -1,9 +1,9 @@
-//! The traits by which omitted or doubled pairs may differ from others, one row each.
+//! The traits by which omitted or doubled pairs may differ from others, with one row for each.
 use super::geometry::{BoundingBox, PlacedPair};
 use fosssim_model::sim::{PairKind, State};
 use fosssim_num::vector::{Vec2, length};
 
-/// A row of the trait table.
+/// A row of the table of traits.
 pub(super) struct TraitRow {
     /// The trait in plain words, after "in all of them"; `{axis}` is "horizontally" or "vertically".
     what: &'static str,
@@ -76,7 +76,7 @@ const COUNTS: &[f64] =
     &[0.0, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 16.0, 20.0, 32.0, 50.0, 64.0, 100.0, 128.0];
 const FACTORS: &[f64] = &[0.5, 1.0, 2.0, 4.0, 8.0];
 const SHARES: &[f64] = &[0.9, 0.75, 0.5, 0.25, 0.1];
-/// The numbers of earlier steps.
+/// The numbers of steps by which positions are traced back.
 const STEPS: &[f64] = &[16.0, 8.0, 4.0, 2.0, 1.0];
 const LENGTHS: &[f64] = &[0.1, 0.25, 0.5, 1.0, 2.0, 4.0, 5.0, 8.0, 10.0];
 

@@ -1,8 +1,8 @@
 //! Compares a logged polynomial with a given one, up to a positive scale and round-off.
 //!
 //! [`fosssim_judge::fair`] decides about right polynomials; this module compares with wrong formulas, within the same
-//! bounds. Coefficients are aligned at the constant term. The course's library has dropped missing coefficients because
-//! they are small.
+//! bounds. Coefficients are aligned at the constant term. Missing coefficients are small ones that the course's library
+//! has dropped.
 use fosssim_judge::fair::compare::compare;
 use fosssim_num::{
     bounded::{BoundedValue, UNIT_ROUNDOFF},
@@ -34,7 +34,7 @@ pub(super) fn coefficient_matches(expected: BoundedValue, logged: Option<f64>, s
 }
 
 /// Returns whether the logged polynomial is `scale` times the expected one. A program may also compute its coefficients
-/// from values of the polynomial, which spreads the rounding error of the largest over all.
+/// from values of the polynomial. Then all coefficients have the rounding error of the largest one.
 pub(super) fn matches(expected: &[BoundedValue], logged: &[f64], scale: f64) -> bool {
     let norm: f64 = expected.iter().map(|coefficient| coefficient.bound).sum();
     let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / TOLERANCE * norm;

@@ -21,7 +21,7 @@ fn example(study: &PolynomialStudy, case: &Case) -> Example {
         step: sample.step,
         place: ExamplePlace::Given { pair: sample.pair, pass: sample.pass, subject: study.subject },
         given: example_values(&sample.motion),
-        // As the course's library would log it.
+        // The polynomial in the form in which the course's library would log it.
         expected: Polynomial::trimmed(&expected).coefficients().to_vec(),
         actual: case.logged.to_vec(),
     }

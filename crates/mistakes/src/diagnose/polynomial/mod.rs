@@ -1,6 +1,6 @@
 //! Finds the mistake that makes detection polynomials wrong.
 //!
-//! Works on samples, which hold the inputs of a detection and the logged polynomials. A guess is rated by the number of
+//! The input are samples: the inputs of a detection, and the logged polynomials. A guess is rated by the number of
 //! samples that it reproduces to round-off, including right ones. Guesses are, from simple to intricate: the whole list
 //! of coefficients (`structure`: reversed, negated, cut, exchanged), the inputs (end positions, radii squared
 //! separately), misunderstandings with their own formula, one letter of a formula (`slips`), and the terms of single
@@ -40,19 +40,19 @@ const MAX_CLAIMS: usize = 128;
 /// The maximum number of other keys that an explanation reports.
 const MAX_OTHER_KEYS: usize = 5;
 
-/// The error, relative to the size of its terms, up to which a polynomial is right except for round-off.
+/// The maximum error of a polynomial that is right except for round-off, relative to the size of its terms.
 const NEARLY_RIGHT_ERROR: f64 = 1e-10;
 
-/// The maximum difference in cost from the best guess (see [`Candidate::cost`]) of guesses that are reported with it.
+/// Guesses that cost at most this much more than the best one (see [`Candidate::cost`]) are reported with it.
 const AS_LIKELY: f64 = 1.6;
 
 /// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if
 /// none is wrong. Partial reproductions come last. A mistake that several polynomials share is reported once. Counts
-/// are of polynomials. A polynomial without an explanation gets one with the key `unexplained` , which reproduces
+/// are of polynomials. A polynomial without an explanation gets one with the key `unexplained`, which reproduces
 /// nothing.
 ///
 /// A few hundred samples of each kind, from different steps and pairs and including right ones, are enough. Samples
-/// whose formulas overflow are left out. The samples of one kind should hold all of its polynomials.
+/// whose formulas overflow are left out. The samples of one kind should include all of its polynomials.
 #[must_use]
 pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     let subjects = PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied();
@@ -78,7 +78,7 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     explanations
 }
 
-/// Returns an explanation if no detection of a kind has all its polynomials.
+/// Returns the explanation that polynomials are missing, if no detection of a kind has all of them.
 fn missing(samples: &[Sample]) -> Option<Explanation> {
     let (mut subjects, mut details, mut count) = (Vec::new(), Vec::new(), 0);
     for kind in PairKind::ALL {
@@ -113,8 +113,8 @@ impl Suspect<'_> {
         self.candidates.iter().filter(|candidate| candidate.reproduced == self.study.cases.len())
     }
 
-    /// Returns all claims that would explain the polynomial: those of `guesses`, and known mistakes. Without any, a
-    /// single placeholder.
+    /// Returns all claims that would explain the polynomial: those of `guesses`, and known mistakes. If there is none,
+    /// returns a placeholder.
     fn list_claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
         let subject = self.study.subject;
         let guesses = guesses.flat_map(|guess| list_claims(subject, guess)).take(MAX_CLAIMS);
@@ -122,7 +122,7 @@ impl Suspect<'_> {
         if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
     }
 
-    /// Returns the separate explanation of this polynomial, which must have a guess.
+    /// Returns the explanation of this polynomial alone, which must have a guess.
     fn explanation(&self) -> Explanation {
         let (best, others) = (&self.candidates[0], self.complete_guesses());
         let first = list_claims(self.study.subject, best).swap_remove(0);
@@ -196,7 +196,7 @@ fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
     CATALOGUE.iter().filter(is_formula).filter(makes).map(|row| format!("{:?}/{}/", study.subject, row.id)).collect()
 }
 
-/// Returns a line of the exact form of a guess about `subjects`.
+/// Returns one detail of the exact form of a guess about `subjects`.
 fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     if let PolynomialDetail::Named { of_edges, .. } = &mut detail {
         *of_edges = subjects.iter().all(|subject| subject.kind() == PairKind::ParticleEdge);
@@ -204,7 +204,7 @@ fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     Detail::Polynomial(detail)
 }
 
-/// Returns all guesses about a polynomial. The guess that reproduces most comes first; of equal ones, the likeliest.
+/// Returns all guesses about a polynomial. The guess that reproduces most comes first; on a tie, the likeliest.
 fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::candidates(study);
     all.extend(misunderstandings(study));
@@ -217,7 +217,7 @@ fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     all
 }
 
-/// Returns the misunderstandings that have a name.
+/// Returns the guesses that the student misunderstood something, such as the end positions.
 fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
     let of = |named: &NamedEdit| {
         named.polynomial(study.subject, &study.cases.first()?.inputs)?;
@@ -272,8 +272,8 @@ fn explain_none(hopeless: &[Suspect]) -> Option<Explanation> {
     })
 }
 
-/// Returns the key of general guesses that reproduces all samples of the most polynomials; among equals the likeliest.
-/// A polynomial's own likeliest guess counts for that polynomial. `None` if no key reproduces all samples of a
+/// Returns the key of general guesses that reproduces all samples of the most polynomials; on a tie, the likeliest. A
+/// polynomial's own likeliest guess counts for that polynomial. `None` if no key reproduces all samples of a
 /// polynomial.
 fn best_shared_key(open: &[Suspect]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();

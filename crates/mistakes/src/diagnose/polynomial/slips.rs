@@ -12,11 +12,11 @@ use fosssim_student::assignments::t2m2::{
 enum Trial<'a> {
     /// The letter itself, multiplied by a factor.
     Scaled(f64),
-    /// Another letter.
+    /// The letter with this index instead.
     Letter(usize),
     /// A dot product, possibly with the wrong sign.
     Dot(&'a Ingredient, &'a Ingredient, f64),
-    /// The number 1.
+    /// The number 1 instead.
     One,
 }
 

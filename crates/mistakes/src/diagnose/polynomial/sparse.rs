@@ -9,11 +9,10 @@ use nalgebra::{DMatrix, DVector};
 /// A proposal: ascending column indices and their weights.
 pub(super) type Support = Vec<(usize, f64)>;
 
-/// The share of the target below which the square of a residual counts as zero; the normal equations are not more
-/// accurate.
+/// The squared residual that counts as zero, relative to the target. The normal equations are not more accurate.
 const SMALL_RESIDUAL: f64 = 1e-10;
 
-/// The minimum distance from linear dependence of columns that are used together.
+/// Columns that are used together must be at least this far from linear dependence.
 const INDEPENDENT: f64 = 1e-10;
 
 /// The maximum number of columns for which all triples are tried.
@@ -66,8 +65,8 @@ impl DesignMatrix {
         Self { indices, unit, norms, gram, likely: likely_count }
     }
 
-    /// Finds proposals for `target`, in the order of their sizes. Each call of `accept` gets one proposal and returns
-    /// whether it holds. Returns the accepted ones of the smallest size.
+    /// Finds proposals for `target`, in the order of their sizes. `accept` is called with each proposal, and returns
+    /// whether the proposal is correct. Returns the accepted ones of the smallest size.
     pub fn supports(&self, target: &[f64], mut accept: impl FnMut(&Support) -> bool) -> Vec<Support> {
         let square = dot(target, target);
         if !(square > 0.0 && square.is_finite()) {
@@ -149,8 +148,8 @@ struct Problem<'a> {
     square: f64,
 }
 
-/// An incomplete choice: its columns, Cholesky's factor row by row, the forward-substituted target, and the explained
-/// square.
+/// An incomplete choice of columns: their indices, the Cholesky factor row by row, the forward-substituted target, and
+/// the explained part of its squared length.
 #[derive(Default)]
 struct Partial {
     chosen: Vec<usize>,

@@ -134,7 +134,7 @@ fn add_other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     }
 }
 
-/// Adds guesses with only the polynomial's first or last coefficients.
+/// Adds guesses that only the first or last coefficients were logged.
 fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     for length in 1..=study.subject.degree() {
         let guess = if length == 1 { ListGuess::ConstantOnly } else { ListGuess::Cut };
@@ -146,8 +146,8 @@ fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     }
 }
 
-/// Returns the guess that every displacement has the same factor (velocities, for example), which shows as powers of it
-/// in the coefficients.
+/// Returns the guess that every displacement has the same factor (velocities, for example), so that each coefficient
+/// has a power of this factor.
 fn scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     let step = |case: &Case| Some(ratio(case, 1)? / ratio(case, 0)?);
     let factor = median(study.probes().filter_map(step).collect())?;

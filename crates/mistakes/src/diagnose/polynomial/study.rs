@@ -13,28 +13,28 @@ use fosssim_student::assignments::t2m2::{
 
 fosssim_model::drops_leading!();
 
-/// The maximum number of samples; more of them only take time.
+/// The maximum number of samples; more samples only take more time.
 const MAX_CASES: usize = 1200;
 
 /// The number of wrong samples on which a guess is tried before it is tried on all.
 const PROBES: usize = 12;
 
-/// The number of right samples per sample that may contradict a guess because of round-off.
+/// For each this many right samples, one may contradict a guess because of round-off.
 const SPARED: usize = 50;
 
-/// The relative difference below which ratios to the expected coefficients are equal. It covers the rounding of
-/// coefficients that cancel to a ten-thousandth of their terms.
+/// The relative difference below which ratios to the expected coefficients are equal. The limit allows for the rounding
+/// of coefficients whose terms cancel down to a ten-thousandth.
 const ALIKE: f64 = 1e-9;
 
 /// One polynomial of one sample.
 pub(super) struct Case<'a> {
-    /// The sample that holds the polynomial.
+    /// The sample that contains the polynomial.
     pub sample: &'a Sample,
     /// The logged coefficients.
     pub logged: &'a [f64],
     /// The inputs of the formulas.
     pub inputs: Inputs,
-    /// The coefficients that should have been logged; for the quintic the supplied form.
+    /// The coefficients that should have been logged; the quintic in the supplied form.
     pub expected: Vec<BoundedValue>,
     /// Whether the logged polynomials are right, in any accepted form.
     pub right: bool,
@@ -105,9 +105,9 @@ impl<'a> PolynomialStudy<'a> {
         self.probes.iter().map(|&index| &self.cases[index])
     }
 
-    /// Returns the number of samples that a predicted polynomial reproduces, with the submission's usual scale or none,
-    /// or otherwise with any positive scale; `None` if it reproduces fewer than half of the wrong samples. The flag is
-    /// set if another scale was needed.
+    /// Returns the number of samples that a predicted polynomial reproduces, with the submission's usual scale or
+    /// without one, or otherwise with any positive scale; `None` if it reproduces fewer than half of the wrong samples.
+    /// The flag is set if another scale was needed.
     pub fn count(&self, predict: impl Fn(&Case) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &Case| {
             let predicted = predict(case);
@@ -142,7 +142,8 @@ impl<'a> PolynomialStudy<'a> {
             }
         }
         let all_right = self.cases.len() - self.wrong;
-        // A mistake that reproduces all wrong samples may depend on a condition, so right ones do not contradict it.
+        // A mistake that reproduces all wrong samples may occur only under a condition, so right samples do not
+        // contradict it.
         let is_enough = wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SPARED);
         is_enough.then_some(wrong + right)
     }
@@ -174,7 +175,8 @@ impl<'a> PolynomialStudy<'a> {
     /// Finds the positive factor that most coefficients agree on: 1, another factor for all samples, or one for each
     /// sample.
     fn find_scales(&mut self) {
-        // Another scale must be better by a tenth, because the median ratio always agrees with some coefficient.
+        // A scale other than 1 must match a tenth more coefficients, because the median ratio always matches some
+        // coefficient.
         let unscaled = self.agreement(|_| 1.0) * 1.05 + 0.1 * self.cases.len() as f64 + 1.0;
         let mut best: (f64, Option<Vec<f64>>) = (unscaled, None);
         for anchor in 0..=self.subject.degree() {
@@ -196,7 +198,7 @@ impl<'a> PolynomialStudy<'a> {
                 .map(|case| scale_fitted_to(&case.expected, case.logged, |power| powers.contains(&power)))
                 .map(|scale| scale.unwrap_or(usual))
                 .collect();
-            // One coefficient of each sample always agrees with a scale that was fitted to it.
+            // A scale that is fitted to each sample always matches one coefficient of it.
             let agreement = self.agreement(|index| each[index]) - self.cases.len() as f64;
             if agreement > best.0 {
                 best = (agreement, Some(each));
@@ -229,7 +231,7 @@ impl<'a> PolynomialStudy<'a> {
     }
 
     /// Returns the number of logged coefficients that match the expected ones with the given scales. Dropped
-    /// coefficients prove nothing, because all of them could be right with a small scale.
+    /// coefficients are not counted, because with a small scale all of them could be right.
     fn agreement(&self, scale: impl Fn(usize) -> f64) -> f64 {
         let agreeing = |(index, case): (usize, &Case)| {
             let agrees = |power: &usize| {
@@ -289,8 +291,8 @@ fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
     fitted_scale(predicted, case.logged).is_some_and(|scale| matches(predicted, case.logged, scale))
 }
 
-/// Excuses samples with a small scale, for which the course's library drops relevant coefficients. The remaining ones
-/// may not show the scale, but the other samples do.
+/// Treats wrong samples as right if they match with the usual scale of right samples. With a small scale, the course's
+/// library drops coefficients that matter, so the scale cannot be fitted to each sample.
 fn forgive_small_scales(cases: &mut [Case]) {
     let scales = cases.iter().filter(|case| case.right).filter_map(|case| fitted_scale(&case.expected, case.logged));
     let Some(usual) = median(scales.collect()) else { return };
@@ -299,7 +301,7 @@ fn forgive_small_scales(cases: &mut [Case]) {
     }
 }
 
-/// Keeps at most [`MAX_CASES`] samples, most of them wrong, in order.
+/// Keeps at most [`MAX_CASES`] samples in their order, preferring wrong ones.
 fn thin(cases: Vec<Case>) -> Vec<Case> {
     if cases.len() <= MAX_CASES {
         return cases;

@@ -10,23 +10,23 @@ use crate::diagnose::{CoefficientGuess, Guess, PolynomialDetail, Weight};
 use fosssim_num::bounded::BoundedValue;
 use fosssim_student::assignments::t2m2::{Reading, formulas::Formula};
 
-/// The maximum number of wrong samples in a fit, which uses half as many right ones.
+/// The maximum number of wrong samples in a fit, which also uses half as many right samples.
 const MAX_ROWS: usize = 240;
 
-/// The minimum number of samples with the coefficient; with fewer, samples that lack it are used as well.
+/// The number of samples with the coefficient below which samples without it are used as well.
 const MIN_ROWS: usize = 12;
 
-/// The step of which weights are multiples.
+/// Weights are multiples of this step.
 const WEIGHT_STEP: f64 = 0.25;
 
-/// The maximum distance of a fitted weight from a multiple of the step, in steps; the normal equations keep this
-/// accuracy of 16 digits.
+/// The maximum distance of a fitted weight from a multiple of the step, in steps; the normal equations are accurate
+/// enough for this.
 const SNAPPING: f64 = 1e-3;
 
 /// The largest weight that is considered a slip.
 const MAX_WEIGHT: f64 = 64.0;
 
-/// The maximum number of other explanations of a coefficient that are reported.
+/// The maximum number of alternative explanations of a coefficient that are reported.
 const MAX_ALTERNATIVES: usize = 3;
 
 /// The maximum number of forms of a polynomial that are compared with those of other traces.
@@ -39,7 +39,7 @@ const UNKNOWN_COST: f64 = 20.0;
 enum Edit {
     /// The coefficient has an additional factor.
     Factor(BoundedValue),
-    /// The coefficient has products with additional weights.
+    /// The weights of some products in the coefficient are changed by these amounts.
     Terms(Vec<(usize, f64)>),
     /// The change is unknown.
     Unknown,
@@ -66,7 +66,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
     let fitting = Fitting::new(study, formula, reading);
     let wrong = (0..=formula.degree).rev().filter(|&power| fitting.is_wrong(power));
     let guesses: Vec<FormulaGuess> = wrong.map(|power| fitting.explain(power)).collect();
-    // A polynomial without any explained coefficient needs no candidate.
+    // A polynomial without an explained coefficient is not a candidate.
     guesses.iter().find(|guess| !matches!(guess.edit(), Edit::Unknown))?;
     let holds = |index: usize| {
         let case = &study.cases[index];
@@ -152,7 +152,7 @@ impl<'a> Fitting<'a> {
         FormulaGuess { power, edits }
     }
 
-    /// Returns a constant factor of the coefficient.
+    /// Returns the constant factor by which the coefficient is wrong, if there is one.
     fn factor(&self, power: usize) -> Option<(BoundedValue, f64)> {
         let ratios = (0..self.study.cases.len()).filter_map(|index| {
             let (case, expected) = (self.case(index), self.coefficient(index, power));
@@ -160,7 +160,7 @@ impl<'a> Fitting<'a> {
             (expected.value.abs() > 1e-3 * expected.bound).then(|| value / (case.scale * expected.value))
         });
         let factor = median(ratios.collect())?;
-        // The sum turns -0 into 0.
+        // Adding 0 turns -0 into 0.
         let simple = (factor * 12.0).round() / 12.0 + 0.0;
         let is_simple = (factor - simple).abs() < 1e-12;
         let factor = if is_simple {
@@ -176,7 +176,7 @@ impl<'a> Fitting<'a> {
         self.explains_all(power, &Edit::Factor(factor)).then_some((factor, cost))
     }
 
-    /// Returns all smallest changes of the coefficient's terms that hold for all samples, with their costs.
+    /// Returns the changes of the fewest terms that explain the coefficient in all samples, with their costs.
     fn term_changes(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
         let rows = self.rows(power);
         let scaled = |index: usize, value: f64| value / self.coefficient(index, power).bound;
@@ -210,7 +210,7 @@ impl<'a> Fitting<'a> {
         if found.is_empty() { self.lost_products(power) } else { found }
     }
 
-    /// Returns the changes in which a term's letters are added instead of multiplied.
+    /// Returns changes in which the letters of a term are added instead of multiplied.
     fn lost_products(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
         let sums = (0..self.dictionary.products.len()).filter_map(|product| {
             let weight = self.dictionary.weight(self.formula, power, product);
@@ -249,7 +249,7 @@ impl<'a> Fitting<'a> {
             self.coefficient(index, power).bound > 0.0 && logged.unwrap_or(0.0).is_finite()
         };
         let all: Vec<usize> = (0..self.study.cases.len()).filter(usable).collect();
-        // A dropped coefficient is known only to 1e-12, which is too inaccurate for a fit.
+        // A dropped coefficient is known only up to 1e-12, which is too inaccurate for a fit.
         let logged = |&index: &usize| logged_at(self.case(index).logged, power).is_some();
         let present: Vec<usize> = all.iter().copied().filter(logged).collect();
         let (right, wrong): (Vec<usize>, Vec<usize>) = if present.len() < MIN_ROWS { all } else { present }
@@ -288,7 +288,7 @@ impl Fitting<'_> {
             Edit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,
             Edit::Factor(factor) if factor.value == -1.0 => CoefficientGuess::Sign,
             Edit::Factor(_) => CoefficientGuess::Factor,
-            // An unexplained coefficient is not a separate guess (see `candidate`).
+            // An unexplained coefficient does not make a guess of its own (see `candidate`).
             Edit::Unknown => CoefficientGuess::Several,
             Edit::Terms(changes) => match changes[..] {
                 [change] => match self.weights(guess.power, change) {

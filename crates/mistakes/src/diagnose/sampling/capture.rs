@@ -1,4 +1,4 @@
-//! The results of the reference in one step, in the form of a trace.
+//! Records the results of the reference in one step, in the form of a trace.
 use super::compare::StepRecords;
 use fosssim_model::{
     assignments::ImpulseList,
@@ -7,7 +7,7 @@ use fosssim_model::{
     trace::PolynomialLog,
 };
 
-/// The observer that keeps a step.
+/// The observer that keeps the records of a step.
 #[derive(Debug, Default)]
 pub struct Capture {
     /// Whether the reference's impulses are logged; in `hybrid` they are not.

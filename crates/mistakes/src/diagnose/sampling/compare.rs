@@ -26,7 +26,7 @@ pub struct Tolerance {
     /// The tolerance of a coefficient, relative to itself.
     pub coefficient: f64,
     /// The tolerance of a coefficient, relative to the largest one of its polynomial: if the terms of a coefficient
-    /// cancel, its round-off is that of the terms.
+    /// cancel, its round-off is as large as that of the terms.
     pub floor: f64,
     /// The tolerance of a coordinate or a velocity, relative to the largest one of its kind plus 1.
     pub state: f64,
@@ -54,7 +54,7 @@ impl Tolerance {
     }
 }
 
-/// The tolerance beyond which a difference is clearly not round-off.
+/// The tolerance above which a difference is clearly not round-off.
 pub const PLAIN: Tolerance = Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
 
 /// The tolerance for a step whose start and end states were rounded to single precision.
@@ -68,7 +68,7 @@ pub struct LoggedNumbers {
     pub state: State,
     /// The impulse list.
     pub impulses: Vec<LoggedImpulse>,
-    /// The polynomial list, small leading coefficients dropped.
+    /// The polynomial list, without small leading coefficients.
     pub polynomials: PolynomialLog,
 }
 
@@ -172,13 +172,13 @@ pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Toler
     (!same_mid).then_some(StepDifference::MidLists)
 }
 
-/// Returns whether two lists hold the same polynomials in the same order.
+/// Returns whether two lists contain the same polynomials in the same order.
 pub fn same_polynomials(ours: &PolynomialLog, theirs: &PolynomialLog, by: &Tolerance) -> bool {
     ours.len() == theirs.len() && ours.iter().zip(theirs.iter()).all(|(ours, theirs)| same_polynomial(ours, theirs, by))
 }
 
-/// Returns whether one polynomial is a positive multiple of the other (highest power first, small leading coefficients
-/// dropped).
+/// Returns whether one polynomial is a positive multiple of the other (both with the highest power first and without
+/// small leading coefficients).
 pub fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
     if multiple(expected, actual, 1.0, by) {
         return true;
@@ -212,7 +212,7 @@ fn power_of(coefficients: &[f64], power: usize) -> f64 {
     coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
 }
 
-/// Returns whether two lists hold the same contacts in any order.
+/// Returns whether two lists contain the same contacts in any order.
 fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Tolerance) -> bool {
     if ours.len() != theirs.len() {
         return false;
@@ -257,7 +257,7 @@ pub fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<
 
 fn same_number(ours: f64, theirs: f64, within: f64) -> bool {
     let distance = (ours - theirs).abs();
-    // The bound of an infinite number is infinite, so only the same infinity is near it.
+    // An infinite number has an infinite bound, so only the same infinity counts as equal.
     ours == theirs || (ours.is_nan() && theirs.is_nan()) || (distance <= within && distance.is_finite())
 }
 

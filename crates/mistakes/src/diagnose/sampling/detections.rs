@@ -1,8 +1,8 @@
 //! Collects the data for explanations of polynomials: detections with certain inputs, and their logged polynomials.
 //!
-//! The inputs of a detection pass are the start and the end positions of the step. The trace holds the start; the end
-//! is the integrator's result, before any response. The samples are therefore from the first pass of each step, and in
-//! hybrid scenes also from the first pass of the geometric part, which starts from the mid record.
+//! The inputs of a detection pass are the start and the end positions of the step. The trace contains the start. The
+//! end is the integrator's result, before any response. The samples are therefore from the first pass of each step, and
+//! in hybrid scenes also from the first pass of the geometric part, which starts from the mid record.
 use super::{reference::Reference, source::StepFrames};
 use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
@@ -24,8 +24,8 @@ pub struct Sample {
     /// The inputs, from the submission's own states.
     pub motion: PairMotion,
     /// The logged coefficients, one list per polynomial of the kind in the trace's order (2 or 4); each highest power
-    /// first and without the small leading coefficients that the course's library drops. With fewer lists, the last
-    /// polynomials are missing.
+    /// first and without the small leading coefficients that the course's library drops. If there are fewer lists, the
+    /// last polynomials are missing.
     pub polynomials: Vec<Vec<f64>>,
 }
 
@@ -65,8 +65,8 @@ impl<'a> Detections<'a> {
         Self { scene, kinds: ByKind::default() }
     }
 
-    /// Collects the samples of a step. If the step has no result, the trace is unusable from here on, and the samples
-    /// so far are kept.
+    /// Collects the samples of a step. If a step has no result, the rest of the trace is not used, and the samples so
+    /// far are kept.
     pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
         let is_full = self.kinds.values().all(|kind| kind.wrong >= MAX_WRONG);
         if is_full || !Layout::for_scene(self.scene).has_polynomials {
@@ -93,7 +93,8 @@ struct Gatherer<'a> {
     kinds: &'a mut ByKind<OfKind>,
     /// The number of logged polynomials of each detection, usually all.
     sizes: Option<ByKind<usize>>,
-    /// The number of the pass and its next polynomial in the list, for examined passes.
+    /// The number of the pass, and the index of its next polynomial in the list; `None` in passes that are not
+    /// examined.
     next: Option<(u32, usize)>,
 }
 
@@ -105,7 +106,7 @@ impl Gatherer<'_> {
     }
 }
 
-/// Returns the number of logged polynomials of each detection for which the lists consist of whole passes: all
+/// Returns the number of polynomials that each detection logs, such that the list consists of whole passes: all
 /// polynomials if possible, otherwise as many as possible. `None` if no numbers fit. `pairs` are the pairs of one pass.
 fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize>> {
     let fits = |sizes: &ByKind<usize>| {
@@ -117,7 +118,7 @@ fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize
         return Some(full);
     }
     let there: Vec<PairKind> = PairKind::ALL.into_iter().filter(|kind| pairs[*kind] > 0).collect();
-    // Kinds without a pair have one choice.
+    // For kinds without a pair there is only one choice.
     let mut choices = vec![full];
     for &kind in &there {
         let with =
@@ -126,7 +127,7 @@ fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize
     }
     let changes = |sizes: &ByKind<usize>| there.iter().filter(|kind| sizes[**kind] != full[**kind]).count();
     let is_empty = |sizes: &ByKind<usize>| there.iter().any(|kind| sizes[*kind] == 0);
-    // Fewest changes first: a student may forget a part of one detection, but rarely of two.
+    // The fewest changes come first, because a student may forget a part of one detection, but rarely of two.
     choices.sort_by_key(|sizes| (changes(sizes), std::cmp::Reverse(sizes.values().sum::<usize>())));
     let mut fitting = choices.into_iter().filter(fits);
     let first = fitting.next()?;
@@ -158,7 +159,7 @@ impl Steer for Gatherer<'_> {
         let (Some((pass, index)), Some(sizes)) = (self.next, self.sizes) else { return };
         let size = sizes[pair.kind];
         let lists = index..index + size;
-        // Polynomials after a contact of the submission depend on a response that is not logged.
+        // After a contact of the submission, polynomials depend on a response that is not logged.
         self.next = (!self.is_hit(pair)).then_some((pass, lists.end));
         if lists.end > self.log.len() {
             self.next = None;

@@ -14,9 +14,9 @@ pub struct Reference<'a> {
     pub trials: Cell<u64>,
 }
 
-/// The maximum number of polynomials that programs with mistakes may compute for one explanation, plus unusual steps of
-/// root searches. Explanations of sample programs take up to four million. With a lower limit, combined mistakes are no
-/// longer found; with a higher limit, a hostile trace takes longer to explain.
+/// The maximum number of polynomials that programs with mistakes may compute for one explanation. Unusual steps of root
+/// searches count, too. Explanations of sample programs need up to four million. With a lower limit, combinations of
+/// mistakes are no longer found; with a higher limit, a hostile trace takes longer to explain.
 const TRIALS: u64 = 5_000_000;
 
 impl<'a> Reference<'a> {

@@ -19,7 +19,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The maximum number of kept steps, wrong and right.
 const MAX_WRONG: usize = 200;
 const MAX_RIGHT: usize = 40;
-/// The number of similar steps that are all kept, after which only one out of this number is kept.
+/// The first this many similar wrong steps are all kept; of further ones, only some are kept.
 const FIRST_ALIKE: u32 = 8;
 const ALIKE: u32 = 16;
 /// The number of similar right steps that are kept.
@@ -40,7 +40,7 @@ pub struct KeptStep {
     pub records: StepRecords,
     /// The first difference from the reference; `None` for right steps.
     pub difference: Option<StepDifference>,
-    /// Facts that depend on the previous record.
+    /// Facts that depend on the step and the previous one.
     pub context: Context,
     /// A number that similar steps share.
     pub signature: u64,
@@ -49,11 +49,11 @@ pub struct KeptStep {
 /// Facts that follow from the step and the previous one.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Context {
-    /// Whether the record would be right without the previous step's polynomials at its front.
+    /// Whether the record would be right if the polynomials of the previous step were removed from its front.
     pub polynomials_kept: bool,
-    /// Whether the record would be right without the previous step's impulses at its front.
+    /// Whether the record would be right if the impulses of the previous step were removed from its front.
     pub impulses_kept: bool,
-    /// Whether all positions or all velocities have single precision, and the step is otherwise right.
+    /// Whether all positions or all velocities have single precision, and the step is right apart from this.
     pub single_precision: bool,
     /// Whether velocities change by the expected change plus their change in the previous step.
     pub forces_kept: bool,
@@ -95,7 +95,7 @@ pub struct Scanner {
     scan: Scan,
     seen: BTreeMap<(bool, u64), u32>,
     memory: usize,
-    /// Wrong steps that end in values that are not finite, although they have events.
+    /// Wrong steps with events that end in values that are not finite.
     not_finite: Vec<KeptStep>,
     /// The number of the previous step, and the change of its velocities.
     last: Option<(u32, Vec<f64>)>,
@@ -151,7 +151,7 @@ impl Scanner {
         } else {
             self.scan.right.len() < MAX_RIGHT && number < RIGHT_ALIKE
         };
-        // The first wrong step is always kept, because without one there is nothing to explain.
+        // The first wrong step is always kept, so that there is something to explain.
         if !wanted || (self.memory > MAX_MEMORY && !self.scan.wrong.is_empty()) {
             return;
         }

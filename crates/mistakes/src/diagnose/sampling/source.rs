@@ -1,4 +1,4 @@
-//! The records of a trace for explanations: step by step, up to the end of the kept part.
+//! Reads the records of a trace for explanations, step by step, up to the end of the kept part.
 use super::compare::LoggedNumbers;
 use fosssim_judge::kept::{KeptTrace, MAX_KEPT_BYTES};
 use fosssim_model::{
@@ -50,7 +50,7 @@ pub struct Outline {
     /// The first records.
     pub opening: Vec<LoggedNumbers>,
     opening_memory: usize,
-    /// The number of records with small leading coefficients, which the course's library drops.
+    /// The number of records that contain small leading coefficients, which the course's library would drop.
     pub padded: u64,
     /// The number of records of the trace, if its end was reached.
     pub records: Option<u64>,
@@ -59,22 +59,22 @@ pub struct Outline {
 }
 
 impl Outline {
-    /// Returns whether the first record belongs to another scene. Programs do not compute it, so it differs from the
-    /// scene's initial state at most by rounding to single precision.
+    /// Returns whether the first record belongs to another scene. Programs only copy this record, so it differs from
+    /// the scene's initial state at most by rounding to single precision.
     pub fn is_of_other_scene(&self, scene: &Scene) -> bool {
         let Some(first) = self.opening.first() else { return false };
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
         let differs = |ours: &[f64], theirs: &[f64]| {
             let largest = ours.iter().fold(1.0_f64, |largest, value| largest.max(value.abs()));
-            // No scene has a value that is not finite.
+            // All values of a scene are finite.
             ours.iter().zip(theirs).any(|(o, t)| t.is_finite() && (o - t).abs() > FIRST_RECORD * largest)
         };
         let initial = simulation.state();
         differs(&initial.positions, &first.state.positions) || differs(&initial.velocities, &first.state.velocities)
     }
 
-    /// Reads a record. Returns false after the last undamaged one, because the rest of a damaged record proves no
-    /// mistake.
+    /// Reads a record. Returns `false` after the last undamaged record, because the rest of a damaged trace does not
+    /// prove a mistake.
     fn read(&mut self, reader: &mut Lenient<&[u8]>, frame: &mut LenientFrame) -> bool {
         match reader.next(frame) {
             Ok(()) if frame.note.is_some() => false,

@@ -1,5 +1,5 @@
-//! The evidence of the impulse lists of `continuous-time`: surplus and missing contacts, their vectors and times, and
-//! the order of pairs.
+//! Finds faults in the impulse lists of `continuous-time`: surplus and missing contacts, wrong vectors and times, and a
+//! wrong order of pairs.
 use super::{
     ALIKE, Explanation, common_value,
     events::{Hit, StepFacts},
@@ -12,7 +12,8 @@ use crate::diagnose::{
 use fosssim_model::{sim::PairKind, trace::LoggedImpulse};
 use fosssim_num::vector::{Vec2, length};
 
-/// Returns the explanation that the pairs of the first pass are in another order, if all its polynomials are there.
+/// Returns the explanation that the pairs of the first pass are in a different order, if all polynomials of the pass
+/// are logged.
 pub(super) fn order(facts: &[StepFacts]) -> Option<Explanation> {
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula()).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
@@ -45,7 +46,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
                 && (first..end)
                     .all(|index| same_polynomial(ours.get(index), theirs.get(at + index - first), &ROUND_OFF))
         };
-        // The expected pair is tried first, then the next one in order, in case of similar pairs.
+        // The expected pair is tried first, then the following ones, because pairs may be similar.
         let own = left.iter().position(|block| block.1 == at && is_here(block));
         let later = left.iter().position(|block| block.0 >= last && is_here(block));
         let Some(index) = own.or(later).or_else(|| left.iter().position(is_here)) else {
@@ -63,7 +64,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
     misplaced > 0 && (found == pairs || is_spoilt)
 }
 
-/// The relative error up to which a contact vector has only lost digits.
+/// The maximum relative error of a contact vector that is only inaccurate.
 const INEXACT: f64 = 1e-5;
 
 /// The contacts of all steps, with those of the reference.
@@ -81,7 +82,7 @@ struct ContactStage {
 pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     facts.iter().filter(|facts| facts.is_continuous()).for_each(|facts| contacts.compare_step(facts));
-    // A wrong time may also make decisions wrong.
+    // A wrong time may also cause wrong decisions.
     contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
 }
 
@@ -168,7 +169,7 @@ impl ContactStage {
             self.right.push((kind, hit.time));
             return true;
         }
-        // The vector belongs to the time: with a wrong time, it must be wrong as well.
+        // The contact vector is evaluated at the impact time, so a wrong time implies a wrong vector.
         if same_impulse(&LoggedImpulse { normal: impulse.normal, ..expected }, impulse, &ROUND_OFF) {
             self.vectors.push((kind, hit.normal, impulse.normal));
         } else {

@@ -49,7 +49,7 @@ struct Events {
     zones: Vec<ZoneFacts>,
     detections: Vec<(Pair, usize)>,
     polynomials: usize,
-    /// Edge approaches in the other accepted form, with their index.
+    /// The approach polynomials of edges in the other accepted form, each with its index.
     other_forms: Vec<(usize, Vec<f64>)>,
 }
 
@@ -60,7 +60,7 @@ struct StepEvents<'a> {
 }
 
 impl StepEvents<'_> {
-    /// Keeps the right form of an edge's approach, if it differs from the course's.
+    /// Keeps the mathematically right approach polynomial of an edge, if it differs from the course's form.
     fn keep_other_form(&mut self, detection: &Detection<'_>) {
         let &Detection { pair, q_start, q_end, .. } = detection;
         if pair.kind != PairKind::ParticleEdge {
@@ -202,8 +202,8 @@ impl StepFacts {
         is_whole.then(|| (first / size, (all - first) / size))
     }
 
-    /// Returns whether a logged pass (from 0) is about the motion from the start of the step to the positions `end`,
-    /// judged by the pairs for whose index in the pass `is_asked` is true.
+    /// Returns whether a logged pass (from 0) describes the motion from the start of the step to the positions `end`,
+    /// judged by the pairs whose index in the pass `is_asked` accepts.
     pub(super) fn detects(&self, scene: &Scene, pass: usize, end: &[f64], is_asked: impl Fn(Pair) -> bool) -> bool {
         let (logged, size) = (&self.actual.end.polynomials, self.pass_size());
         if (pass + 1) * size > logged.len() {

@@ -56,7 +56,7 @@ fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
         }
     }
     let sort = |ordering: Ordering| seen.iter().filter(|(ours, theirs)| theirs.cmp(ours) == ordering).count();
-    // Most of the faults must be of this kind; the others may follow from it.
+    // Most of the faults must be of this kind; the other faults may follow from it.
     if seen.is_empty() || 2 * seen.len() < wrong.len() {
         return None;
     }
@@ -101,7 +101,7 @@ fn differs(ours: &[f64], theirs: &[f64]) -> Option<usize> {
     ours.iter().zip(theirs).position(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
 }
 
-/// Returns the explanation of steps whose polynomials are all right, but whose state after the loop is wrong.
+/// Returns the explanation of steps whose polynomials are right but whose state after the loop is wrong.
 fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanation> {
     let (mut ran_out, mut ended, mut positions, mut velocities) = (0, 0, false, false);
     let mut or_response = false;
@@ -115,7 +115,7 @@ fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanatio
         velocities |= differs(&expected.state.velocities, &actual.state.velocities).is_some();
         let has_geometric = facts.passes.iter().any(|pass| matches!(pass.stage, Stage::Geometric { .. }));
         *(if has_geometric { &mut ran_out } else { &mut ended }) += 1;
-        // The polynomials show the positions up to the last pass, but no velocities.
+        // The polynomials depend on the positions before the last pass, but not on velocities.
         or_response |= !facts.hits.iter().all(|hit| responses.is_right(hit.pair.kind));
     }
     let count = ran_out + ended;
@@ -142,7 +142,7 @@ struct SecondPass {
     right: usize,
     /// The number of isolated contacts with wrong velocities afterwards.
     wrong: usize,
-    /// The number of contacts that changed nothing.
+    /// The number of isolated contacts that changed nothing.
     unresolved: usize,
     contacts: usize,
 }

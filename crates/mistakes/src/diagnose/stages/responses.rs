@@ -1,4 +1,4 @@
-//! The changes caused by isolated contacts, body by body.
+//! Examines the changes that isolated contacts cause, body by body.
 use super::{
     ALIKE, Explanation, common_value,
     events::{Hit, StepFacts},
@@ -12,15 +12,15 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, unit};
 use std::collections::BTreeMap;
 
-/// The relative size (to the numbers, and 1) below which changes are round-off.
+/// The size below which changes count as round-off, relative to the numbers or 1, whichever is larger.
 const SMALL: f64 = 1e-11;
 
 /// The change caused by a contact.
 #[derive(Debug, Clone, Copy)]
 struct Change {
-    /// The ratio to the expected value along the contact vector; `None` if that is zero.
+    /// The ratio to the expected value along the contact vector; `None` if the expected value is zero.
     ratio: Option<f64>,
-    /// Whether the component across the contact vector also changed.
+    /// Whether the component perpendicular to the contact vector also changed.
     across: bool,
     is_right: bool,
 }
@@ -125,7 +125,7 @@ fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'
         Some(Stage::ContinuousTime) => (&facts.expected.end.state, &facts.actual.end.state),
         Some(Stage::Impulses { .. }) => {
             let Some((expected, actual)) = facts.middles() else { return Vec::new() };
-            // The result of a loop that has used all its rounds is checked separately.
+            // If a loop has used all its rounds, its result is checked separately.
             let ran_out = rounds < facts.passes.len();
             if ran_out || expected.polynomials.len() != actual.polynomials.len() {
                 return Vec::new();

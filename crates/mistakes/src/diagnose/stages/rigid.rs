@@ -1,7 +1,7 @@
 //! Impact zones and the rigid failsafe: steps whose first part is right.
 //!
-//! Faults in zones show if other zones, moved correctly, explain the particles' positions. Faults in the failsafe show
-//! in right zones: those of one contact, or whose particles move as one body.
+//! A zone is wrong if other zones, moved correctly, explain the particles' positions. The failsafe is examined on right
+//! zones: those with one contact, or with particles that move as one body.
 use super::{
     ALIKE, Explanation, common_value,
     events::StepFacts,
@@ -25,7 +25,7 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     }
     let is_seen = |facts: &&StepFacts| facts.has_right_middle() && !may_be_round_off(scene, facts);
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong).filter(is_seen).collect();
-    // Other steps have another fault, which may affect these steps as well.
+    // The other steps have a different fault, which may affect these steps as well.
     if wrong.is_empty() || facts.iter().any(|facts| facts.is_wrong && !facts.has_right_middle()) {
         return None;
     }
@@ -115,8 +115,8 @@ fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     Some(observation(StageFault::ZoneRounds(rounds), Vec::new(), wrong.len()))
 }
 
-/// Returns the explanation of steps whose polynomials are all right, but not their end: the velocities of zones with
-/// right positions.
+/// Returns the explanation of steps whose polynomials are right but whose end states are wrong: the velocities of zones
+/// with right positions.
 fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     let mut measured = MotionErrors::default();
     for facts in ends {
@@ -148,7 +148,7 @@ struct ZoneMotions {
     /// The ratios of the new to the previous velocities of zones that must stop.
     stopped: Vec<f64>,
     has_stopped_otherwise: bool,
-    /// The numbers of zones whose particles do not keep their distances: zones of several contacts, and of one contact.
+    /// The number of zones of several contacts whose particles do not keep their distances.
     bent_of_many: usize,
     bent_of_one: usize,
     bent_stops: usize,
@@ -198,7 +198,7 @@ impl ZoneMotions {
         let all = self.fates.len();
         let wrong = all - self.count(Fate::Right);
         let count = |fault: WrongZones| self.count(Fate::Wrong(fault));
-        // Results that prove the failsafe right come first.
+        // Check first the results that prove the failsafe right.
         let faults = [
             WrongZones::NotMerged,
             WrongZones::Joined,
@@ -262,7 +262,8 @@ impl MotionErrors {
                 [(&expected, ours), (end, theirs)].map(|(state, center)| turn(zone, start, from, state, center));
             let is_once_round = spin(scene, zone, start, first.middle).abs() < std::f64::consts::PI;
             if !is_once_round {
-                // Only the remainder of such a rotation is visible, which shows neither the angle nor the direction.
+                // Of a rotation by more than half a turn only the remainder is visible, which shows neither the angle
+                // nor the direction.
                 self.turns.push(if (angle - right).abs() <= MIN_TURN { 1.0 } else { f64::NAN });
             } else if right.abs() > MIN_TURN {
                 self.turns.push(angle / right);
@@ -313,7 +314,7 @@ impl MotionErrors {
     }
 }
 
-/// Returns the fault in the rotations of zones, if some do not turn as expected.
+/// Returns the fault in the rotations of zones, if some zones do not rotate as expected.
 fn describe_turn(ratios: &[f64]) -> WrongMotion {
     let wrong = || ratios.iter().filter(|ratio| !((*ratio - 1.0).abs() <= ALIKE));
     if wrong().all(|ratio| ratio.abs() <= ALIKE) {

@@ -47,7 +47,7 @@ fn wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<Wrong
         if is_wrong(new, right) {
             entries.push(WrongEntry { index, quantity: Quantity::Velocity, actual: new - v, expected: right - v });
         }
-        // A simple response changes velocities after the integrator.
+        // The simple response changes velocities after the integrator.
         let rate = match scene.integrator {
             Integrator::ExplicitEuler => v,
             _ if matches!(scene.collision, Collision::Simple { .. }) => continue,

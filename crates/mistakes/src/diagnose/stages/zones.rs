@@ -11,9 +11,9 @@ use fosssim_num::{
     vector::{Vec2, at, divide, length, put},
 };
 
-/// The relative size (to the numbers, and 1) below which differences are round-off.
+/// The size below which differences count as round-off, relative to the numbers or 1, whichever is larger.
 pub(super) const SMALL: f64 = 1e-9;
-/// The size of the largest zone of which every subset is tried.
+/// The maximum number of particles of a zone for which every subset is tried.
 const MAX_PARTICLES: usize = 8;
 const MAX_CONTACTS: usize = 5;
 
@@ -38,7 +38,7 @@ impl Group {
         Self::from_particles(particles, groups.iter().any(|group| group.half_plane))
     }
 
-    /// Returns whether the zone must end where it started: it holds a half-plane or a fixed particle.
+    /// Returns whether the zone must end where it started: it contains a half-plane or a fixed particle.
     pub(super) fn stops(&self, scene: &Scene) -> bool {
         self.half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
     }
@@ -51,7 +51,7 @@ impl Group {
 /// The result of a zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Fate {
-    /// The expected zone.
+    /// The zone is the expected one.
     Right,
     /// The zone was not moved or stopped as expected.
     Wrong(WrongZones),
@@ -134,7 +134,7 @@ impl<'a> FirstRound<'a> {
         }
     }
 
-    /// Returns whether a zone's particles end where its contacts lead if they are moved separately in every round, or
+    /// Returns whether a zone's particles end where they would if its contacts were moved separately in every round, or
     /// not all together.
     pub(super) fn is_split(&self, zone: &Group) -> bool {
         self.partitions(zone).into_iter().any(|groups| {
@@ -200,7 +200,7 @@ impl<'a> FirstRound<'a> {
         if zone.particles.len() > MAX_PARTICLES {
             return None;
         }
-        // A part of the zone, alone or with particles of no zone.
+        // Try a part of the zone, alone or with particles that are in no zone.
         let parts = (1..1_u32 << zone.particles.len()).map(|bits| {
             let is_in = |(bit, _): &(usize, &usize)| bits >> bit & 1 == 1;
             zone.particles.iter().enumerate().filter(is_in).map(|(_, one)| *one).collect::<Vec<usize>>()
@@ -212,7 +212,7 @@ impl<'a> FirstRound<'a> {
                 let moved = self.moved_state(&[group]);
                 is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &left)
             };
-            // A particle with the expected position was not left out.
+            // A particle with the expected position was not omitted.
             let is_left = || left.iter().any(|&one| !self.is_at(&self.expected_state(zone), one));
             if is_left()
                 && [false, zone.half_plane].iter().any(|flag| leads_there(&Group::from_particles(part.clone(), *flag)))
@@ -230,7 +230,7 @@ impl<'a> FirstRound<'a> {
         None
     }
 
-    /// Returns the particles of no zone that moved nevertheless.
+    /// Returns particles that moved although they are in no zone.
     fn particles_moved_outside_zones(&self) -> Vec<usize> {
         if self.rounds > 1 {
             return Vec::new();
