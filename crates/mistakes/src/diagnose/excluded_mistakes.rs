@@ -43,8 +43,9 @@ fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> b
 /// Returns the keys of mistakes that [`explain_together`] would report, or name as indistinguishable, and that the
 /// program does not make: they are in code that a student of this milestone does not write, or right scenes contradict
 /// them. In those scenes the program is right, although it would be wrong with the mistake
-/// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with an integrator show its
-/// mistakes. The key of values that are not finite is included if the reported mistakes lead to such values.
+/// ([`mistake_is_visible`](super::known::mistake_is_visible)). Each integrator has its own file, so only scenes with an
+/// integrator show its mistakes. The key of values that are not finite is included if the reported mistakes lead to
+/// such values.
 #[must_use]
 pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);
