@@ -80,7 +80,7 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
                 // Start this thread first, because the following calls could block, too.
                 thread::spawn(end_when_nothing_moves);
                 signalled.cancel();
-                screen::write_above_bars(b"\nstopping (once more to stop immediately)\n");
+                screen::write_above_bars(b"\nstopping (press Ctrl-C again to stop immediately)\n");
             }));
             cancellation
         })

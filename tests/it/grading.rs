@@ -66,7 +66,7 @@ fn a_right_and_a_wrong_program_get_their_reports() {
         row.split_whitespace().next().and_then(|cell| cell.parse().ok()).expect("seconds")
     };
     let parts =
-        ["programs", "the sandbox's processes", "starting runs", "judging", "reports and all else"].map(seconds);
+        ["programs", "the sandbox's processes", "starting runs", "judging", "reports and the rest"].map(seconds);
     assert!(parts[0] > 0.0 && parts[3] > 0.0 && parts.iter().sum::<f64>() <= seconds("together") + 0.01, "{parts:?}");
     let run = workspace.run([
         "grade",

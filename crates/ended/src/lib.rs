@@ -66,7 +66,7 @@ impl fmt::Display for RunEnd {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Exited(code) => write!(formatter, "exited with code {code}"),
-            Self::Signalled(signal) => write!(formatter, "ended by signal {signal} ({})", signal_name(*signal)),
+            Self::Signalled(signal) => write!(formatter, "was killed by signal {signal} ({})", signal_name(*signal)),
             Self::CpuLimit => formatter.write_str("used up its processor time"),
             Self::WallLimit => formatter.write_str("used up its time on the clock"),
             Self::MemoryLimit => formatter.write_str("needed more memory than allowed"),
@@ -169,7 +169,7 @@ pub enum StartProblem {
     },
     /// The interpreter is not part of the system.
     #[error(
-        "it asks to be run by {path}, which is not an interpreter of the system; \
+        "its interpreter {path} is not part of the system; \
          begin a script with #!/usr/bin/env NAME or #!/bin/sh"
     )]
     NotTheSystems {

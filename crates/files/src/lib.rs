@@ -140,7 +140,7 @@ pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read 
             // A pipe without a writer looks like the end of a file.
             Ok(0) if begun.elapsed() < PIPE_PATIENCE => thread::sleep(Duration::from_millis(5)),
             Ok(0) => {
-                let text = "it is a pipe without a writer for five seconds";
+                let text = "nothing wrote to the pipe for five seconds";
                 return Err(io::Error::new(io::ErrorKind::TimedOut, text));
             }
             Ok(_) => return Ok(Box::new(Cursor::new(first).chain(pipe))),

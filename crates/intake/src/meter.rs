@@ -37,7 +37,9 @@ impl<R: Read> Read for MeteredReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let read = self.inner.read(buffer)?;
         let Some(left) = self.meter.0.get().checked_sub(read as u64) else {
-            return Err(io::Error::other("reading the archive takes too much work for its content"));
+            return Err(io::Error::other(
+                "the archive takes too much work to read for its content (a possible archive bomb)",
+            ));
         };
         self.meter.0.set(left);
         Ok(read)

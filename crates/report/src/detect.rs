@@ -147,7 +147,8 @@ impl Detect<'_> {
                     text += &format!("  {}\n", style.paint(Look::Bad, "nothing is logged for this pair in this pass"))
                 }
                 CallLog::Unknown => {
-                    text += "  the trace logged another number of polynomials, so this pair's are not known\n";
+                    text +=
+                        "  the trace logged a different number of polynomials, so this pair's cannot be identified\n";
                 }
             }
         }
@@ -225,7 +226,10 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
     }
     text.extend(table.render(style).lines().map(|line| format!("  {line}\n")));
     if factor != 1.0 {
-        text += &format!("    expected values carry the trace's factor {}; any positive one is right\n", exact(factor));
+        text += &format!(
+            "    expected values are multiplied by the trace's factor {}; any positive factor is right\n",
+            exact(factor)
+        );
     }
     text
 }
@@ -240,7 +244,7 @@ fn compare_approach(course: &Answer, right: &Answer, number: ShownNumber) -> Str
         (Decision::Miss { .. }, Decision::Miss { .. }) => "no collision either".to_owned(),
         (Decision::Hit { .. }, Decision::Miss { .. }) => "no collision".to_owned(),
     };
-    format!("  with the approach polynomial that has no slip: {says}\n")
+    format!("  with the mathematically right approach polynomial: {says}\n")
 }
 
 /// Returns the objects and their motion.

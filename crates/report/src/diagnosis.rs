@@ -123,11 +123,11 @@ fn render_single(case: &Case, style: Style) -> String {
         let _ = writeln!(text, "{}", describe_first(first));
     }
     if explanations.is_empty() && first.is_none() {
-        text += "No known mistake explains it.\n";
+        text += "No known mistake explains the trace.\n";
     } else if explanations.is_empty() {
-        text += "No known mistake explains it. The first difference is where to look: the step starts from the \
+        text += "No known mistake explains the trace. Start at the first difference: the step starts from the \
          trace's own\n\
-                 state, so nothing before it is to blame.\n";
+                 state, so earlier steps cannot be the cause.\n";
     } else {
         text.push('\n');
         text += &render_mistakes(explanations, style);

@@ -99,9 +99,13 @@ fn describe_others(keys: &[String]) -> Option<String> {
     let more = more.len() + keys.len() - named.len();
     match (shown.is_empty(), more) {
         (true, 0) => None,
-        (true, more) => Some(format!("Can't be told apart here from {}", format_count(more as u64, "other formula"))),
-        (false, 0) => Some(format!("Can't be told apart here from: {}.", list_sentences(shown))),
-        (false, more) => Some(format!("Can't be told apart here from: {}; and {more} more.", list_sentences(shown))),
+        (true, more) => {
+            Some(format!("Cannot be distinguished here from {}", format_count(more as u64, "other formula")))
+        }
+        (false, 0) => Some(format!("Cannot be distinguished here from: {}.", list_sentences(shown))),
+        (false, more) => {
+            Some(format!("Cannot be distinguished here from: {}; and {more} more.", list_sentences(shown)))
+        }
     }
 }
 
@@ -247,7 +251,7 @@ pub(crate) mod tests {
         insta::assert_snapshot!(lines(&explanations(), Style::Plain).join("\n"), @r"
         likely mistake: Particle-edge: The sum of the radii is not squared. (reproduces 11 of 12 wrong steps tried)
           t^2: i R^2 has weight 0, expected 1 (i = d32.d32)
-          Can't be told apart here from 5 other formulas
+          Cannot be distinguished here from 5 other formulas
           example: step 3, particle 3 and edge 1, pass 1, overlap polynomial
             given     x1 = (0.5, -1), re = 0.25
             expected  t - 0.125

@@ -141,7 +141,10 @@ impl Host {
             Self::Own(child) => loss_error(child),
             Self::Kept(mut keeper, _) => {
                 keeper.dismiss();
-                keeper.child.take().map_or_else(|| SandboxError::Lost { how: "it was waited for".into() }, loss_error)
+                keeper.child.take().map_or_else(
+                    || SandboxError::Lost { how: "its exit status was already collected".into() },
+                    loss_error,
+                )
             }
         }
     }

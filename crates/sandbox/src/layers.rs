@@ -207,7 +207,7 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
         report(
             Layer::Namespaces,
             probe.namespaces.clone(),
-            "a run sees its own processes and files only, and no network",
+            "a run sees only its own processes and files, and no network",
             false,
             "use Linux 5.12 or newer and let the grader make namespaces: in a container by its profile, for an \
              ordinary user by the kernel's settings (kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu)",

@@ -42,7 +42,7 @@ mod tests {
     fn an_ending_reads_as_a_sentence_about_the_program() {
         assert_eq!(
             RunEnd::Signalled(libc::SIGSEGV).to_string(),
-            "ended by signal 11 (SIGSEGV: it accessed memory that does not belong to it)"
+            "was killed by signal 11 (SIGSEGV: it accessed memory that does not belong to it)"
         );
         assert_eq!(RunEnd::TraceLimit.to_string(), "wrote more than allowed to the trace");
         assert_eq!(

@@ -62,7 +62,7 @@ pub(super) struct SingleThread(());
 pub(super) fn single_thread() -> io::Result<SingleThread> {
     match std::fs::read_dir("/proc/self/task")?.count() {
         1 => Ok(SingleThread(())),
-        _ => Err(io::Error::other("the supervisor must have one thread only")),
+        _ => Err(io::Error::other("the supervisor must be single-threaded")),
     }
 }
 
@@ -215,7 +215,7 @@ pub(super) fn set_file_mask(mask: u32) {
 /// Sends a signal to one process.
 pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
     if pid <= 1 {
-        return Err(io::Error::other("only single processes are ever signalled"));
+        return Err(io::Error::other("the supervisor must signal single processes"));
     }
     // SAFETY: integers only; the process id is positive, so that no group is meant.
     check_answer(unsafe { libc::kill(pid, signal) })

@@ -154,7 +154,7 @@ impl MetricsPage {
             let states = ["waiting", "running", "done", "buried", "cancelled"];
             self.gauge(name, help, "state", &states.map(|state| (state, named(counts, state))))?;
         }
-        let help = "The waiting time of the oldest waiting upload.";
+        let help = "The time that the oldest waiting upload has waited, in seconds.";
         self.write_number("oldest_waiting_seconds", help, queue.oldest.max(0) as f64 / 1000.0)?;
         let idle = queue.workers - queue.working - queue.aside;
         let by_state = [("working", queue.working as f64), ("idle", idle as f64), ("aside", queue.aside as f64)];

@@ -372,7 +372,7 @@ Example:
   fosssim-oracle serve --data course --listen 127.0.0.1:8080"
 )]
 pub(super) struct ServeArguments {
-    /// The server's own options; serve --help lists them.
+    /// The options of fosssim-server; serve --help lists them.
     #[arg(trailing_var_arg = true, allow_hyphen_values = true, value_name = "OPTIONS")]
     pub(super) words: Vec<OsString>,
 }

@@ -39,7 +39,7 @@ impl Closer<'_> {
         if wrong > 1 && wrong == grade.scenes().count() && is_default {
             let others = Assignment::ALL.into_iter().filter(|other| *other != Assignment::DEFAULT);
             let others: Vec<&str> = others.map(Assignment::key).collect();
-            lines.push(format!("if this program is of another milestone: --suite {}", others.join(", ")));
+            lines.push(format!("if this program belongs to another milestone: --suite {}", others.join(", ")));
         }
         if wrong > 1 && wrong < grade.scenes().count() && !self.arguments.failed && self.submissions.len() == 1 {
             lines.push(format!("$ {} --failed", self.command(submission)));

@@ -99,7 +99,7 @@ pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
             let known: Vec<_> = command.get_subcommands().map(clap::Command::get_name).collect();
             let whole = command.get_bin_name().unwrap_or(PROGRAM_NAME);
             if known.is_empty() {
-                bail!("{whole} has no commands of its own, and so no `{name}`");
+                bail!("{whole} has no subcommand `{name}`");
             }
             bail!("{whole} has no command `{name}`; it has {}", known.join(", "));
         };

@@ -17,7 +17,7 @@ pub(super) fn print(timings: &Timings) {
     let mut rows = vec![("programs", programs), ("the sandbox's processes", others.saturating_sub(programs))];
     rows.extend(RunPart::OWN_PARTS.map(|(part, name)| (name, timings.total(part).0)));
     let rest = own.saturating_sub(rows[2..].iter().map(|(_, time)| *time).sum());
-    rows.extend([("reports and all else", rest), ("together", own + others)]);
+    rows.extend([("reports and the rest", rest), ("together", own + others)]);
     let mut table = Table::new([Align::Left, Align::Right, Align::Right]);
     table.heading(["processor time", "seconds", "ms a run"]);
     for (name, time) in rows {

@@ -70,5 +70,5 @@ fn a_slow_program_is_seen_to_run_and_can_be_stopped() {
     }
     let (seen, code) = interrupted(&workspace, &["explain", "--program", "./FOSSSim"], "run 1 of ");
     assert_eq!((code, left(&seen).trim()), (Some(130), ""), "{seen:?}");
-    assert!(seen.contains("stopping (once more to stop immediately)"), "{seen:?}");
+    assert!(seen.contains("stopping (press Ctrl-C again to stop immediately)"), "{seen:?}");
 }

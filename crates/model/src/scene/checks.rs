@@ -70,7 +70,7 @@ fn size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report
         report.error(|| {
             about(
                 part.tag,
-                format!("an implicit integrator with {count} particles"),
+                format!("{count} particles are too many for an implicit integrator"),
                 "at most 4096: it solves a dense system of twice that size in every step",
             )
         });

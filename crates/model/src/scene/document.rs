@@ -189,7 +189,7 @@ impl<'t> DocumentReader<'t, '_> {
                     span,
                     format!("only a line break between `{}` and its first attribute", quote(name)),
                 )
-                .help("the original joins the lines and loses the element; put a space before the attribute")
+                .help("the original joins the lines and then misses the element; put a space before the attribute")
             });
         }
     }

@@ -157,7 +157,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
                     0 => format!("there is no {}", of.what),
                     count => format!("allowed is 0 to {}; numbering starts at 0", count - 1),
                 };
-                (format!("is {written}, but there is no such {}", of.what), help)
+                (format!("is {written}, but the scene has no such {}", of.what), help)
             });
         }
         None

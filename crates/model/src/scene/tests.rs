@@ -188,11 +188,11 @@ fn what_is_there_twice() {
 fn indices() {
     says(
         "<edge i='0' j='2'/>",
-        "4:16: `j` of edge 0 is 2, but there is no such particle (allowed is 0 to 1; numbering starts at 0)",
+        "4:16: `j` of edge 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering starts at 0)",
     );
     says(
         "<edge i='-1' j='1'/>",
-        "4:10: `i` of edge 0 is -1, but there is no such particle (allowed is 0 to 1; numbering starts at 0)",
+        "4:10: `i` of edge 0 is -1, but the scene has no such particle (allowed is 0 to 1; numbering starts at 0)",
     );
     says("<edge i='1' j='1'/>", "4:16: `j` of edge 0 is the same particle as `i` (two different particles are needed)");
     // An unreadable index says nothing about the other one.
@@ -200,33 +200,33 @@ fn indices() {
     for (inner, words) in [
         (
             "<springforce edge='0' k='1' l0='1'/>",
-            "4:20: `edge` of springforce 0 is 0, but there is no such edge (there is no edge)",
+            "4:20: `edge` of springforce 0 is 0, but the scene has no such edge (there is no edge)",
         ),
         (
             "<gravitationalforce i='0' j='9' G='1'/>",
-            "4:30: `j` of gravitationalforce 0 is 9, but there is no such particle (allowed is 0 to 1; numbering \
+            "4:30: `j` of gravitationalforce 0 is 9, but the scene has no such particle (allowed is 0 to 1; numbering \
              starts at 0)",
         ),
         (
             "<vortexforce i='9' j='0' kbs='1' kvc='1'/>",
-            "4:17: `i` of vortexforce 0 is 9, but there is no such particle (allowed is 0 to 1; numbering starts at 0)",
+            "4:17: `i` of vortexforce 0 is 9, but the scene has no such particle (allowed is 0 to 1; numbering starts at 0)",
         ),
         (
             "<particlecolor i='2' r='0' g='0' b='0'/>",
-            "4:19: `i` of particlecolor 0 is 2, but there is no such particle (allowed is 0 to 1; numbering starts at \
+            "4:19: `i` of particlecolor 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering starts at \
              0)",
         ),
         (
             "<edgecolor i='0' r='0' g='0' b='0'/>",
-            "4:15: `i` of edgecolor 0 is 0, but there is no such edge (there is no edge)",
+            "4:15: `i` of edgecolor 0 is 0, but the scene has no such edge (there is no edge)",
         ),
         (
             "<halfplanecolor i='0' r='0' g='0' b='0'/>",
-            "4:20: `i` of halfplanecolor 0 is 0, but there is no such half-plane (there is no half-plane)",
+            "4:20: `i` of halfplanecolor 0 is 0, but the scene has no such half-plane (there is no half-plane)",
         ),
         (
             "<particlepath i='2' duration='1' r='0' g='0' b='0'/>",
-            "4:18: `i` of particlepath 0 is 2, but there is no such particle (allowed is 0 to 1; numbering starts at \
+            "4:18: `i` of particlepath 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering starts at \
              0)",
         ),
     ] {
@@ -365,7 +365,7 @@ fn methods_that_do_not_go_together() {
         (0..4097).map(|x| format!("<particle px='{x}' py='9' vx='0' vy='0' m='1' fixed='0'/>")).collect();
     assert_eq!(
         implicit("implicit-euler", &many).replace("4099", "N"),
-        "1:28: an implicit integrator with N particles (at most 4096: it solves a dense system of twice that size in \
+        "1:28: N particles are too many for an implicit integrator (at most 4096: it solves a dense system of twice that size in \
          every step)"
     );
 }

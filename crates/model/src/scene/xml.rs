@@ -286,8 +286,8 @@ fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
         let (stiffness, thickness) =
             (fields.scalar_or("k", default_stiffness), fields.scalar_or("thickness", default_thickness));
         let (stiffness, thickness) = (stiffness?, thickness?);
-        warn_of_negative(fields, "k", stiffness, "the penalty force attracts");
-        warn_of_negative(fields, "thickness", thickness, "the penalty force sets in late");
+        warn_of_negative(fields, "k", stiffness, "a negative stiffness makes bodies attract each other");
+        warn_of_negative(fields, "thickness", thickness, "a negative thickness delays the penalty force");
         Some((stiffness, thickness))
     };
     match kind {

@@ -82,7 +82,7 @@ impl PassPlot<'_> {
             let actual = self.actual[place].map_or_else(|| "no whole number".to_owned(), |count| count.to_string());
             format!("; the first is step {} with {actual}, expected {}", place + 1, self.expected[place])
         });
-        format!("{differing} of {compared} steps have another number of detection passes{first}")
+        format!("{differing} of {compared} steps have a different number of detection passes{first}")
     }
 }
 
@@ -94,7 +94,7 @@ mod tests {
     fn differing_steps_are_marked_and_said() {
         let plot = PassPlot { title: "Passes", expected: &[1, 2, 2, 1], actual: &[Some(1), Some(2), Some(3), None] };
         let svg = plot.svg(PlotTarget::Page);
-        let words = "2 of 4 steps have another number of detection passes; the first is step 3 with 3, expected 2";
+        let words = "2 of 4 steps have a different number of detection passes; the first is step 3 with 3, expected 2";
         assert!(svg.contains(&format!("<desc>{words}</desc>")), "{svg}");
         assert_eq!(svg.matches("m0 -7l-7 7").count(), 2);
     }

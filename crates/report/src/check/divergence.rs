@@ -186,7 +186,10 @@ fn polynomials_with(
             differs: is_missing || differing.contains(&power) || wrong == Some(power),
         }
     };
-    let carried = format!("expected values carry the trace's factor {}; any positive one is right", format_g(factor));
+    let carried = format!(
+        "expected values are multiplied by the trace's factor {}; any positive factor is right",
+        format_g(factor)
+    );
     SideBySide {
         before: vec![logged_by(place)],
         rows: (0..powers).rev().map(row).collect(),

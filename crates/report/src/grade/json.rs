@@ -70,8 +70,8 @@ view! {
         sandbox: Vec<String> = grade.layers.clone(),
         /// The weaknesses of the sandbox on this host.
         warnings: Vec<String> = grade.warnings.iter().map(|warning| strip_control_characters(warning)).collect(),
-        /// The fault of the whole submission as a sentence, such as a program of another milestone; left out if there
-        /// is none.
+        /// The fault of the whole submission as a sentence, such as a program for a different milestone; omitted if
+        /// there is none.
         #[serde(skip_serializing_if = "Option::is_none")]
         unfit: Option<String> = words::describe_unfit(grade).map(|unfit| strip_control_characters(&unfit)),
         /// The end of the build; null if the suite builds nothing.

@@ -106,7 +106,7 @@ pub(crate) fn failing_grade() -> Grade {
         damage: None,
         trailing_bytes: false,
     });
-    let mut crash = scene("Detection/b", Verdict::RuntimeError, "the program ended by signal 11");
+    let mut crash = scene("Detection/b", Verdict::RuntimeError, "the program was killed by signal 11");
     crash.stderr =
         "\u{1b}[32mOverall success: Passed.\u{1b}[m\n<b>]]></b>&amp;\u{202e}\0\n::error::forged\n".to_owned();
     let rest = Verdict::ALL[2..13]

@@ -27,12 +27,15 @@ fn describe_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
     let SpeedRatio { ratio, least, most, runs } = *measured;
     let (high, low) = (points(marking.points_at(least)), points(marking.points_at(most)));
     let sure = if high == low {
-        "which does not change the pointss".to_owned()
+        "which does not change the points".to_owned()
     } else {
         format!("which is {low} to {high} points")
     };
     let rounds = format_count(runs.into(), "round");
-    let line = format!("all up to {}, none from {}", marking.full_at, marking.none_at);
+    let line = format!(
+        "full points up to {} times, none from {} times the reference's time",
+        marking.full_at, marking.none_at
+    );
     let spread = format!("{rounds} gave {least:.2} to {most:.2}, {sure}");
     format!("{ratio:.2} times the reference's processor time; {spread} ({line})")
 }
@@ -52,7 +55,7 @@ mod tests {
             "35 of 40 points for speed: 3.00 times the reference's processor time; 5 rounds gave 2.90 to 3.40, \
              which is 33 to 35.5 points (all up to 2, none from 10)"
         );
-        assert!(said(Some(40.0), measured(1.0, 0.9, 1.4)).contains("which does not change the pointss"));
+        assert!(said(Some(40.0), measured(1.0, 0.9, 1.4)).contains("which does not change the points"));
         let failed = SpeedSource::Failed { scene: "a/b".to_owned(), verdict: Verdict::WrongAnswer };
         assert_eq!(
             said(Some(0.0), failed),

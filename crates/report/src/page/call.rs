@@ -160,7 +160,7 @@ fn own_decision(logged: &[Vec<f64>]) -> String {
         Some(time) => format!("all are positive from time {} on: a collision", number(time)),
         None => "there is no time in the step at which all are positive: no collision".to_owned(),
     };
-    format!("<p>By your polynomials {says}.</p>\n")
+    format!("<p>According to your polynomials, {says}.</p>\n")
 }
 
 /// Draws the expected and the actual curve of one polynomial.

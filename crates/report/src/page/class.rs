@@ -363,7 +363,7 @@ mod tests {
 
     #[test]
     fn who_fails_in_the_same_words_is_found_though_no_mistake_is_named() {
-        let crash = |scene: usize| (scene > 70).then(|| "the program ended by signal 11".to_owned());
+        let crash = |scene: usize| (scene > 70).then(|| "the program was killed by signal 11".to_owned());
         let grades = [
             grade("ada", |_| None),
             grade("eve", crash),

@@ -77,7 +77,7 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
 pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbError> {
     let rows = all(database).await?;
     let known = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));
-    let row = known.or(rows.last()).ok_or_else(|| DbError::Other("there is no key".to_owned()))?;
+    let row = known.or(rows.last()).ok_or_else(|| DbError::Other("the server has no signing key".to_owned()))?;
     let der = URL_SAFE_NO_PAD
         .decode(row.text("private_key")?)
         .map_err(|error| DbError::Other(format!("the key is damaged: {error}")))?;

@@ -42,7 +42,7 @@ pub enum Rejection {
     #[error("deployment {0} is not registered; an administrator can add it")]
     Deployment(String),
     /// A part of the message is missing or invalid.
-    #[error("the message is not understood: {0}")]
+    #[error("the message is invalid: {0}")]
     Content(String),
 }
 
@@ -232,7 +232,7 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
         crate::store::Digest::from_bytes(claims.nonce.as_bytes()).as_str() == nonce,
         Rejection::Foreign("the nonce"),
     )?;
-    ensure(claims.version == "1.3.0", Rejection::Content("it is of another version of LTI than 1.3.0".to_owned()))?;
+    ensure(claims.version == "1.3.0", Rejection::Content("the LTI version must be 1.3.0".to_owned()))?;
     if !settings.deployments.contains(&claims.deployment) {
         return Err(Rejection::Deployment(claims.deployment.chars().take(255).collect()));
     }
@@ -250,7 +250,7 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
             }
             (None, Some(wanted))
         }
-        _ => return Err(Rejection::Content("it is of another type than this service knows".to_owned())),
+        _ => return Err(Rejection::Content("this message type is not supported".to_owned())),
     };
     let context = claims.context.ok_or_else(|| missing("context"))?;
     let is_name = |text: &str| (1..=255).contains(&text.len());

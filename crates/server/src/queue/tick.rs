@@ -10,7 +10,7 @@ use crate::{
 };
 
 /// The message about a job whose lease expired.
-const SILENT_WORKER: &str = "its worker went silent";
+const SILENT_WORKER: &str = "the worker stopped responding";
 
 /// The results of a tick.
 #[derive(Debug, Default, PartialEq, Eq)]

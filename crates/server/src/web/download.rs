@@ -30,7 +30,7 @@ pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact
 pub(super) fn whole_answer(opened: OpenArtifact, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
         // The answer is aborted, so that the client notices that bytes are missing.
-        tracing::error!(%error, "an answer broke off");
+        tracing::error!(%error, "a response was interrupted");
         let _of_this_answer = &transfer;
     });
     let mut response = Body::from_stream(pieces).into_response();

@@ -209,7 +209,7 @@ async fn write_file<E: Display>(
         match next.map_err(|_| Problem::too_slow())? {
             None => break,
             Some(Err(error)) => {
-                tracing::debug!(%error, "an upload broke off");
+                tracing::debug!(%error, "an upload was interrupted");
                 return Err(Problem::invalid("the upload was interrupted"));
             }
             Some(Ok(chunk)) => {

@@ -121,7 +121,7 @@ impl Program {
         match end {
             Some(End::Code(code @ (0..=2))) => Ok(code),
             Some(End::Code(code)) => Err(format!("`{step}` ended with exit code {code}: {}", last_output(&messages))),
-            Some(End::Signal(signal)) => Err(format!("`{step}` was ended by signal {signal}")),
+            Some(End::Signal(signal)) => Err(format!("`{step}` was killed by signal {signal}")),
             None => {
                 child.kill();
                 child.wait().await;
@@ -222,7 +222,7 @@ impl Grader for Program {
                 return Err(GraderFault::Failed(format!("the grader ended with exit code {code}: {}", said())));
             }
             End::Signal(signal) => {
-                return Err(GraderFault::Failed(format!("the grader was ended by signal {signal}: {}", said())));
+                return Err(GraderFault::Failed(format!("the grader was killed by signal {signal}: {}", said())));
             }
         }
         let mut outcome = reading::read_grade(&folder.join("grade.json")).map_err(GraderFault::Failed)?;

@@ -77,7 +77,7 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
         PolynomialDetail::Weight(weight) => describe_weight(weight),
         PolynomialDetail::Alternative(weights) => {
             let weights: Vec<String> = weights.iter().map(describe_weight).collect();
-            format!("Can't be told apart here from {}", weights.join("; "))
+            format!("Cannot be distinguished here from {}", weights.join("; "))
         }
     }
 }

@@ -57,7 +57,7 @@ impl TransferLimits {
     fn transfer(&self, account: i64) -> Result<Transfer, Problem> {
         let most = self.transfers;
         let of_account = find_shared(&self.by_account, account, || Semaphore::new(most)).try_acquire_owned();
-        let many = |_| Problem::too_many(format!("an account may have {most} simultaneous transfers"));
+        let many = |_| Problem::too_many(format!("at most {most} simultaneous transfers are allowed per account"));
         let of_account = of_account.map_err(many)?;
         let of_all = ALL_TRANSFERS.try_acquire();
         let of_all = of_all.map_err(|_| Problem::unavailable("too many uploads and downloads are running"))?;
@@ -68,7 +68,7 @@ impl TransferLimits {
     pub(in crate::domain) async fn turn(&self, account: i64) -> Result<tokio::sync::OwnedMutexGuard<()>, Problem> {
         let turn = find_shared(&self.turns, account, Default::default);
         let turn = tokio::time::timeout(TURN_TIMEOUT, turn.lock_owned()).await;
-        turn.map_err(|_| Problem::unavailable("other uploads of yours are still being written"))
+        turn.map_err(|_| Problem::unavailable("your other uploads are still being stored"))
     }
 }
 

@@ -102,7 +102,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         let checked = check_member(&login, &name, &role);
         let error = match checked {
             Err(problem) => Some(problem.detail),
-            Ok(()) if !logins.insert(login.clone()) => Some("this login is in the table twice".to_owned()),
+            Ok(()) if !logins.insert(login.clone()) => Some("the login appears twice in the table".to_owned()),
             Ok(()) if unused.is_none() => Some("this line has more fields than name, login, email and role".to_owned()),
             Ok(()) => None,
         };

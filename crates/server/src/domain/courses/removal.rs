@@ -166,7 +166,7 @@ impl Admin {
             "DELETE FROM course WHERE id = ?",
         ];
         run(&mut transaction, &rest, course).await?;
-        self.note(&mut transaction, "removed", "a course with all that belonged to it").await?;
+        self.note(&mut transaction, "removed", "a course with its assignments, submissions and members").await?;
         Ok(transaction.commit().await?)
     }
 

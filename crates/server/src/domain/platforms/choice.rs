@@ -143,7 +143,7 @@ impl Person {
         let place = place.ok_or_else(|| Problem::not_found("course"))?;
         let statement = "SELECT account FROM member WHERE course = ? AND account = ? AND role = 'staff'";
         let staff = transaction.row(statement, values![place.course, self.account.id]).await?;
-        ensure(staff.is_some(), Problem::not_allowed("this is for the course's staff"))?;
+        ensure(staff.is_some(), Problem::not_allowed("only the course's staff can do this"))?;
         let statement = "SELECT id, slug, title, visible, settings, published_at, revision FROM assignment
                 WHERE course = ? AND slug = ?";
         let found: Option<Assignment> = transaction.find(statement, values![place.course, slug]).await?;

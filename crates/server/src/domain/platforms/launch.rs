@@ -349,7 +349,7 @@ pub(in crate::domain) async fn enroll(
         ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = excluded.platform";
     transaction.execute(statement, values![course, account, role.name(), platform]).await?;
     let login = transaction.one("SELECT login FROM account WHERE id = ?", values![account]).await?.text("login")?;
-    let text = format!("{login} is {}, says a learning platform", role.name());
+    let text = format!("a learning platform made {login} {}", role.name());
     view::note(transaction, &Entry { course: Some(course), ..Entry::new("member", account, &text) }).await
 }
 

@@ -109,7 +109,7 @@ impl Person {
     pub fn admin(self) -> Result<Admin, Problem> {
         match self.account.is_admin {
             true => Ok(Admin { account: self.account, app: self.app }),
-            false => Err(Problem::not_allowed("this is for administrators")),
+            false => Err(Problem::not_allowed("only administrators can do this")),
         }
     }
 }
@@ -121,6 +121,6 @@ impl Member {
     ///
     /// Fails if the person is not staff.
     pub fn staff(self) -> Result<Staff, Problem> {
-        if self.is_staff { Ok(Staff(self)) } else { Err(Problem::not_allowed("this is for the course's staff")) }
+        if self.is_staff { Ok(Staff(self)) } else { Err(Problem::not_allowed("only the course's staff can do this")) }
     }
 }

@@ -9,7 +9,7 @@ use axum::{
 
 /// Returns the page with its own, stricter policy, which allows only its WebAssembly module.
 pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
-    let page = app.checker.clone().ok_or_else(|| Problem::not_found("page /check: the grader was built without it"))?;
+    let page = app.checker.clone().ok_or_else(|| Problem::not_found("page (the grader was built without it)"))?;
     let policy = find_policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
     let mut answer = Html(page).into_response();
     if let Some(policy) = policy {

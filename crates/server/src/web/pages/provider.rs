@@ -55,7 +55,7 @@ pub(super) async fn connect(visitor: Visitor, person: Person) -> Result<Response
 pub(super) async fn answer(visitor: Visitor, QueryInput(answer): QueryInput<Answer>) -> Result<Response, Problem> {
     let (Some(state), Some(code)) = (&answer.state, &answer.code) else {
         return Err(match sign_in::fault_of([answer.error, answer.error_description]) {
-            None => Problem::invalid("state and code are missing"),
+            None => Problem::invalid("the parameters `state` and `code` must be given"),
             Some(fault) => Problem::refused_sign_in(format!("the provider says: {fault}")),
         });
     };
