@@ -209,13 +209,13 @@ fn indices() {
         ),
         (
             "<vortexforce i='9' j='0' kbs='1' kvc='1'/>",
-            "4:17: `i` of vortexforce 0 is 9, but the scene has no such particle (allowed is 0 to 1; numbering starts \
-             at 0)",
+            "4:17: `i` of vortexforce 0 is 9, but the scene has no such particle (allowed is 0 to 1; numbering \
+             starts at 0)",
         ),
         (
             "<particlecolor i='2' r='0' g='0' b='0'/>",
-            "4:19: `i` of particlecolor 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering starts \
-             at 0)",
+            "4:19: `i` of particlecolor 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering \
+             starts at 0)",
         ),
         (
             "<edgecolor i='0' r='0' g='0' b='0'/>",
@@ -227,8 +227,8 @@ fn indices() {
         ),
         (
             "<particlepath i='2' duration='1' r='0' g='0' b='0'/>",
-            "4:18: `i` of particlepath 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering starts \
-             at 0)",
+            "4:18: `i` of particlepath 0 is 2, but the scene has no such particle (allowed is 0 to 1; numbering \
+             starts at 0)",
         ),
     ] {
         says(inner, words);
@@ -366,8 +366,8 @@ fn methods_that_do_not_go_together() {
         (0..4097).map(|x| format!("<particle px='{x}' py='9' vx='0' vy='0' m='1' fixed='0'/>")).collect();
     assert_eq!(
         implicit("implicit-euler", &many).replace("4099", "N"),
-        "1:28: N particles are too many for an implicit integrator (at most 4096: it solves a dense system of twice that size \
-         in every step)"
+        "1:28: N particles are too many for an implicit integrator (at most 4096: it solves a dense system of twice that \
+         size in every step)"
     );
 }
 
