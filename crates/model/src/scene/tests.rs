@@ -366,8 +366,8 @@ fn methods_that_do_not_go_together() {
         (0..4097).map(|x| format!("<particle px='{x}' py='9' vx='0' vy='0' m='1' fixed='0'/>")).collect();
     assert_eq!(
         implicit("implicit-euler", &many).replace("4099", "N"),
-        "1:28: N particles are too many for an implicit integrator (at most 4096: it solves a dense system of twice that \
-         size in every step)"
+        "1:28: N particles are too many for an implicit integrator (at most 4096: it solves a dense system of twice \
+         that size in every step)"
     );
 }
 
