@@ -79,7 +79,11 @@ impl<'a> Search<'a> {
             } else if self.is_one(path) {
                 found.push(self.folder(path));
             } else {
-                self.gather_entries(path, &mut found, &mut passed_over)?;
+                match self.gather_entries(path, &mut found, &mut passed_over) {
+                    // One empty folder of a class must not stop the others: its grade says what it lacks.
+                    Err(_) if self.arguments.programs.len() > 1 => found.push(self.folder(path)),
+                    other => other?,
+                }
             }
         }
         if found.is_empty() {

@@ -40,6 +40,10 @@ fn what_can_not_be_run_is_explained() {
         assert_eq!(run.code, Some(2), "{}", run.shown());
         assert!(run.err().contains(words), "{}", run.shown());
     }
+    // A class that a shell's pattern names: one empty folder does not stop the others.
+    workspace.write("of-ann/FOSSSim", b"MZ");
+    let class = workspace.run(["grade", "of-ann", "empty", "--suite", "suite.toml", "--output", "of-two", "--fresh"]);
+    assert!(class.out().contains("the upload has no program called FOSSSim; it is empty"), "{}", class.shown());
     workspace.write("broken.toml", "schema = 1\nname = \"x\"\n[[group]]\nname = \"g\"\nscenes = [\"asset:No/*\"]\n");
     let run = workspace.run(["suite", "check", "broken.toml"]);
     assert_eq!(run.code, Some(2));

@@ -17,7 +17,9 @@ use crate::{
     words::{self, explanation::what_or},
 };
 use askama::Template;
-use fosssim_findings::{CourseNote, Grade, PassedOver, SceneGrade, Verdict, smallest::SmallestScene};
+use fosssim_findings::{
+    CourseNote, Grade, PassedOver, SceneGrade, Verdict, explanation::Explanation, smallest::SmallestScene,
+};
 use fosssim_mistakes::diagnose::is_named_in;
 use std::collections::BTreeMap;
 
@@ -115,7 +117,9 @@ impl ClassContent<'_> {
     /// Returns the mistakes that several submissions make, the most frequent first.
     fn clusters(&self) -> Vec<Cluster<'_>> {
         let grades = self.class.grades;
-        let named = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.len() > 1);
+        // Submissions that nothing explains may be wrong for different reasons.
+        let is_shared = |one: &SharedMistake| one.members.len() > 1 && one.mistake.key != Explanation::UNEXPLAINED;
+        let named = self.mistakes.iter().enumerate().filter(|(_, one)| is_shared(one));
         let named = named.map(|(number, SharedMistake { mistake, members })| {
             let first = &grades[members[0]];
             let scene = clearest_scene(first, mistake);
@@ -187,11 +191,15 @@ fn accepted_of(grade: &Grade) -> usize {
     grade.count(Verdict::Accepted)
 }
 
-/// Returns the likely mistakes of a submission, or the reason why it is not accepted.
+/// Returns the first likely mistake of a submission, or the reason why it is not accepted.
 fn describe_reason(grade: &Grade) -> String {
     let likely = likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
     let likely: Vec<String> = grade.located.iter().map(words::describe_located).chain(likely).collect();
-    if likely.is_empty() { words::reason(grade).unwrap_or_default() } else { likely.join(" ") }
+    match likely.as_slice() {
+        [] => words::reason(grade).unwrap_or_default(),
+        [only] => only.clone(),
+        [first, others @ ..] => format!("{first} And {} more.", others.len()),
+    }
 }
 
 /// Returns the causes of differences between the rule books, each with the submissions and their numbers of scenes.
@@ -209,10 +217,11 @@ fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
     found
 }
 
-/// Returns the beginning of a long text.
+/// Returns the beginning of a long text, which ends between two words if possible.
 fn shorten(words: &str) -> String {
-    let cut: String = words.chars().take(MAX_SUMMARY_LENGTH).collect();
-    if cut.len() < words.len() { cut + "..." } else { cut }
+    let Some((end, _)) = words.char_indices().nth(MAX_SUMMARY_LENGTH) else { return words.to_owned() };
+    let cut = &words[..end];
+    format!("{} ...", cut.rsplit_once(' ').map_or(cut, |(whole, _)| whole))
 }
 
 /// Returns whether a scene counts as failed; scenes that were not run, or on which the grader failed, do not.
