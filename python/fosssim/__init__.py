@@ -304,7 +304,7 @@ class Report:
     summary: str
     #: The number of judged steps, and the numbers of the wrong ones.
     steps: int
-    wrong_steps: list[int]
+    wrong_steps: list[int] = field(repr=False)
     findings: list[Finding]
     mistakes: list[Mistake]
     #: The report in the form of ``--format json``, and the trace.

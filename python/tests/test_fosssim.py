@@ -54,6 +54,7 @@ def test_a_wrong_trace_has_its_mistake_by_name():
     assert set(dir(fosssim)) == {*fosssim.__all__, "__version__"}
     assert not report.accepted and report.verdict == "wrong answer"
     assert report.steps == 24 and report.wrong_steps[0] == 2 and len(report.wrong_steps) == 23
+    assert len(repr(report)) < 2000, "a notebook shows it whole"
     assert report.findings[0].count > 0 and "particle 2" in report.findings[0].text
     assert [mistake.key for mistake in fosssim.explain(scene, FLAWED)] == ["pe-square-no-eh"]
     assert report._repr_html_().startswith("<iframe srcdoc=")
