@@ -1,22 +1,23 @@
 //! Limits the work of judging one trace.
 //!
 //! Steps are judged from the trace's own states, so a trace chooses what the reference has to compute. States from
-//! which every round of impulses finds new collisions cost as many detection passes as the scene allows rounds. That is
-//! thousands of times the cost of the scene's own run, and the fair rules repeat such steps. Subnormal numbers slow
-//! processors down as well, and root searches and Newton's method may take many steps. The work is counted
-//! ([`Simulation::work`]) and not measured by a clock: the same bytes have the same verdict on every machine.
+//! which every round of impulses finds new collisions cost as many detection passes as the scene allows rounds. Such a
+//! trace costs thousands of times as much as the scene's own run, and the fair rules repeat such steps. Subnormal
+//! numbers slow processors down as well, and root searches and Newton's method may take many steps. The work is counted
+//! ([`Simulation::work`]) instead of measured by a clock, so that the same bytes have the same verdict on every
+//! machine.
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Observer, RootSearch, Simulation, StepError, least_work, pairs},
 };
 
-/// The work that every trace may cause, however simple its scene is. It takes about a tenth of a second.
+/// The work that is allowed for every trace, even if its scene is simple. It takes about a tenth of a second.
 pub(crate) const FLOOR: u64 = 1_000_000;
 
-/// The multiple of the scene's own run that the original's rules may take beyond the floor.
+/// The multiple of the scene's own run that is allowed for the original's rules, in addition to the floor.
 const PARITY: u64 = 10;
-/// The multiple for the fair rules, which may repeat steps. They repeat a step at most 26 times; the trace of a wrong
-/// program needs 11.
+/// The multiple that is allowed for the fair rules, which may repeat steps. They repeat a step at most 26 times; the
+/// trace of a wrong program needs 11.
 const FAIR: u64 = 40;
 
 /// The work that is left for one trace.
@@ -25,14 +26,14 @@ pub struct Budget<'a> {
     scene: &'a Scene,
     factor: u64,
     rest: u64,
-    /// The work that was allowed before the scene's own run was known.
+    /// The work that is allowed before the work of the scene's own run is known.
     at_least: u64,
     is_wide: bool,
 }
 
 impl<'a> Budget<'a> {
     /// Creates the budget for judging a trace of `scene` by the original's rules, or by the fair rules if `fair`. Each
-    /// rule book has a separate budget. Explaining and showing may take as much as the original's rules.
+    /// rule book has a separate budget. Explaining and showing a trace have the same limit as the original's rules.
     #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
         let factor = if fair { FAIR } else { PARITY };
@@ -40,8 +41,7 @@ impl<'a> Budget<'a> {
         Self { scene, factor, rest: FLOOR.saturating_add(at_least), at_least, is_wide: false }
     }
 
-    /// Sets the floor, which is the work that every trace may cause. Nothing is allowed before the scene's own run is
-    /// known.
+    /// Sets the floor, which is the work that is allowed for every trace.
     pub(crate) fn with_floor(self, floor: u64) -> Self {
         Self { rest: floor, at_least: 0, ..self }
     }
@@ -52,7 +52,7 @@ impl<'a> Budget<'a> {
         self.rest
     }
 
-    /// Subtracts `work` from the remaining work, and returns false if too little remains.
+    /// Subtracts `work` from the remaining work, and returns `false` if too little remains.
     pub fn spend(&mut self, work: u64) -> bool {
         if work > self.rest {
             self.widen();

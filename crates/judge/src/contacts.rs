@@ -1,4 +1,4 @@
-//! Finds a record's impulses for a pair. A trace may log a million impulses, too many to search for each pair.
+//! Finds the impulses of a pair in a record. The impulses are sorted, because a record may have a million.
 use fosssim_model::{sim::Pair, trace::LoggedImpulse};
 
 /// The kind and the numbers of a pair, as logged.
@@ -26,7 +26,7 @@ impl Contacts {
         Self(keys)
     }
 
-    /// Returns the numbers of the impulses of a pair, in the order of the record.
+    /// Returns the indices of a pair's impulses, in the order of the record.
     pub fn about(&self, key: PairKey) -> impl Iterator<Item = usize> {
         let begin = self.0.partition_point(|(other, _)| *other < key);
         self.0[begin..].iter().take_while(move |(other, _)| *other == key).map(|(_, index)| *index)

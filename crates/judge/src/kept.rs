@@ -5,7 +5,7 @@ use std::io::{self, Read};
 /// traces unexplained; a higher limit lets each job of a class take more memory.
 pub const MAX_KEPT_BYTES: usize = 64 << 20;
 
-/// The kept beginning of a trace. It stays complete if judging panics.
+/// The kept beginning of a trace. It stays valid if judging panics.
 #[derive(Debug)]
 pub struct KeptTrace {
     bytes: Vec<u8>,

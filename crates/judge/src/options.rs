@@ -16,6 +16,6 @@ pub struct Options {
     /// Whether the trace is also judged by the fair rules ([`Outcome::fair`](super::Outcome::fair)).
     pub fair: bool,
     /// Whether every step and every call is judged separately, without shortcuts. The outcome is the same; tests
-    /// compare both.
+    /// compare both ways.
     pub one_by_one: bool,
 }

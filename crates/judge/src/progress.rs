@@ -5,7 +5,7 @@ use super::{
 };
 use fosssim_model::{sim::Impulse, trace::LoggedImpulse};
 
-/// Observes the progress of judging, in the order of the steps, whatever the number of threads. Methods do nothing by
+/// Observes the progress of judging, in the order of the steps with any number of threads. Methods do nothing by
 /// default.
 pub trait Progress {
     /// Observes the start of judging, after the initial record has been read.
@@ -18,7 +18,7 @@ pub trait Progress {
     fn step_wrong(&mut self, _wrong: &WrongStep<'_>) {}
 }
 
-/// A step in which a rule book has found something.
+/// A step with findings of at least one rule book.
 #[derive(Debug, Clone, Copy)]
 pub struct WrongStep<'a> {
     /// The step, from 1.

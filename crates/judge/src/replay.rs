@@ -70,7 +70,7 @@ struct StepSlot {
     bytes: usize,
 }
 
-/// Consecutive steps; slots are reused from batch to batch.
+/// A batch of consecutive steps. Its slots are reused.
 #[derive(Default)]
 struct Batch {
     slots: Vec<Mutex<StepSlot>>,
@@ -132,7 +132,7 @@ struct Replay<'a, R> {
     /// other.
     budgets: [Budget<'a>; 2],
     order: ContestOrder,
-    /// The damage of the last record, if it could not be read.
+    /// The damage of the last record, if the record could not be read.
     damage: Option<Damage>,
     /// Whether the first record, or a record of the delivered steps, is damaged.
     damaged: bool,
@@ -153,7 +153,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         let mut stop = self.read_batch(&mut current);
         let mut workers = Workers::new(self.scene, options);
         loop {
-            // A trace that fits into one batch is judged before threads have started, unless threads were requested.
+            // A trace that fits into one batch is judged without other threads, unless they were requested.
             let is_last = stop.is_some() || self.complete();
             let mut stop_after = None;
             let at_once =
@@ -268,7 +268,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         }
     }
 
-    /// Fills a batch. A returned stop is that of the first unreadable step; the batch holds the steps before it.
+    /// Fills a batch. If a step is unreadable, returns the reason to stop; the batch contains the steps before it.
     fn read_batch(&mut self, batch: &mut Batch) -> Option<Stop> {
         (batch.filled, batch.bytes) = (0, 0);
         while !self.complete() && batch.filled < BATCH_STEPS && batch.bytes < BATCH_BYTES {
@@ -391,7 +391,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         let mid = self.shape.layout.has_polynomials.then_some(&slot.mid);
         let records = Records { step, frame, before: &slot.before, mid, end: &slot.end };
         if let Some(error) = slot.error {
-            // If the scene itself has no result, no answer is right.
+            // If the scene itself has no result, no trace is right.
             has_judged &= reach.advance_to(step);
             slot.fair = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {

@@ -1,9 +1,9 @@
 //! Studies one detection call: its polynomials, their zeros, the times at which each polynomial or all of them are
 //! positive, and the result.
 //!
-//! Judges nothing. The numbers are identical to the reference's: its formulas, its root finder, its sets of times
-//! (collisions.md 2, root-finder.md 15 and 16). The study adds the mathematically right approach polynomial of a
-//! particle and an edge (numerics.md 1), and whether round-off may flip the reference's decision.
+//! The study judges nothing. Its numbers are identical to the reference's, because it uses the same formulas, root
+//! finder and sets of times (collisions.md 2, root-finder.md 15 and 16). It adds the mathematically right approach
+//! polynomial of a particle and an edge (numerics.md 1), and whether round-off may change the reference's decision.
 use crate::{
     fair::{compare::compare, decides, formulas},
     finding::Role,
@@ -58,7 +58,7 @@ impl Curve {
 }
 
 /// The error if the zeros of a polynomial cannot be found. The search would never end, because a coefficient is not
-/// finite or extremely small. The original hangs.
+/// finite or is extremely small. The original hangs on such polynomials.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("the root search of the {role} polynomial does not end")]
 pub struct NoAnswer {
@@ -81,7 +81,7 @@ pub struct Answer {
 impl Answer {
     fn for_motion(motion: &PairMotion, curves: &[&Curve]) -> Result<Self, NoAnswer> {
         let polynomials: Vec<Polynomial> = curves.iter().map(|curve| curve.logged).collect();
-        // Every search has ended before, separately.
+        // Every search was made before, separately, and has ended.
         let time = first_time(&polynomials).unwrap_or(f64::INFINITY);
         let normal = if time <= 1.0 { motion.normal(time) } else { None };
         let decision = match normal {
@@ -100,7 +100,7 @@ impl Answer {
     }
 }
 
-/// Room for the common times of four polynomials.
+/// The capacity for the common intervals of four polynomials.
 const SETS: usize = 32;
 
 /// The mathematically right approach polynomial of a particle and an edge, and the decision that follows from it.
@@ -122,7 +122,7 @@ pub struct Study {
     /// The reference's decision.
     pub answer: Answer,
     /// Whether the pair certainly collides, or certainly does not, in every correct program; `None` if round-off may
-    /// flip the decision.
+    /// change the decision.
     pub certain: Option<bool>,
     /// The right approach polynomial, if it differs from the course's.
     pub right_approach: Option<RightApproach>,

@@ -208,7 +208,7 @@ impl<'a> Tally<'a> {
         for expected in &own {
             let Some(actual) = logged(expected).map(|index| &theirs[index]) else { continue };
             let residual = length(actual.normal - expected.normal);
-            // Parity's exception: a NaN normal passes, because the original tests whether the distance is larger.
+            // In the original a NaN normal passes, because it tests whether the distance is larger than the bound.
             if residual > PARITY_NORMAL {
                 self.result.remarks.push(Remark::WrongNormal { actual: *actual, expected: *expected });
                 let detail = FindingDetail::WrongNormal { expected: *expected, actual: *actual, residual };
@@ -294,7 +294,7 @@ impl Observer for Tally<'_> {
         let mut own = std::mem::take(&mut self.buffers.own);
         let order = std::mem::take(&mut self.buffers.order);
         let mut coefficients = [0.0; MAX_COEFFICIENTS];
-        // In this case the original rejects nothing that is identical. It never rejects NaN.
+        // The original accepts identical coefficients of this size, and never rejects NaN.
         let is_small = own.largest() < SAFE_SUM / MAX_COEFFICIENTS as f64;
         for (number, bytes) in own.iter().enumerate() {
             let index = self.polynomials;
@@ -376,7 +376,7 @@ fn passes(own: &[f64], actual: &[f64]) -> bool {
     own.iter().zip(actual).fold(true, |all, pair| all & alike(pair))
 }
 
-/// The likeness of a polynomial of the trace, as far as a quick comparison shows it.
+/// The result of quickly comparing a polynomial of the trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Likeness {
     /// The polynomial is identical to the reference's.

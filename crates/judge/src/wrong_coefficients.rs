@@ -18,7 +18,7 @@ pub fn factor(expected: &[f64], actual: &[f64]) -> f64 {
         let holds = |power: &usize| coefficient(expected, *power) != 0.0 && agrees(expected, actual, *power, factor);
         (0..expected.len()).filter(holds).count()
     };
-    // One coefficient always agrees with the factor computed from it, which proves nothing.
+    // The coefficient from which a factor was computed always agrees with it, which proves nothing.
     let mut best = (agreeing(1.0).max(1), 1.0);
     for power in (0..expected.len().min(actual.len())).rev() {
         let ratio = coefficient(actual, power) / coefficient(expected, power);

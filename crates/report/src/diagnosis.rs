@@ -151,9 +151,10 @@ view! {
         /// The common contents of the scenes in which the program crashes or exceeds a limit, as text; null if there
         /// are none.
         located: Option<String> = diagnosis.located.as_ref().map(describe_located),
-        /// With several traces, the mistake that explains most of the wrong traces; otherwise null.
+        /// The mistake that explains most of the wrong traces, if there are several traces; otherwise null.
         common: Option<ExplanationView> = diagnosis.common.first().map(ExplanationView::from),
-        /// With several traces, up to three mistakes that explain the wrong traces together; the first is `common`.
+        /// Up to three mistakes that explain the wrong traces together, if there are several traces; the first is
+        /// `common`.
         likely: Vec<ExplanationView> = diagnosis.common.iter().map(ExplanationView::from).collect(),
         /// The traces, in the order of the request.
         traces: Vec<CaseView<'a>> = diagnosis.cases.iter().map(CaseView::from).collect(),

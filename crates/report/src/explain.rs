@@ -1,6 +1,6 @@
 //! Explanations of mistakes: lines for people, a view for programs.
 //!
-//! They show everything in an explanation; `mistakes::together::told` removes the parts that the reader may not see.
+//! These show everything in an explanation; `mistakes::together::told` removes the parts that the reader may not see.
 //! Data of a submission appear only as numbers.
 use super::{
     detect::polynomial,
@@ -20,7 +20,7 @@ pub fn lines(explanations: &[Explanation], style: Style) -> Vec<String> {
     explanations.iter().flat_map(|one| explanation_lines(one, style)).collect()
 }
 
-/// Returns the sentence about the likeliest mistake, or about the mistakes that explain everything together, for
+/// Returns the sentence about the likeliest mistake, or about several mistakes that together explain everything, for
 /// formats with one line.
 #[must_use]
 pub fn sentence(explanations: &[Explanation]) -> Option<String> {
@@ -92,7 +92,7 @@ fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
 }
 
 /// Returns the explanations that can't be distinguished from one. Known mistakes are named; other guesses have no
-/// sentence, and are counted.
+/// sentence, so they are only counted.
 fn describe_others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known_sentence(key)).collect();
     let (shown, more) = named.split_at(named.len().min(MAX_LISTED));

@@ -1,5 +1,5 @@
-//! Text from others: names, and the output of programs. Control characters become visible, and invisible characters are
-//! replaced, before a format escapes the characters with a meaning in its syntax.
+//! Cleans untrusted text, such as names and the output of programs. Control characters become visible, and invisible
+//! characters are replaced. After that, each format escapes the characters with a meaning in its syntax.
 use fosssim_findings::is_visible_ascii;
 use std::borrow::Cow;
 
@@ -72,11 +72,11 @@ pub(crate) const fn is_unseen(c: char) -> bool {
         | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// Returns text from others without control characters. Escape codes, bells and NULs become visible, line breaks and
-/// tabs stay, and invisible characters and those that XML 1.0 forbids are replaced.
+/// Returns untrusted text without control characters. Escape codes, bells and NULs become visible, line breaks and tabs
+/// stay, and invisible characters and those that XML 1.0 forbids are replaced.
 #[must_use]
 pub fn strip_control_characters(text: &str) -> String {
-    // This is the case for nearly all texts, of which a class has tens of thousands.
+    // Nearly all texts are clean, and a class has tens of thousands of them.
     if is_visible_ascii(text) {
         return text.to_owned();
     }

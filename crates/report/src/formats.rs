@@ -13,7 +13,7 @@ const HIDDEN_GROUPS_WARNING: &str =
     "points, verdict and likely mistakes are those of the groups shown here; other groups are hidden";
 
 /// Declares the formats. A row has the format's name, whether one document holds the grades of several submissions, and
-/// the renderer for these grades and for the entries that are not submissions.
+/// the renderer, which also gets the entries that are not submissions.
 macro_rules! formats {
     ($($(#[$about:meta])+ $format:ident $name:literal $takes_several:literal $render:expr;)+) => {
         /// The formats, in the order in which help lists them.
@@ -72,7 +72,7 @@ formats! {
         };
     /// One row per scene, for spreadsheets.
     Csv "csv" true csv_table::scenes;
-    /// A self-contained page ([`page::GradePage`](crate::page::GradePage)); without cards, because they are stored on
+    /// A self-contained page ([`page::GradePage`](crate::page::GradePage)); without cards, because cards are stored on
     /// disk.
     Html "html" false
         |grades, _| {
@@ -87,7 +87,8 @@ fn render_first(grades: &[Grade], render: impl Fn(&Grade) -> String) -> String {
     grades.first().map(render).unwrap_or_default()
 }
 
-/// Returns the entries that are not submissions, for a report on several; a report on one does not list them.
+/// Returns the entries that are not submissions, for a report on several; a report on one submission does not list
+/// them.
 fn class_entries<'e>(grades: &[Grade], passed_over: &'e [PassedOver]) -> &'e [PassedOver] {
     if grades.len() > 1 { passed_over } else { &[] }
 }
@@ -121,7 +122,7 @@ impl Format {
     #[must_use]
     pub fn visible_part(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
         match (self, reader) {
-            // Students always read these formats. The platforms and the page hide hidden groups themselves.
+            // These formats are always for students. The platforms and the page themselves hide hidden groups.
             (Self::Gradescope | Self::Prairielearn, _) | (Self::Html, Audience::Student) => told_to_students(grade),
             (_, Audience::Staff) => Cow::Borrowed(grade),
             (_, Audience::Student) if platform_hides => told_to_students(grade),

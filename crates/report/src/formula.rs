@@ -59,7 +59,7 @@ fn parse_power(rest: &str) -> Option<(String, usize)> {
 }
 
 /// Returns whether the text before a sign ends with a short name or a parenthesis, and the text after it begins with
-/// one. Names of functions and files, and English words, do not count.
+/// one. Names of functions or files, and English words, do not count.
 fn is_between_factors(before: &str, behind: &str) -> bool {
     let is_name = |word: &str| word.len() <= 3 && word.starts_with(|c: char| c.is_ascii_alphabetic());
     let start = before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len();

@@ -4,7 +4,7 @@
 
 pub use fosssim_num::printed::format_g;
 
-/// Returns the shortest text that reads back as the same number, without the sign of a zero, which nobody computes.
+/// Returns the shortest text that reads back as the same number, without the sign of a zero.
 #[must_use]
 pub fn exact(value: f64) -> String {
     fosssim_num::printed::exact(value + 0.0)
@@ -23,7 +23,7 @@ fn fraction(value: f64) -> Option<String> {
 /// The bound below which numbers count as zero, next to numbers near 1.
 const ZERO_BOUND: f64 = 1e-13;
 
-/// Returns a number as in a calculation by hand: short decimals, a short fraction, or six digits.
+/// Formats a number as in a calculation by hand: short decimals, a short fraction, or six digits.
 pub(crate) fn short(value: f64) -> String {
     format_tidy(if value.abs() < ZERO_BOUND { 0.0 } else { value }, format_g)
 }
@@ -68,7 +68,7 @@ pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>
     let (one, other) = (texts.0.as_bytes(), texts.1.as_bytes());
     let common = one.iter().zip(other).take_while(|(one, other)| one == other).count();
     let parts = expected.to_bits() != actual.to_bits() && texts.0 != texts.1;
-    // Numbers with different lengths before the point have no digit in common.
+    // If the parts before the point differ in length, no digits can be compared.
     let whole = |text: &str| text.find('.').unwrap_or(text.len());
     let place = if whole(&texts.0) == whole(&texts.1) { common } else { 0 };
     (texts.0, texts.1, parts.then_some(place))

@@ -51,13 +51,13 @@ fn block(name: &str, source: &[u8], problem: &Problem) -> String {
     let after = escape_line(&source[end..line_end(source, end)]);
     let advice = help.as_ref().map(|help| format!(" {help}")).unwrap_or_default();
     if before.is_empty() && marked.is_empty() && after.is_empty() {
-        // Nothing can be marked in an empty file or an empty line.
+        // In an empty file or line there is nothing to mark.
         if !advice.is_empty() {
             text += &format!("    = {}\n", advice.trim_start());
         }
         return text;
     }
-    // Cut long lines on both sides of the place.
+    // Cut a long line on both sides of the place.
     let cut = before.chars().count().saturating_sub(MAX_SHOWN_CHARS / 2);
     let (dots, indent) = if cut > 0 { ("...", 3) } else { ("", 0) };
     let before: String = before.chars().skip(cut).collect();

@@ -1,7 +1,7 @@
 //! The style of text for terminals. Colors and signs are added to text that can be understood without them.
 use crate::formula;
 
-/// The decoration of a report.
+/// The style in which a report is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Style {
     /// Plain text, for files, pipes and users who want no color.
@@ -16,20 +16,20 @@ pub enum Style {
 /// The style of a piece of text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
-    /// A verdict or value that is right.
+    /// The style of a right verdict or value.
     Good,
-    /// A verdict or value that is wrong.
+    /// The style of a wrong verdict or value.
     Bad,
-    /// A warning.
+    /// The style of a warning.
     Notice,
-    /// A heading.
+    /// The style of a heading.
     Strong,
-    /// Text of less importance.
+    /// The style of less important text.
     Faint,
 }
 
 impl Style {
-    /// Returns the text with the codes of a style. Padding must be added before.
+    /// Returns the text with the codes of a style. Padding must be added before this call.
     #[must_use]
     pub fn paint(self, look: Look, text: &str) -> String {
         let code = match (self, look) {

@@ -50,7 +50,7 @@ pub fn key(value: &impl Serialize) -> String {
 
 /// Renders a value as one JSON document, indented, with a line feed at its end.
 pub(crate) fn document(value: &impl Serialize) -> String {
-    // A struct of plain values always serializes.
+    // A struct of plain values can always be serialized.
     serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }
 
@@ -79,9 +79,9 @@ pub struct PolynomialView {
 #[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 #[serde(untagged)]
 pub enum Value {
-    /// A number.
+    /// A floating-point number.
     Number(Number),
-    /// A count.
+    /// A number of occurrences.
     Count(usize),
     /// A vector.
     Point(
@@ -91,7 +91,7 @@ pub enum Value {
     ),
     /// The coefficients of a polynomial.
     Polynomial(Polynomial),
-    /// A collision.
+    /// A logged collision.
     Collision(LoggedImpulse),
 }
 
@@ -117,10 +117,10 @@ pub struct FindingView {
     pub expected: Option<Value>,
     /// The trace's value.
     pub actual: Option<Value>,
-    /// The distance between both values, if they have one.
+    /// The distance between the two values, if it is defined.
     pub residual: Option<Number>,
-    /// The bound of the distance; for coefficients, of the distance after rescaling. Null if it depends on the values
-    /// (fair rules).
+    /// The bound of the distance; for coefficients, the bound applies to the distance after rescaling. Null if it
+    /// depends on the values (fair rules).
     pub tolerance: Option<Number>,
     /// A coefficient as the original compares it.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -225,7 +225,7 @@ fn compare_values(detail: &FindingDetail) -> (Option<Value>, Option<Value>, Opti
         | FindingDetail::Velocity { expected, actual, residual, .. } => {
             both(Value::Point(expected), Value::Point(actual), Some(residual))
         }
-        // Other findings compare no values.
+        // All other findings compare no values.
         _ => (None, None, None),
     }
 }

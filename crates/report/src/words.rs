@@ -43,7 +43,8 @@ pub fn summary(result: &SceneResult) -> String {
     }
 }
 
-/// Returns the end of the program, with its limit but without its progress, so that the text is equal in many scenes.
+/// Returns the end of the program, with its limit but without its progress, so that the text is the same in many
+/// scenes.
 pub(crate) fn describe_ending(result: &SceneResult) -> String {
     let Reason::Program(reached) = result.reason else { return summary(result) };
     let ended = result.ended.as_ref().map(RunEnd::to_string).unwrap_or_default();
@@ -115,7 +116,7 @@ fn describe_unwritten(grade: &Grade) -> String {
     format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
 }
 
-/// Returns a sentence on the reason why a grade is not fully accepted; `None` if it is.
+/// Returns a sentence about why a grade is not fully accepted; `None` if it is.
 #[must_use]
 pub fn reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = describe_unfit(grade) {
@@ -259,7 +260,7 @@ pub(crate) fn describe_first(first: &DisclosedFinding) -> String {
 /// than the first finding.
 fn describe_counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
-    // A kind that occurs only in damaged records has no example, and proves nothing about the program.
+    // A kind without an example occurs only in damaged records, so it proves nothing about the program.
     let has_example = |kind: FindingKind| account.examples.iter().any(|example| example.kind() == kind);
     let list: Vec<String> = FindingKind::ALL
         .into_iter()

@@ -2,8 +2,8 @@
 //!
 //! The functions work on finished text, so that renderers need no width. A continued line is indented below its
 //! beginning. Color codes have no width. A word that is too long stays whole, and so does a line to be copied, which
-//! begins with `$ `. Lines of a program's output have their mark (`| `) on every line, so that they can't be confused
-//! with the report's.
+//! begins with `$ `. Every line of a program's output has a mark (`| `), so that they can't be confused with the
+//! report's.
 use unicode_width::UnicodeWidthChar;
 
 /// The minimum width of the last column for which continued lines keep its indentation.
@@ -52,7 +52,7 @@ fn push_broken(result: &mut String, line: &str, width: usize) {
     let mut fresh = true;
     for piece in line.split_inclusive(' ') {
         let (word, wide) = (piece.trim_end_matches(' '), columns(piece));
-        // A blank at the end of a line takes no space.
+        // Blanks at the end of a line take no space.
         if !fresh && !word.is_empty() && at + columns(word) > width {
             result.truncate(result.trim_end_matches(' ').len());
             result.push('\n');

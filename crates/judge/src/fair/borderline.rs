@@ -11,8 +11,8 @@ use fosssim_model::{
 };
 
 /// Returns all decisions of the reference that rounding errors of [`FAIR_UNITS`](fosssim_num::tolerances::FAIR_UNITS)
-/// units can flip, in order. `collides` is the reference's decision. Decisions whose arithmetic is exact are never
-/// among them.
+/// units can change, in order. `collides` is the reference's decision. Decisions with exact arithmetic are never
+/// included.
 ///
 /// # Errors
 /// Fails if a step has no result.

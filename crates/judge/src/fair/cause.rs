@@ -1,6 +1,6 @@
 //! Finds the rule of the original that makes the two rule books differ about a trace.
 //!
-//! The first finding of the rule book that rejects the trace names the rule. The original's rules are written in
+//! The first finding of the rule book that rejects the trace names the rule. The original's rules are described in
 //! oracle-behavior.md 4 to 6; numerics.md 1 shows why they cannot be trusted.
 use fosssim_findings::{
     Cause, Finding, FindingDetail, Outcome, Overall, Role,
@@ -40,7 +40,7 @@ fn too_strict(outcome: &Outcome, fair: &Judgement) -> Cause {
         FindingDetail::WrongNormal { .. } => Cause::AbsoluteNormals,
         _ if is_borderline => Cause::BorderlineDecision,
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => Cause::AbsoluteStates,
-        // A certain decision that differs nevertheless follows from the right form.
+        // A certain decision that differs nevertheless is caused by the right form of the approach polynomial.
         _ if fair.form == Form::Right => Cause::ApproachForm,
         _ => Cause::BorderlineDecision,
     }
@@ -66,7 +66,7 @@ fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } if is_mid_record(first, outcome) => {
             Cause::MidRecord
         }
-        // The original finished, so the trace's own polynomials have no result.
+        // The original judged all steps, so only the trace's own polynomials have no result.
         FindingDetail::NoResult { .. } => Cause::OwnPolynomials,
         FindingDetail::ContactTime { .. } => Cause::ContactTime,
         FindingDetail::RepeatedCollision { .. } => Cause::RepeatedCollision,

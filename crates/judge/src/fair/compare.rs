@@ -8,24 +8,24 @@ use fosssim_num::{
 
 fosssim_model::drops_leading!();
 
-/// The match of a right polynomial.
+/// The result of comparing a right polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Match {
     /// The positive factor of the logged polynomial; `None` if there is only round-off.
     pub scale: Option<f64>,
     /// The largest share of its tolerance that a coefficient uses, 0 to 1. For a polynomial that is accepted early this
-    /// is an upper bound (a quarter or less).
+    /// is an upper bound of at most a quarter.
     pub share: f64,
 }
 
 /// The fault of a wrong polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Mismatch {
-    /// The polynomial has an additional coefficient, of this power, larger than round-off.
+    /// The polynomial has a coefficient of a higher power than expected, and larger than round-off.
     TooLong,
     /// A coefficient is wrong.
     Coefficient {
-        /// The power of t.
+        /// The power of t that the coefficient belongs to.
         power: usize,
         /// The right coefficient, scaled to the logged polynomial.
         expected: f64,
@@ -36,9 +36,9 @@ pub enum Mismatch {
     },
 }
 
-/// Compares two polynomials. `expected` is complete; `actual` is as logged, its small leading coefficients dropped by
-/// the course's library. `hints` are factors of polynomials of the same kind, used if the polynomial is too short to
-/// show a factor.
+/// Compares two polynomials. `expected` is complete; `actual` is the logged list, from which the course's library has
+/// dropped small leading coefficients. `hints` are factors of polynomials of the same kind, which are used if the
+/// polynomial is too short to show its own.
 ///
 /// If the expected polynomial is zero except for round-off, every finite polynomial is right, because some programs
 /// divide polynomials by their size. If the expected polynomial has NaN because of the trace's own state, the logged
@@ -54,8 +54,8 @@ pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Resu
 /// The comparison of two coefficient lists of equal length, without bounds.
 ///
 /// The factor is that of the sums of moduli. Bounds are at least as large as the values, so a deviation below
-/// [`FAIR_NORM_UNITS`] of the sum of moduli is right. A deviation of a small part of that is clearly right; nearly all
-/// right coefficients are clearly right.
+/// [`FAIR_NORM_UNITS`] of the sum of moduli is right. Nearly all right coefficients deviate much less, and are called
+/// clearly right.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Similarity {
     /// The sum of the expected coefficients' moduli.
@@ -74,13 +74,13 @@ const MIN_SAFE_SUM: f64 = 1e-100;
 pub(super) const MAX_SAFE_SUM: f64 = 1e100;
 
 impl Similarity {
-    /// The similarity of polynomials that are not compared.
+    /// The value for polynomials that are not compared.
     pub const NONE: Self = Self { sum: 0.0, logged: 0.0, scale: 0.0, worst: 0.0 };
 
     /// Compares the expected coefficients `own` with `logged`, which has the same length.
     #[inline(always)]
     pub fn measure(own: &[f64], logged: &[f64]) -> Self {
-        // Loops of a known length are unrolled.
+        // The compiler unrolls loops of a known length.
         match own.len() {
             2 => Self::compare_lists::<2>(own, logged),
             3 => Self::compare_lists::<3>(own, logged),
@@ -123,8 +123,8 @@ impl Similarity {
         FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged
     }
 
-    /// Returns whether the coefficients are clearly right. If both lists have lost coefficients, those are small only
-    /// with factors near 1.
+    /// Returns whether the coefficients are clearly right. If both lists have lost coefficients, the lost ones are
+    /// small only with factors near 1.
     #[inline(always)]
     pub fn is_clear(&self, is_whole: bool) -> bool {
         let is_moderate = |sum: f64| (MIN_SAFE_SUM..MAX_SAFE_SUM).contains(&sum);
@@ -156,11 +156,11 @@ fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
 /// `false` means unknown.
 ///
 /// A polynomial that [`compare`] accepts stays near the expected one times its factor, at any time within the step: it
-/// is off by less than `MAX_DEVIATION` units of all bounds together. The tolerances of six coefficients are at most 2
+/// deviates by less than `MAX_DEVIATION` units of all bounds together. The tolerances of six coefficients are at most 2
 /// `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it; values that are compared instead have less.
 /// Each time therefore allows an interval of factors, and if two of these are disjoint there is no factor.
 pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
-    /// Tolerances, and the rounding of values here.
+    /// The maximum deviation: all tolerances, and the rounding errors of this computation.
     const MAX_DEVIATION: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
     let Some(missing) = expected.len().checked_sub(actual.len()).filter(|_| expected.len() <= MAX_COEFFICIENTS) else {
         return false;
@@ -168,7 +168,7 @@ pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     let size: f64 = expected.iter().map(|r| r.bound.max(r.value.abs())).sum();
     let room = MAX_DEVIATION * UNIT_ROUNDOFF * size;
     let rounding = 32.0 * UNIT_ROUNDOFF * actual.iter().map(|s| s.abs()).sum::<f64>();
-    // Dropped coefficients may be missing, whatever the factor is. If both polynomials lack them, they may have been
+    // Coefficients below the limit may be missing with any factor. If both polynomials lack them, they may have been
     // slightly larger.
     let logged_room = rounding + missing as f64 * FAIR_LOSS * LEADING_COEFFICIENT;
     if !(room.is_finite() && logged_room.is_finite()) {
@@ -184,7 +184,7 @@ pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
             most = most.min((logged + logged_room) / (right - room));
         }
     }
-    // The rounding of the intervals' ends is far smaller.
+    // The rounding errors of the intervals' ends are much smaller.
     least > most + 1e-9 * most.abs()
 }
 
@@ -195,7 +195,7 @@ fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
         return None;
     }
     let norm = norm(expected);
-    // A single NaN or infinity makes the sums NaN or infinite.
+    // A single coefficient that is NaN or infinite makes the sums NaN or infinite.
     if !(norm > 0.0 && norm.is_finite() && sum_of_moduli(expected).is_finite()) || is_round_off(expected) {
         return None;
     }
@@ -207,7 +207,7 @@ fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
         if !(residual <= tolerance) {
             return None;
         }
-        // A multiplication shows whether the share can be larger.
+        // Compare by a multiplication first, which shows whether the share can be larger.
         if residual > (1.0 - 1e-12) * (share * tolerance) {
             share = share.max(residual / tolerance);
         }
@@ -232,7 +232,7 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
         return check_numbers_where(|r| r.value.is_finite(), right, logged);
     }
     if norm(right) == 0.0 && logged.iter().any(|s| *s != 0.0) {
-        // Not even round-off remains, because nothing moves. Every formula gives zero.
+        // Nothing moves, so every formula gives exactly zero.
         return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
     }
     if is_round_off(right) {
@@ -251,11 +251,12 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
     if first.is_ok() {
         return first;
     }
-    // The remaining coefficients of a polynomial may show the factor only roughly.
+    // The remaining coefficients may show the factor only inaccurately.
     if let Some(found) = hinted() {
         return Ok(found);
     }
-    // One wrong coefficient spoils the fit; the factor on which most coefficients agree shows which one it is.
+    // A wrong coefficient changes the fitted factor. The factor on which most coefficients agree shows which one is
+    // wrong.
     let mut best = (count_wrong(right, logged, missing, fitted), first);
     for (r, s) in right.iter().zip(logged).skip(missing) {
         let scale = s / r.value;
@@ -266,7 +267,7 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
             }
         }
     }
-    // If at most one agrees, the factor proves nothing.
+    // A factor on which at most one coefficient agrees proves nothing.
     if best.0 + 1 >= whole && whole > 1 { matched(1.0) } else { best.1 }
 }
 
@@ -300,7 +301,7 @@ fn sum_of_moduli(expected: &[BoundedValue]) -> f64 {
     expected.iter().map(|r| r.value.abs()).sum()
 }
 
-/// Returns whether a coefficient holds more than round-off.
+/// Returns whether a coefficient is larger than round-off.
 fn is_significant(r: &BoundedValue) -> bool {
     r.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * r.bound
 }
@@ -321,8 +322,8 @@ fn fit(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
 }
 
 /// Returns the allowed deviation of a coefficient, in units of the roundoff. Both sides are rounded. A coefficient that
-/// is small compared with the others may hold the rounding of all of them: some correct programs interpolate, and on
-/// [0, 1] no decision shows a difference.
+/// is small compared with the others may have the rounding errors of all of them: some correct programs interpolate,
+/// which changes no decision on [0, 1].
 fn units(r: &BoundedValue, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
 }
@@ -338,7 +339,7 @@ fn check(r: &BoundedValue, s: f64, norm: f64, is_missing: bool, scale: f64) -> R
     if residual <= tolerance {
         return Ok(if residual == 0.0 { 0.0 } else { residual / tolerance });
     }
-    // The course's library drops small leading coefficients, whatever the scale is.
+    // The course's library drops small leading coefficients at any scale.
     if is_missing && residual < LEADING_COEFFICIENT + tolerance {
         return Ok(0.0);
     }
@@ -350,9 +351,9 @@ fn norm(right: &[BoundedValue]) -> f64 {
     right.iter().map(|c| c.bound).sum()
 }
 
-/// Returns the factors with which a logged polynomial would be right although it does not show its own. They are large
-/// enough for its coefficients to be round-off, and small enough for the course's library to drop the missing ones.
-/// `None` if the polynomial shows its factor, or if there is no such factor.
+/// Returns the factors with which a logged polynomial would be right, although it does not show its own factor. These
+/// factors are large enough for its coefficients to be round-off, and small enough for the course's library to drop the
+/// missing ones. `None` if the polynomial shows its factor, or if there is no such factor.
 pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -380,9 +381,9 @@ pub fn shows_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     expected[missing..].iter().filter(|r| is_significant(r)).count() > 1
 }
 
-/// Returns the factors that a right polynomial claims and does not show. Such a polynomial has a single coefficient of
-/// any size, and lacks others that the course's library would keep with the factor 1. `None` if the polynomial shows
-/// its factor, or lacks nothing.
+/// Returns the factors that a right polynomial claims and does not show. Such a polynomial has only one coefficient of
+/// significant size, and lacks others that the course's library would keep with the factor 1. `None` if the polynomial
+/// shows its factor, or lacks nothing.
 pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
@@ -421,8 +422,8 @@ fn judge(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> 
 }
 
 /// Returns the largest used share of the tolerance of the polynomial's *values* within the step, if they are all right.
-/// A program that interpolates from values within the step has their round-off many times over in the higher
-/// coefficients, where they cancel.
+/// A program that interpolates from values within the step has large errors in the higher coefficients, where these
+/// values cancel.
 fn share_within_step(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Option<f64> {
     /// The number of sample times, evenly spread: a polynomial of degree five is hardly larger between them.
     const TIMES: u8 = 16;

@@ -48,8 +48,7 @@ fn value_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
 /// A polynomial's value at a time, and the tolerance of that value.
 type Value = fn(&[BoundedValue], f64) -> (f64, f64);
 
-/// Returns whether a pair may come into contact at time `t`: one polynomial is about to turn positive, and none is
-/// negative.
+/// Returns whether a pair may come into contact at time `t`: one polynomial becomes positive, and none is negative.
 fn is_possible(expected: &ExpectedPolynomials, t: f64, value: Value) -> bool {
     if !(0.0..=1.0).contains(&t) {
         return false;
@@ -76,8 +75,8 @@ fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: Value) -> 
     is_near || is_possible(expected, t, value) && undecided()
 }
 
-/// Returns whether a time of impact is right: it is that of the reference, whose polynomials may have lost
-/// coefficients, or of a polynomial without losses.
+/// Returns whether a time of impact is right. It may be the reference's, whose polynomials may have lost coefficients,
+/// or follow from the complete polynomials.
 pub(super) fn is_time_without_losses(expected: &ExpectedPolynomials, own: f64, t: f64) -> bool {
     let is_near = (own - t).abs() <= FAIR_TIME;
     is_near || time_fits(expected, possible_time(expected), t, value_without_losses)
@@ -114,7 +113,7 @@ pub(super) fn possible_hit(
     judged: &mut StepJudgement,
 ) -> Option<FindingDetail> {
     let Some((motion, expected)) = known else {
-        // Overlaps at the end of the step have no time, and their normal is that of the end.
+        // An overlap at the end of the step has no time of impact, and its normal is computed at the end.
         let normal = overlap_normal(context, pair, &records.end.state.positions);
         let expected = Impulse { pair, normal, time: 0.0 };
         if actual.time != 0.0 {
@@ -131,7 +130,7 @@ pub(super) fn possible_hit(
     compare_normal(Impulse { pair, normal, time: actual.time }, tolerance, actual, judged)
 }
 
-/// Returns the contact normal at a time, and its tolerance. The tolerance is of the whole vector: a program with
+/// Returns the contact normal at a time, and its tolerance. The tolerance is for the whole vector: a program with
 /// rotated axes spreads the round-off of one component over both. The assignment requires the shortest vector: if the
 /// round-off of the time leads beyond an edge's end, the vector to the end is as right as the vector to the line.
 fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
@@ -243,7 +242,7 @@ pub(super) fn compare_states(
 }
 
 /// Returns the distance between two vectors. If the reference itself has NaN or infinity from the trace's own state, a
-/// trace with the same value is right: the component counts as equal. A NaN on one side only gives NaN.
+/// trace with the same value is right: the component counts as equal. If only one side has NaN, the result is NaN.
 fn distance(expected: Vec2, actual: Vec2) -> f64 {
     let apart = |expected: f64, actual: f64| {
         let same = expected == actual || expected.is_nan() && actual.is_nan();
@@ -265,7 +264,7 @@ pub(super) fn is_searchable(coefficients: &[f64]) -> bool {
     coefficients.len() <= MAX_COEFFICIENTS && coefficients.iter().fold(true, |all, c| all & is_ordinary(*c))
 }
 
-/// Returns whether a coefficient is zero, or far from where numbers overflow and underflow.
+/// Returns whether a coefficient is zero, or so moderate that no overflow or underflow is possible.
 fn is_ordinary(c: f64) -> bool {
     (c == 0.0) | (c.abs() >= SEARCH_MIN_COEFFICIENT) & (c.abs() <= SEARCH_MAX_COEFFICIENT)
 }
@@ -281,12 +280,12 @@ pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
 
 /// Returns the decision that follows from the polynomials, if round-off cannot change it.
 ///
-/// If a parabola's inputs have few digits, every way to evaluate the formulas is exact. Round-off then excuses nothing,
-/// and contact at the very end of the step is certain, too.
+/// If a parabola's inputs have few digits, every way to evaluate the formulas is exact. Then no decision depends on
+/// round-off, and even a contact at the very end of the step is certain.
 pub fn decides(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> Option<bool> {
     let polynomials = expected.polynomials();
     if !polynomials.iter().copied().flatten().all(|c| is_ordinary(c.value)) {
-        // With numbers of such sizes no program is reliable, and certainty would take long.
+        // With such extreme numbers no program is reliable, and proving certainty would take long.
         return None;
     }
     let units = if motion.is_exact(EXACT_BITS) { 0.0 } else { FAIR_UNITS };
@@ -301,7 +300,7 @@ pub fn decides(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> Op
 /// are exact.
 const EXACT_BITS: u32 = 6;
 
-/// Returns whether round-off may flip the decision.
+/// Returns whether round-off may change the decision.
 pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> bool {
     decides(motion, expected).is_none()
 }

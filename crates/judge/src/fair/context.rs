@@ -11,15 +11,15 @@ use fosssim_model::{
 pub(crate) struct Context<'a> {
     /// The scene that is judged.
     pub scene: &'a Scene,
-    /// Polynomials of one detection pass over all pairs (trace-format.md 2).
+    /// The number of polynomials of one detection pass over all pairs (trace-format.md 2).
     pub per_pass: usize,
-    /// Pairs of one detection pass.
+    /// The number of pairs of one detection pass.
     pub pairs: usize,
     /// The number of calls of each kind in a pass.
     pub of_kinds: ByKind<u64>,
-    /// Records of one step.
+    /// The number of records of one step.
     pub records_per_step: u32,
-    /// States that need no comparison with the reference's own run.
+    /// The range of states that need no comparison with the reference's own run.
     pub ordinary: OrdinaryRange,
     /// Whether bounds are computed for every polynomial, including the clearly right ones.
     pub looks_closely: bool,
@@ -87,7 +87,7 @@ pub(crate) struct Records<'a> {
     pub end: &'a LenientFrame,
 }
 
-/// A decision, as followed.
+/// A decision with which the step was continued.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FollowedDecision {
     pub pair: Pair,

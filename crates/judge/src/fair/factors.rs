@@ -7,10 +7,10 @@ use fosssim_num::tolerances::FAIR_OUTLIER;
 pub struct Factors {
     least: f64,
     greatest: f64,
-    /// The last factor.
+    /// The factor that was added last.
     last: f64,
     count: u64,
-    /// The sum of their binary exponents, and the sum of the squares.
+    /// The sum of the factors' binary exponents, and the sum of the squared exponents.
     exponents: i64,
     squares: i64,
 }

@@ -44,7 +44,7 @@ pub enum BoundedPairMotion {
     Particles([BoundedPointMotion; 2], BoundedValue),
     /// A disc and an edge's endpoints, and the sum of the radii.
     Edge([BoundedPointMotion; 3], BoundedValue),
-    /// A disc and a half-plane: the motion, the radius, and the point and the normal as written in the scene.
+    /// A disc and a half-plane: the motion, the radius, and the point and the normal as given in the scene.
     HalfPlane(BoundedPointMotion, BoundedValue, Vec2, Vec2),
 }
 
@@ -137,7 +137,7 @@ impl BoundedPairMotion {
         let widen = |way: &mut BoundedPointMotion, particle: Option<usize>| {
             let Some(particle) = particle else { return };
             if way.shift.x.bound == 0.0 && way.shift.y.bound == 0.0 {
-                // The object certainly rests, whatever happens to others.
+                // The object is certainly at rest, independent of other objects.
                 return;
             }
             // The unit is the running error bound; the tolerance is twice FAIR_UNITS of it.

@@ -16,7 +16,7 @@ const MAX_EXAMPLES: usize = 8;
 /// The maximum number of decisions of a small scene.
 const SMALL_SCENE_DECISIONS: u64 = 64;
 
-/// The fair rules' judgement of a trace so far, and the polynomials that depend on the rest of the trace.
+/// The fair rules' judgement of a trace so far, and the polynomials that can be judged only at its end.
 #[derive(Debug, Default)]
 pub(crate) struct Judging {
     said: Judgement,
@@ -86,11 +86,11 @@ impl Judging {
             let (kind, number) = claim.place;
             self.claimed[kind][number].take(claim.least.0.midpoint(claim.most.0));
         }
-        // Polynomials that already fit are settled. So are polynomials that count only in the other form.
+        // Polynomials that already fit, or count only in the other form, are settled.
         let hangs = |pending: &&Pending| {
             let (kind, number) = pending.place;
             let is_of_other_form = self.said.form != Form::Either && !pending.is_of(self.said.form);
-            // A claim does not confirm itself while other polynomials may follow.
+            // While other polynomials may follow, a claimed factor is not confirmed by claims.
             let is_told = self.scales[kind][number].range().is_some() || self.same[kind][number] > 0;
             !is_of_other_form && (!is_told || self.finding(pending).is_some())
         };
@@ -110,19 +110,20 @@ impl Judging {
         pending.finding(usual.unwrap_or([1.0; 2]))
     }
 
-    /// Adds a finding.
+    /// Adds a finding to the judgement.
     pub(crate) fn charge(&mut self, finding: Finding) {
         self.said.findings.counts.add(finding.kind(), 1);
         self.said.findings.keep_first(&finding);
     }
 
-    /// Counts polynomials that exceed round-off with the usual factors of their kind, in the form that the trace uses.
+    /// Counts pending polynomials that are wrong with the usual factors of their kind, in the form that the trace uses.
     fn settle_pending(&mut self) {
         let all = std::mem::take(&mut self.pending);
         let fails =
             |form| all.iter().any(|step| step.polynomials.is_of(form) && self.finding(&step.polynomials).is_some());
         if self.said.form == Form::Either && fails(Form::Course) {
-            // Missing coefficients may still show the form. It is the form in which no relevant coefficient is missing.
+            // If nothing else shows the form, missing coefficients may: it is the form in which no relevant coefficient
+            // is missing.
             self.said.form = if fails(Form::Right) { Form::Course } else { Form::Right };
         }
         let (form, mut last_wrong) = (self.said.form, 0);
@@ -131,7 +132,7 @@ impl Judging {
             // Steps are in order, so the polynomials of one step are adjacent.
             self.said.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
             last_wrong = finding.step;
-            // In a step, polynomials precede their decisions.
+            // In a step, the findings about polynomials come before those about decisions.
             if self.said.findings.first_divergence.is_some_and(|first| follows(&first, &finding)) {
                 self.said.findings.first_divergence = None;
             }
@@ -188,7 +189,7 @@ impl Judging {
     }
 }
 
-/// Returns whether a finding follows from the one about a polynomial.
+/// Returns whether a finding is a consequence of the finding about a polynomial.
 fn follows(finding: &Finding, polynomial: &Finding) -> bool {
     let is_decision = matches!(finding.kind(), FindingKind::TrimmedDecision);
     finding.step > polynomial.step || finding.step == polynomial.step && is_decision

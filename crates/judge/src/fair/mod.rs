@@ -4,22 +4,23 @@
 //! It judges one step as follows:
 //!
 //! 1. It rebuilds the log that the submission should have written from *its own* states, and follows the submission: it
-//!    searches the submission's polynomials, answers its logged contacts, and begins the geometric part at its mid
-//!    record. A mistake is therefore counted once, at the stage where it is made. If the time of impact of its
-//!    polynomials is the reference's except for round-off, it takes the reference's. If right polynomials lead the root
-//!    finder to another decision than the reference's, both are accepted.
+//!    searches the roots of the submission's polynomials, responds to its logged contacts, and begins the geometric
+//!    part at its mid record. A mistake is therefore counted once, at the stage where it is made. If the time of impact
+//!    of its polynomials is the reference's except for round-off, it takes the reference's. If right polynomials lead
+//!    the root finder to a decision that differs from the reference's, both decisions are accepted.
 //! 2. A polynomial may have any positive factor; each coefficient may be off by [`FAIR_UNITS`] times its running error
 //!    bound. A small leading coefficient may be missing, because the course's library drops it, if the factor makes it
 //!    small: one that two coefficients show, or that is usual in the trace, which only the whole trace shows. NaN
 //!    fails.
-//! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; where that is too little, by
-//!    [`FAIR_SENSITIVITY`] times what such roundings of the step's input do to its result.
-//! 4. A decision that such roundings can flip is borderline: it is followed and noted, never counted as wrong. Where
-//!    and when the pair collides, if it does, is not free. Coefficients that were lost because of a factor are no
-//!    round-off: decisions and times of impact are compared with those of the whole polynomials. Those that a factor
-//!    keeps, and that the course's library drops from the reference's, are followed.
-//! 5. It checks everything: the first record, mid records, times of impact, repeated contacts, and what follows the
-//!    last record.
+//! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; if that is too little, by [`FAIR_SENSITIVITY`]
+//!    times the effect of such roundings of the step's input on its result.
+//! 4. A decision that such roundings can change is borderline: it is followed and noted, never counted as wrong.
+//!    However, the place and the time of a collision must be right. Coefficients that were lost because of a factor do
+//!    not count as round-off: decisions and times of impact are compared with those of the whole polynomials.
+//!    Coefficients that a factor keeps, although the course's library drops them from the reference's polynomials, are
+//!    followed.
+//! 5. It checks everything: the first record, mid records, times of impact, repeated contacts, and bytes after the last
+//!    record.
 //! 6. A step from or to a state without a result is never right.
 //!
 //! A step with records identical to the reference's needs none of this. Polynomials that are clearly right

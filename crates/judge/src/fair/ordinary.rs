@@ -6,7 +6,7 @@ use fosssim_num::{
     vector::{Vec2, at},
 };
 
-/// The range of ordinary states.
+/// The range of ordinary states of a scene.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct OrdinaryRange {
     /// The largest size of a position.
@@ -18,7 +18,7 @@ pub(crate) struct OrdinaryRange {
 }
 
 impl OrdinaryRange {
-    /// Returns the range of the scene's start, which most states fit.
+    /// Returns the range around the scene's initial state, which contains most states.
     pub fn for_scene(scene: &Scene) -> Self {
         let radii = scene.particles.iter().map(|particle| extent(particle.position) + particle.radius);
         let sizes = radii.chain(scene.half_planes.iter().map(|half_plane| extent(half_plane.point)));
@@ -45,7 +45,7 @@ impl OrdinaryRange {
         far.or_else(|| (spread(places(state)) * FAIR_REACH < self.spread).then_some(0))
     }
 
-    /// Extends the range by a state that is known to be ordinary.
+    /// Extends the range so that it contains a state that is known to be ordinary.
     pub(super) fn widen(&mut self, state: &State) {
         self.position = self.position.max(largest(&state.positions));
         self.velocity = self.velocity.max(largest(&state.velocities));

@@ -1,12 +1,12 @@
-//! Keeps polynomials that are right only with some factors, or only in one of two forms.
+//! Keeps polynomials that are right only with certain factors, or only in one of two forms.
 use fosssim_findings::{Finding, fair::Form};
 use fosssim_model::sim::PairKind;
 
-/// The factors of a polynomial that is right with no factor; it is right in the other form only.
+/// The empty range of factors, for a polynomial that is right only in the other form.
 pub(super) const NONE: [f64; 2] = [f64::INFINITY, 0.0];
 
-/// Polynomials of one kind, form and claim state. They are right if the program's polynomials of that kind have a
-/// factor within the bounds.
+/// Polynomials of one kind, form and claim state. The polynomials are right if the program's factor for their kind is
+/// within the bounds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pending {
     /// The kind of pair and the number of the polynomial.
@@ -26,7 +26,7 @@ pub(crate) struct Pending {
 impl Pending {
     /// Returns the finding for program factors between `low` and `high`, if there is one.
     pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
-        // Factors are known except for rounding.
+        // Factors are known only up to rounding errors.
         let room = 1e-9;
         let (least, most) = (self.least, self.most);
         if !(least.0 <= high * (1.0 + room)) {

@@ -1,5 +1,5 @@
-//! Collects the evidence of one logged polynomial in its step: factor and form of a right one, the fault of a wrong
-//! one, and all that depends on factors of the trace's other polynomials.
+//! Collects the evidence of one logged polynomial: the factor and the form of a right one, the fault of a wrong one,
+//! and everything that depends on the factors of other polynomials.
 use super::{
     compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
     formulas::ExpectedPolynomials,
@@ -34,7 +34,7 @@ pub(super) enum PolynomialJudgement {
     Right,
     /// The polynomial is right in the definition's form, not the course's.
     RightForm,
-    /// The polynomial shows no factor, and is right only with some factors.
+    /// The polynomial does not show its factor, and is right only with certain factors.
     Hangs,
     /// The polynomial is wrong.
     Wrong(Mismatch),
@@ -47,7 +47,7 @@ pub(super) fn compare_first(
     logged: &LoggedPolynomial<'_>,
 ) -> Result<Match, Mismatch> {
     let own = expected.polynomial(logged.number);
-    // If there is another form, the fault of the first does not matter.
+    // If there is another form, the fault in the first form does not matter.
     if expected.other_form(logged.number).is_some() && fits_with_no_factor(own, logged.list) {
         return Err(Mismatch::TooLong);
     }
@@ -72,7 +72,7 @@ impl StepJudgement {
             }
             PolynomialJudgement::Hangs
         };
-        // Another right polynomial in the course's form adds nothing new, whatever the other form shows.
+        // The course's form is already known, so a further right polynomial in this form adds nothing.
         let tells_nothing = first.is_ok() && self.course_form.is_some();
         let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) else {
             return match first.map_err(|mismatch| (mismatch, possible_factors(own, list))) {
@@ -84,7 +84,7 @@ impl StepJudgement {
         let other = compare(right, list, &self.hints(place.pair.kind, number));
         match (first, other) {
             (Ok(found), other) => {
-                // A polynomial that does not show its factor does not show the form either.
+                // A polynomial that does not show its factor cannot show the form.
                 if other.is_err() && found.scale.is_some() && possible_factors(right, list).is_none() {
                     self.course_form = self.course_form.or(Some(place));
                 } else if other.is_err() {

@@ -32,9 +32,8 @@ pub(super) struct Sensitivity {
     pub flipped: Vec<usize>,
 }
 
-/// Repeats a step whose decisions are known. If the reference's own polynomials can't be solved from here (the trace's
-/// can, or this would not be called), the sensitivity is unknown and counts as zero, so only each value's own bounds
-/// count.
+/// Repeats a step whose decisions are known. If the reference's own polynomials can't be solved from this state, the
+/// sensitivity is unknown and counts as zero, so that only each value's own bounds are used.
 pub(super) fn probe(
     context: &Context<'_>,
     simulation: &mut Simulation,
@@ -131,7 +130,8 @@ impl Signs {
 }
 
 impl PerturbedRun<'_> {
-    /// Returns the hit slightly later or earlier, with either vector to an edge's end, because no root finder is exact.
+    /// Returns the decision for a slightly later or earlier time, with either vector at an edge's end, because no root
+    /// finder is exact.
     fn decide_nearby(&self, time: f64) -> Option<Decision> {
         let motion = self.motion.as_ref()?;
         let time = match self.seed {
@@ -152,7 +152,7 @@ struct PerturbedRun<'a> {
     decisions: &'a [FollowedDecision],
     seed: u64,
     run: Run,
-    /// Whether the positions of the pass must be noted anew.
+    /// Whether the positions of the next pass must still be stored.
     stale: bool,
     pass: usize,
     /// The motion of the examined pair.

@@ -16,14 +16,14 @@ use fosssim_model::{
 };
 use fosssim_num::vector::at;
 
-/// Compares states with the reference's own run, which is simulated only as far as needed, and not at all for ordinary
-/// states.
+/// Compares states with the reference's own run, which is simulated only up to the needed step, and not at all for
+/// ordinary states.
 #[derive(Debug)]
 pub(crate) struct Reach<'a> {
     scene: &'a Scene,
     range: OrdinaryRange,
     run: Option<Run>,
-    /// The simulation for judging steps that are extraordinary for the reference as well.
+    /// The simulation for judging steps that are extraordinary in the reference's own run, too.
     other: Option<Simulation>,
 }
 
@@ -32,7 +32,7 @@ pub(crate) struct Reach<'a> {
 struct Run {
     simulation: Simulation,
     steps: u32,
-    /// Whether the run has no finite state any more.
+    /// Whether the run has reached a state that is not finite, or an error.
     is_lost: bool,
 }
 
@@ -44,7 +44,7 @@ impl<'a> Reach<'a> {
 
     /// Judges a step with an extraordinary state. `known` is its judgement, if it starts from ordinary states;
     /// otherwise it is judged only if the reference reaches such states. Steps must be passed in order. Also returns
-    /// the work, which ends soon after it exceeds `most_work`.
+    /// the work. The simulation stops soon after it exceeds `most_work`.
     pub fn judge(
         &mut self,
         context: &Context<'_>,
@@ -85,7 +85,7 @@ impl<'a> Reach<'a> {
         })
     }
 
-    /// Follows the reference to the end of a step.
+    /// Simulates the reference's own run up to the end of a step.
     fn run_to(&mut self, step: u32) {
         let run = self.run.get_or_insert_with(|| Run {
             simulation: Simulation::new(self.scene, RootSearch::WhereNeeded),

@@ -19,8 +19,8 @@ use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::same_bits};
 const MAX_FLIPS: usize = 4;
 
 /// Judges a step. `identical` states that the states, impulses and polynomials of both records are identical to the
-/// reference's; then only the rest of the records is checked. The reference has a result; if this run has none, the
-/// trace's log causes an endless search.
+/// reference's; then only the rest of the records is checked. If this run has no result although the reference has one,
+/// the trace's log causes an endless search.
 pub(crate) fn judge(
     context: &Context<'_>,
     simulation: &mut Simulation,
@@ -67,7 +67,7 @@ fn follow(
     let follower = Follower::new(context, records, None, &[]).preferring_own();
     let (mut first, mut decisions, _, has_disputes) = run(simulation, follower)?;
     if has_disputes && first.total() > 0 {
-        // The submission may have the decisions that the root finder makes of right polynomials.
+        // The submission may also have the decisions that the root finder finds for right polynomials.
         (first, decisions, ..) = attempt(simulation, None, &[])?;
     }
     if !first.may_be_round_off() {
@@ -112,8 +112,8 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     }
 }
 
-/// Returns whether the record holds a log that the course's library does not write: small leading coefficients, or more
-/// coefficients than any detection has.
+/// Returns whether the record contains a log that the course's library cannot write: small leading coefficients, or
+/// more coefficients than any detection has.
 fn is_impossible(frame: &LenientFrame) -> bool {
     let log = &frame.polynomials;
     frame.note.is_none() && !frame.plain || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)

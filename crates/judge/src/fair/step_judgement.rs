@@ -29,13 +29,13 @@ pub(crate) struct StepJudgement {
     pub scales: Scales,
     /// The number of calls of each kind that logged polynomials identical to the reference's.
     pub same: ByKind<u64>,
-    /// The number of polynomials that lost other coefficients than the reference's.
+    /// The number of polynomials that lack other small coefficients than the reference's.
     pub lost: u64,
     /// The used shares of tolerances.
     pub shares: Shares,
-    /// A polynomial that is of the course's form and not of the right form.
+    /// The first polynomial that has the course's form and not the right form.
     pub course_form: Option<PolynomialPlace>,
-    /// A polynomial that is of the right form and not of the course's.
+    /// The first polynomial that has the right form and not the course's.
     pub right_form: Option<PolynomialPlace>,
     /// Polynomials that are right only with some factors. The whole trace shows whether the program uses such a factor.
     pub pending: Vec<Pending>,
@@ -54,7 +54,7 @@ impl StepJudgement {
         Self { step, frame, decisions: passes * context.pairs as u64, same, ..Self::default() }
     }
 
-    /// Adds a finding.
+    /// Adds a finding to the judgement.
     pub(super) fn charge(&mut self, finding: Finding) {
         if self.findings.iter().any(|first| first.kind() == finding.kind()) {
             self.more.add(finding.kind(), 1);
@@ -63,7 +63,7 @@ impl StepJudgement {
         }
     }
 
-    /// Adds one more finding.
+    /// Returns the judgement with one more finding.
     pub fn with_finding(mut self, records: Records<'_>, detail: FindingDetail) -> Self {
         (self.step, self.frame) = (records.step, records.frame);
         self.charge(Finding { step: self.step, frame: self.frame, detail });
@@ -109,7 +109,8 @@ impl StepJudgement {
             })
     }
 
-    /// Returns whether the step has findings that another decision, which moves pairs elsewhere, could explain.
+    /// Returns whether the step has findings that a different decision could explain, because it moves bodies
+    /// differently.
     pub(super) fn may_follow_decisions(&self) -> bool {
         self.hangs
             || self.findings.iter().any(|finding| {

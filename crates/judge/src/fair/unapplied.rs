@@ -15,7 +15,7 @@ use fosssim_model::{
 use fosssim_num::vector::{Vec2, at, length, put};
 use std::collections::BTreeSet;
 
-/// The maximum number of pairs at one particle among which omitted pairs are searched, because all choices are tried.
+/// The maximum number of pairs per particle; all choices of omitted and doubled pairs among them are tried.
 const MAX_PAIRS_PER_PARTICLE: usize = 6;
 
 /// The maximum number of pairs that are examined in one step.
@@ -45,7 +45,7 @@ impl NearPair {
 }
 
 /// Returns how many times a step from `before` applied the force of each near pair: never, once or twice. The reference
-/// ends in `own`. Pairs are omitted if their velocities do not show the number.
+/// ends in `own`. Pairs whose velocities do not show the number are not included.
 #[must_use]
 pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
     let context = Context::new(scene);
@@ -111,7 +111,7 @@ impl NearPairs {
     /// Finds how many times the force of each pair was applied, if the velocities show it.
     fn find(scene: &Scene, tolerances: &Tolerances<'_>, before: &State, own: &State, logged: &State) -> Option<Self> {
         if scene.integrator.is_implicit() {
-            // In this case all forces together have one effect.
+            // An implicit integrator combines all forces, so the effect of one force cannot be separated.
             return None;
         }
         let h = scene.time_step;
@@ -157,7 +157,7 @@ impl NearPairs {
             candidate.changes().iter().for_each(|(particle, _)| of_particle[*particle].push(index));
         }
         settle(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
-        // A pair stays only if it explains all its particles; its removal may affect its neighbors.
+        // A pair is kept only if it explains all its particles. Its removal may affect its neighbors.
         while let Some(index) = candidates.iter().position(|candidate| {
             let is_named = candidate.excess.is_some_and(|excess| excess != 0.0);
             is_named && !candidate.changes().iter().all(|(particle, _)| is_settled(&rest, *particle))
@@ -191,7 +191,7 @@ fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)>
 }
 
 /// Finds, particle by particle, the only choice of pairs that explains the particle's velocity. Each explained particle
-/// leaves its neighbors fewer choices.
+/// reduces the choices of its neighbors.
 fn settle(
     candidates: &mut [NearPair],
     of_particle: &[Vec<usize>],

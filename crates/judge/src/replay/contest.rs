@@ -24,7 +24,7 @@ impl ContestOrder {
             self.simulation.state_mut().clone_from(before);
             self.simulation.set_steps_done(step - 1);
             self.simulation.limit_work(self.simulation.work().saturating_add(most_work));
-            // Judging reports the same error.
+            // The error is reported when the step is judged.
             let _ = self.simulation.step(&mut ());
         }
         &self.order

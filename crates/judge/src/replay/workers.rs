@@ -97,14 +97,14 @@ impl<'a> Workers<'a> {
 /// Judges the remaining steps of a batch, each with the next free worker. Each rule book stops when its remaining work
 /// is used up. If the original's rules stop, the fair rules stop as well.
 ///
-/// Steps are begun in order. A step that was begun is completed, or takes more than the remaining work by itself. The
-/// first step beyond a budget is therefore always among the begun steps, whatever the number of threads.
+/// Steps are begun in order. A step that was begun is completed, or needs more than the remaining work by itself.
+/// Therefore, with any number of threads, the first step beyond a budget is always among the begun steps.
 fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [rest, fair_rest]: [u64; 2]) {
     let slots = &batch.slots[..batch.filled];
     let (next, work, fair_work) = (AtomicUsize::new(0), AtomicU64::new(0), AtomicU64::new(0));
     let run = |worker: &mut Worker| {
         while work.load(Ordering::Relaxed) <= rest {
-            // Read before the step is taken, so that only earlier steps are counted.
+            // Read the used work before taking the step, so that only earlier steps are counted.
             let is_asked = fair_work.load(Ordering::Relaxed) <= fair_rest;
             let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
             // Every index is used once, so the lock is always free.

@@ -10,7 +10,7 @@ use fosssim_num::{
     tolerances::{PARITY_COEFFICIENT, PARITY_ZERO_POLYNOMIAL},
 };
 
-/// The findings about polynomials, held back until the two lists are known to have the same length.
+/// The findings about polynomials, which count only if the two lists have the same length.
 #[derive(Debug, Default)]
 pub(crate) struct Pending {
     runs: Vec<(FindingKind, u32)>,
@@ -65,7 +65,7 @@ impl Pending {
         for (number, (&own_coefficient, &coefficient)) in own.iter().zip(actual).enumerate() {
             let rescaled = (own_coefficient * sum_actual) / sum_own;
             let residual = (coefficient - rescaled).abs();
-            // Parity's exception: NaN passes, because the original tests whether the distance is larger.
+            // In the original NaN passes, because it tests whether the distance is larger than the bound.
             if residual > PARITY_COEFFICIENT {
                 self.record(FindingKind::Coefficient, || {
                     let power = own.len() - 1 - number;
@@ -86,7 +86,7 @@ impl Pending {
     }
 }
 
-/// Returns a wrong coefficient, named as a person would name it.
+/// Returns the coefficient that a person would call wrong.
 fn wrong_coefficient(
     place: PolynomialPlace,
     rescaled: RescaledCoefficient,
@@ -95,7 +95,7 @@ fn wrong_coefficient(
 ) -> FindingDetail {
     let (own, logged) = (expected.coefficients(), actual.coefficients());
     let factor = factor(own, logged);
-    // A coefficient that only the original's bound rejects is named like the original does.
+    // If only the original's bound rejects a coefficient, its power is the original's.
     let power = differing(own, logged, factor).first().copied().unwrap_or(rescaled.power);
     let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
     let (right, wrong) = (factor * of(own), of(logged));

@@ -1,5 +1,5 @@
-//! The scenes of a submission by the cause of their verdicts, and the scene that shows a cause best, which is the same
-//! in every report.
+//! Groups the scenes of a submission by the cause of their verdicts, and selects the scene that shows a cause best, so
+//! that all reports show the same one.
 use super::likely_mistakes;
 use crate::words;
 use fosssim_findings::{Grade, Reason, SceneGrade, Verdict};

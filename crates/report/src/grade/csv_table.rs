@@ -86,7 +86,7 @@ fn empty_rows(passed_over: &[PassedOver], head: &[String], reasons: &str) -> Vec
         column if column == reasons => escape_formula(&entry.why),
         _ => String::new(),
     };
-    // A group may have the name of a column.
+    // The name of a group may equal that of another column.
     let own = head.iter().position(|column| column == reasons).unwrap_or_default();
     let column = |number: usize| if number <= own { head[number].as_str() } else { "" };
     passed_over.iter().map(|entry| (0..head.len()).map(|number| cell(entry, column(number))).collect()).collect()

@@ -11,10 +11,10 @@ use crate::{number::format_count, words};
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use std::fmt::Write;
 
-/// The greatest number of scenes named that have the same cause.
+/// The maximum number of scenes with the same cause that are named.
 const NAMED: usize = 3;
 
-/// Returns annotations; the words are escaped as workflow commands want it.
+/// Returns annotations, with text that is escaped for workflow commands.
 pub(crate) fn annotations(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {

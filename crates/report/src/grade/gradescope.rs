@@ -54,7 +54,7 @@ pub(crate) fn render(grade: &Grade) -> String {
     for (g, group) in grade.groups.iter().enumerate() {
         for (s, scene) in group.scenes.iter().enumerate() {
             tests.push(Test {
-                // Without its own score, the whole would be the sum of these.
+                // Without an explicit score, Gradescope would add up the scores of the tests.
                 score: grade.points.and(scene.points).map(round_points),
                 max_score: round_points(scene.max_points),
                 status: if scene.verdict.is_accepted() { "passed" } else { "failed" },
@@ -62,7 +62,7 @@ pub(crate) fn render(grade: &Grade) -> String {
                 number: format!("{}.{}", g + 1, s + 1),
                 output: match grade.unfit() {
                     Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
-                    // A test that only staff see may show everything.
+                    // Only staff see this test, so it may show everything.
                     None if tells_all || group.visibility == Visibility::Hidden => describe_scene(scene),
                     None => {
                         let mut scene = scene.clone();
@@ -111,7 +111,7 @@ pub(crate) fn render(grade: &Grade) -> String {
 }
 
 fn describe_grade(grade: &Grade) -> String {
-    // Text that every reader sees immediately must not describe groups that some readers do not see.
+    // Every reader sees this text immediately, so it must not describe groups that some readers do not see.
     let all_visible = grade.is_visible();
     let mut lines = vec![match grade.points {
         Some(_) if !all_visible => "Graded.".to_owned(),
@@ -124,7 +124,7 @@ fn describe_grade(grade: &Grade) -> String {
     if let Some(build) = grade.failed_build() {
         lines.push(format!("{}\n{}", strip_control_characters(&words::build(&build.end)), clean_output(&build.output)));
     } else {
-        // A fault of the upload reveals no scene.
+        // A fault of the whole upload reveals nothing about hidden scenes.
         let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
         lines.extend(head_lines(&shown).iter().map(|line| strip_control_characters(line)));
     }
@@ -132,7 +132,8 @@ fn describe_grade(grade: &Grade) -> String {
     lines.join("\n")
 }
 
-/// Returns the message to a student if the platform's time limit was reached; it names what used the time.
+/// Returns the message to a student if the platform's time limit was reached; it names the scenes that used most of the
+/// time.
 fn describe_timeout(grade: &Grade) -> String {
     let missing = grade.count(Verdict::NotRun);
     let mut text = format!(

@@ -18,10 +18,10 @@ use fosssim_mistakes::together::{likely_mistake, likely_mistakes, worth};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
-/// The version of the schema. It rises if a reader of the old version would misunderstand the new one.
+/// The version of the schema. It is increased if a reader of the old version would misunderstand the new one.
 const SCHEMA: u32 = 4;
 
-/// The document of `grade --format json`. Its version in `schema` rises if a reader of the old version would
+/// The document of `grade --format json`. Its version in `schema` is increased if a reader of the old version would
 /// misunderstand the new one.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
@@ -84,7 +84,7 @@ view! {
         #[schemars(length(max = 3))]
         likely_mistakes: Vec<ExplanationView> =
             likely_mistakes(grade).iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
-        /// For each of the likely mistakes, the points of the scenes that only this mistake makes wrong.
+        /// For each of the likely mistakes, the points of the scenes that are wrong only because of this mistake.
         #[schemars(length(max = 3))]
         worth: Vec<f64> = likely_mistakes(grade).iter().map(|(mistake, _)| worth(grade, mistake)).collect(),
         /// The smallest scene for each cause; left out if not requested.
@@ -128,7 +128,7 @@ view! {
     /// The scenes in which a program fails.
     #[schemars(deny_unknown_fields)]
     struct LocatedView from found: LocatedFailure {
-        /// The common contents as a sentence.
+        /// The common contents of these scenes as a sentence.
         text: String = strip_control_characters(&words::describe_located(found)),
         /// The number of scenes in which the program fails.
         failed: usize = found.failed,

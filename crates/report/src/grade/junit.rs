@@ -31,7 +31,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
                 ));
             }
             for scene in &group.scenes {
-                // A test case can contain only its result and the program's output.
+                // A JUnit test case can contain only its result and the program's output.
                 if let Some(words) = describe_difference(scene) {
                     let name = format!("rules_differ.{}", strip_control_characters(&scene.scene));
                     suite.add_property(quick_junit::Property::new(name, words));

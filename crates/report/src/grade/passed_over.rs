@@ -1,5 +1,4 @@
-//! The entries of a class's folder that are not submissions, in every format, so that each list names what is missing
-//! in it.
+//! Reports skipped entries of a class's folder in every format, so that no submission is missing without notice.
 use super::shorten_name;
 use crate::{
     foreign::one_line,
@@ -8,7 +7,8 @@ use crate::{
 };
 use fosssim_findings::{Grade, PassedOver};
 
-/// Adds a warning about each skipped entry to the only grade, because a report on one submission has no list of others.
+/// Adds a warning about each skipped entry to the only grade, because a report on one submission has no list of skipped
+/// entries.
 pub fn add_warnings(grades: &mut [Grade], passed_over: &[PassedOver]) {
     if let [grade] = grades {
         let words = |entry: &PassedOver| format!("passed over {}: {}", entry.name, entry.why);

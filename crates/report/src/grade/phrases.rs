@@ -7,8 +7,8 @@ use fosssim_mistakes::{diagnose::Explanation, together};
 /// The text instead of a verdict for an entry that is not a submission.
 pub(super) const NOT_GRADED: &str = "not graded";
 
-/// Returns the lines above all scenes in a report for one reader: the fault of the whole submission, or its failures
-/// and likely mistakes.
+/// Returns the first lines of a report, above all scenes: the fault of the whole submission, or its failures and likely
+/// mistakes.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::describe_unfit(grade) {
@@ -46,7 +46,7 @@ pub(crate) fn count_wrong(grade: &Grade) -> String {
     format_count(wrong.count() as u64, "wrong scene")
 }
 
-/// Returns the text for a scene whose reason is that of the whole submission.
+/// Returns the text for a scene if the reason is already given for the whole submission.
 pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
     match scene.result.verdict {
         Verdict::Unwritten => "see above",

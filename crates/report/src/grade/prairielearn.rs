@@ -73,7 +73,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         }))
         .collect();
     let build = grade.failed_build();
-    // A fault of the upload is the same in all groups.
+    // A fault of the whole upload concerns all groups.
     let head = match build {
         Some(_) => Vec::new(),
         None if grade.unfit().is_some() => head_lines(grade),

@@ -1,4 +1,4 @@
-//! Grades for tests: a good one, and one that is bad in every way, with hostile text in it.
+//! Grades for tests: an accepted one, and one with every kind of fault and with hostile text.
 use fosssim_findings::{FindingPlace, smallest::SmallestScene};
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
@@ -80,7 +80,8 @@ pub(crate) fn accepted_grade() -> Grade {
     )
 }
 
-/// Returns a grade with every verdict of a run, and with texts that try to break the report's syntax.
+/// Returns a grade with every verdict of a run, and with texts that would break the syntax of a report if they were not
+/// escaped.
 pub(crate) fn failing_grade() -> Grade {
     let mut wrong =
         scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");

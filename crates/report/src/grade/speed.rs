@@ -3,7 +3,7 @@ use super::points;
 use crate::number::format_count;
 use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
 
-/// Returns the sentence about a group's speed: the points, and their origin.
+/// Returns the sentence about a group's speed: the points, and how they were computed.
 #[must_use]
 pub fn describe_speed(speed: &SpeedGrade) -> String {
     let SpeedGrade { marking, points: reached, source } = speed;

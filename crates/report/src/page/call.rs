@@ -41,7 +41,7 @@ struct Row {
     power: usize,
     expected: String,
     own: String,
-    /// The fault as a word; empty if there is none.
+    /// The fault of the coefficient as a word; empty if there is none.
     word: &'static str,
 }
 
@@ -82,7 +82,8 @@ fn describe_decision(study: &Study) -> String {
     Detect { study, place: None }.decision(format_g)
 }
 
-/// Returns whether a curve has a zero within the step. Curves without are flat lines, which text describes better.
+/// Returns whether a curve has a zero within the step. Curves without a zero are flat lines, which text describes
+/// better.
 fn changes_sign(study: &Study) -> bool {
     study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero)))
 }

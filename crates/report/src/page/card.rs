@@ -3,7 +3,7 @@ use super::{Case, data, packed::Precision};
 use fosssim_findings::Hints;
 use serde::{Deserialize, Serialize};
 
-/// The placeholder for a card's key until its page is known. It is a control character, which no text contains.
+/// The placeholder for a card's key until its page is known. The key is a control character, which no text contains.
 const KEY: &str = "\u{1}";
 
 /// The placeholder for the common cause of all scenes, which is known later.
@@ -45,7 +45,7 @@ impl Card {
         Self { html: format!("<p>{}</p>\n", super::markup::text(words)), ..Self::default() }
     }
 
-    /// Returns the card with a remark above its content.
+    /// Returns the card with a note above its content.
     #[must_use]
     pub fn with_remark(self, words: &str) -> Self {
         Self { html: Self::from_words(words).html + &self.html, ..self }
@@ -63,7 +63,7 @@ impl Card {
         serde_json::from_str(text).ok()
     }
 
-    /// Returns the number of bytes of the part without script, and of the motions.
+    /// Returns the sizes of the part without script and of the motions, in bytes.
     pub(super) fn sizes(&self) -> (usize, usize) {
         (self.html.len(), self.data.len())
     }

@@ -60,7 +60,7 @@ impl Case<'_> {
         render_template(&CaseContent { check, key, look, content })
     }
 
-    /// Returns the finding that is shown first: of the official book, or of the other one if the official has none.
+    /// Returns the finding that is shown first: the official book's, or the other book's if the official book has none.
     fn first(&self) -> Option<&Finding> {
         first(&self.check).filter(|_| self.hints == Hints::Full)
     }
@@ -76,7 +76,7 @@ impl Case<'_> {
         self.evidence.filter(|evidence| !evidence.steps.is_empty())
     }
 
-    /// Returns a sentence on where and why judging stopped, with advice where to look.
+    /// Returns a sentence about where and why judging stopped, with advice about the place to check.
     fn describe_stop(&self) -> String {
         let outcome = self.check.outcome;
         let Some(stop) = outcome.stop_of(self.check.rules.official()) else { return String::new() };
@@ -186,7 +186,7 @@ impl TraceContent<'_> {
             )
         };
         let mut out = String::new();
-        // Flat curves show nothing.
+        // A flat curve is not drawn.
         if evidence.steps.iter().any(|step| !(step.position.max(step.velocity) <= tolerance)) {
             out += &figure(&residuals.svg(PlotTarget::Page));
         }
@@ -228,7 +228,7 @@ fn subject(finding: &Finding) -> String {
 fn compare_cells(row: &Row) -> (String, String) {
     match (row.expected, row.actual) {
         (Value::Number(expected), Value::Number(actual)) => mark_difference(expected, actual, row.differs),
-        // A single value is as short as others.
+        // A single value is formatted like other numbers.
         (expected, actual) => (format_value(expected), format_value(actual)),
     }
 }

@@ -78,7 +78,7 @@ struct Cluster<'a> {
     note: Option<&'a CourseNote>,
     /// The smallest scene on which a member's program shows the mistake, to demonstrate in class.
     smallest: Option<&'a SmallestScene>,
-    /// The first of the scenes that all members fail, if no mistake is named.
+    /// The first scene that all members fail, if no mistake is named.
     first: Option<String>,
     /// The number of the members' mistake, by which the table can be filtered.
     mistake: Option<usize>,

@@ -20,10 +20,10 @@ use std::fmt::Write;
 
 /// Returns all data blocks of a case.
 pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision: Precision) -> String {
-    // Below full hints, a page holds only data that the program wrote.
+    // Without full hints, a page contains only data that the program itself wrote.
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
-    // A motion that is identical bit for bit is not stored twice.
+    // If both motions are identical bit for bit, only one is stored.
     let what = case.what_if.filter(|what| is_full && !what.equal).map(|what| ("what", &what.track));
     let tracks: Vec<(&str, &Track)> =
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();

@@ -9,10 +9,10 @@ use fosssim_student::{self as student};
 
 impl WhatIf {
     /// Returns the reference's run with the named mistake, next to the trace. `None` if the mistake reproduces no step,
-    /// if the trace was not kept whole, or if the evidence does not hold the whole motion.
+    /// if the trace was not kept completely, or if the evidence does not contain the whole motion.
     #[must_use]
     pub fn for_scene(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
-        // An incomplete motion can't be compared.
+        // An incomplete motion cannot be compared.
         let trace = trace?;
         if named.reproduced == 0 || !evidence.window.is_whole(evidence.layout.steps) {
             return None;

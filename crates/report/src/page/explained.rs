@@ -13,8 +13,8 @@ use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 /// A trace, with its card if one was drawn.
 type ExplainedCase<'a> = (&'a Case, Option<&'a Card>);
 
-/// Returns how hard the fault of a case is to see; the smallest value is the clearest case. Cases come later for these
-/// reasons: no picture, another mistake than the common ones, several indistinguishable mistakes, a large motion.
+/// Returns how hard the fault of a case is to see; the smallest value is the clearest case. A case is less clear if it
+/// has no picture, a mistake that is not one of the common ones, several indistinguishable mistakes, or a large motion.
 fn clarity_rank((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, usize, usize, usize) {
     let own = &case.explanations;
     (card.is_none(), rank(common, own), own.len(), card.map_or(0, |card| card.sizes().1))

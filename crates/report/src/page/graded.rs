@@ -76,7 +76,7 @@ impl GradePage<'_> {
             alike: causes.iter().map(Vec::len).collect(),
             told,
         };
-        // Without cards, the viewer would be most of the page.
+        // The viewer is left out if there are no cards, because it would be most of the page.
         let script = if content.has_scenes && !content.told.is_empty() { script() } else { "" };
         document(&format!("{}: {}", grade.submission, grade.verdict.name()), &render_template(&content), script)
     }
@@ -89,15 +89,15 @@ struct GradeContent<'a> {
     page: &'a GradePage<'a>,
     /// The part of the grade that the reader may see.
     grade: &'a Grade,
-    /// The listed scenes by cause, each with the parts of its card that fit.
+    /// The listed scenes by cause, each with the parts of its card that fit on the page.
     told: Vec<(&'a SceneGrade, Option<Card>)>,
     rooms: Vec<Room>,
     /// The number of scenes with each cause.
     alike: Vec<usize>,
     has_scenes: bool,
-    /// Whether the rule books differ in all scenes that have something to tell, and nothing is wrong.
+    /// Whether nothing is wrong, so that all listed scenes are listed only because the rule books differ.
     is_accepted: bool,
-    /// Whether the table of groups says who sees them; its columns.
+    /// Whether the table of groups has a column with the readers of each group.
     tells_who: bool,
     columns: usize,
 }
@@ -159,7 +159,7 @@ pub(super) fn render_located(found: &LocatedFailure) -> String {
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
 }
 
-/// Returns the sentence which rule book counts.
+/// Returns the sentence about which rule book counts.
 fn describe_books(grade: &Grade) -> String {
     let other = format_count(grade.differing() as u64, "scene");
     match (grade.rules, grade.differing()) {
@@ -203,7 +203,7 @@ impl<'a> Article<'a> {
     /// Creates the details of a scene, reduced to the remaining space for its card and its output.
     fn new(scene: &'a SceneGrade, card: Option<&Card>, room: Room, room_of_outputs: &mut usize) -> Self {
         let key = scene_key(&scene.scene);
-        // A detail is not repeated if the card shows it with values.
+        // A detail is left out if the card already shows it with values.
         let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
         let details = words::details(scene).into_iter().skip(usize::from(is_shown));
         let mistakes = mistakes(&scene.settled, is_shown);
@@ -239,7 +239,7 @@ fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
     let output = without_codes(output);
     let shown: String = output.chars().take(MAX_OUTPUT_LENGTH).collect();
     let cut = if shown.len() < output.len() { "\n[cut short]" } else { "" };
-    // The length counts after escaping, which makes hostile text longer.
+    // The length is measured after escaping, because escaping makes hostile text longer.
     let shown = text(&shown);
     if shown.len() > *room {
         *room = 0;

@@ -7,11 +7,11 @@ const BAR_COUNT: usize = 10;
 /// The height of the highest bar, in pixels.
 const MAX_BAR_HEIGHT: usize = 108;
 
-/// Renders a histogram of shares of the points, from 0 to 1; empty without any.
+/// Renders a histogram of shares of the points, from 0 to 1; empty if there are no shares.
 pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
     let mut counts = [0_usize; BAR_COUNT];
     for share in shares.filter(|share| share.is_finite()) {
-        // The last bar that begins at or below the share; a share of 1 belongs to the last bar.
+        // A share belongs to the last bar that begins at or below it, and a share of 1 to the last bar.
         let bar = (1..BAR_COUNT).filter(|&bar| share * BAR_COUNT as f64 >= bar as f64).count();
         counts[bar] += 1;
     }

@@ -73,7 +73,7 @@ pub(super) fn number(value: f64) -> String {
 }
 
 /// Returns two numbers as HTML, with marks on the digits of the second that differ from the first. Numbers that count
-/// as equal are shown without the digits that only rounding changes.
+/// as equal are shown without the digits that differ only because of rounding.
 pub(super) fn mark_difference(expected: f64, actual: f64, differs: bool) -> (String, String) {
     if !differs {
         return (number(expected), number(actual));

@@ -89,7 +89,7 @@ pub fn style() -> String {
 }
 
 /// Returns the policy sources for the script and the style of a report. A page that shows a report in a frame must
-/// allow them, because a frame inherits the policy of the page around it.
+/// allow them, because a frame inherits the policy of the surrounding page.
 #[must_use]
 pub fn framed_digests() -> [String; 2] {
     [script(), &style()].map(|text| format!("'{}'", digest(text)))
@@ -124,7 +124,7 @@ fn render_template(template: &impl Template) -> String {
     template.render().unwrap_or_default()
 }
 
-/// Returns the digest by which a policy allows a script or a style sheet.
+/// Returns the digest with which a policy allows a script or a style sheet.
 #[must_use]
 pub fn digest(text: &str) -> String {
     use base64::Engine;

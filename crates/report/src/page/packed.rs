@@ -26,9 +26,9 @@ const NO_UNIT_MARK: i64 = 1 << 40;
 /// The precision of stored motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Precision {
-    /// Exact, if there is space for it; otherwise rounded.
+    /// Motions are exact if there is space for them, otherwise rounded.
     AsRoomAllows,
-    /// Rounded.
+    /// Motions are rounded.
     Rounded,
 }
 

@@ -1,7 +1,7 @@
 //! The size budget of a page, which decides the parts of each scene's card that fit.
 use super::{Card, script};
 
-/// The maximum size of a page, in bytes: it is sent by mail, and opened on old machines.
+/// The maximum size of a page, in bytes. Pages are sent by mail, and opened on old machines.
 pub const PAGE_BUDGET: usize = 2_950_000;
 
 /// The maximum number of bytes on a page for the output of programs, in all scenes together.
@@ -13,18 +13,18 @@ const PICTURE_BUDGET: usize = PAGE_BUDGET / 3 * 2;
 /// The parts of a scene's card that fit on the page; each level includes the lower ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
-    /// Only the text.
+    /// The text.
     Words,
-    /// Also the pictures.
+    /// The text and the pictures.
     Pictures,
-    /// Also the rounded motion.
+    /// The text, the pictures and the rounded motion.
     Rounded,
-    /// The exact motion instead of the rounded one.
+    /// The text, the pictures and the exact motion.
     Exact,
 }
 
-/// Distributes the size budget. Text always fits. Pictures come next, in the order of the cards, then motions in their
-/// smallest form, and last exact motions, again in the order of the cards.
+/// Distributes the size budget. Text is always included. Then pictures are added in the order of the cards, then
+/// motions in their smallest form, and last exact motions, again in the order of the cards.
 pub(super) fn distribute<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<Room> {
     let count = cards.clone().count();
     let mut rooms = vec![Room::Words; count];

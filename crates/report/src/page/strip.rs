@@ -1,12 +1,12 @@
-//! The strip of all steps: right, wrong by itself, or wrong as a consequence. Heights distinguish the kinds without
-//! color.
+//! The strip of all steps: right, wrong by itself, or wrong as a consequence. The kinds differ in height, so that they
+//! can be distinguished without color.
 use fosssim_evidence::{Step, StepClass};
 use std::fmt::Write;
 
 /// The width of the strip.
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 26.0;
-/// The maximum number of columns. More steps share columns, which show their worst step.
+/// The maximum number of columns. If there are more steps, several share a column, which shows the worst of them.
 const MAX_COLUMNS: usize = 480;
 
 /// Renders the strip, and its counts as text.

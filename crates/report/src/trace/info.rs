@@ -1,4 +1,4 @@
-//! The contents of a trace as JSON. For people, the summary's own text is the report.
+//! The contents of a trace as JSON. The report for people is the text of the summary itself.
 use super::super::view::SCHEMA;
 use fosssim_model::trace::{Summary, TraceError};
 use serde_json::{Value, json};

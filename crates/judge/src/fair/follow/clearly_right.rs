@@ -37,7 +37,7 @@ impl Follower<'_> {
         own: &[Polynomial],
     ) -> AtOnce {
         let mut found = [None; PairKind::MAX_POLYNOMIALS];
-        // Wider bounds make more coefficients round-off.
+        // With wider bounds, more coefficients count as round-off, so the floors do not apply.
         if self.sensitivity.is_some() || self.context.looks_closely {
             return found;
         }

@@ -16,12 +16,12 @@ use fosssim_num::vector::Vec2;
 pub(super) struct OwnImpact {
     /// The objects' time of impact.
     pub time: f64,
-    /// Whether the logged polynomials have lost leading coefficients that the reference's have.
+    /// Whether the logged polynomials lack leading coefficients that the reference's have.
     pub lost: bool,
 }
 
 impl Follower<'_> {
-    /// Returns the decision with which the step continues. It is the submission's, if the trace shows it.
+    /// Returns the decision with which the step continues. If the trace shows the submission's decision, that is used.
     pub(super) fn settle(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
         let call = self.decisions.len();
         let findings = self.judged.total();
@@ -40,7 +40,7 @@ impl Follower<'_> {
             Some(own) if (own.time <= 1.0) != (by_polynomials.time() <= 1.0) => own.time <= 1.0,
             _ => by_polynomials.collides(),
         };
-        // A decision that counts as wrong is not excused in addition.
+        // A decision that is counted as wrong is not also counted as borderline.
         if decision.collides() != is_expected && self.judged.total() == findings {
             self.judged.note_borderline(self.pass, pair, decision.collides());
         }
@@ -62,9 +62,9 @@ impl Follower<'_> {
         if self.prefers_own { by_own } else { Decision::Miss { time: Time::Excluded } }
     }
 
-    /// Counts decisions that change because of lost coefficients; the factor is the cause, not round-off. If a factor
-    /// keeps coefficients that the course's library drops from the reference's polynomials, nothing is lost, and the
-    /// decision of its root finder does not count.
+    /// Counts decisions that change because of lost coefficients. Their cause is the factor, not round-off. With some
+    /// factors the library keeps coefficients that it drops from the reference's polynomials; then nothing is lost, and
+    /// the reference's decision does not count.
     fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: OwnImpact) {
         if !own.lost {
             return;
@@ -82,7 +82,7 @@ impl Follower<'_> {
         }
     }
 
-    /// Returns the opposite of a decision that round-off may flip.
+    /// Returns the opposite of a decision that round-off may change.
     fn opposite(&self, decision: Decision) -> Decision {
         match decision {
             Decision::Hit { time, .. } => Decision::Miss { time: Time::Found(time) },
@@ -94,8 +94,8 @@ impl Follower<'_> {
         }
     }
 
-    /// Returns whether round-off may flip, or has flipped, the decision of a call. If right polynomials lead the root
-    /// finder to another decision than the reference's, the submission may have either.
+    /// Returns whether round-off may change, or has changed, the decision of a call. If right polynomials lead the root
+    /// finder to a decision that differs from the reference's, the submission may have either decision.
     fn is_borderline(&self, call: usize) -> bool {
         if self.call.is_disputed {
             return true;
@@ -134,7 +134,7 @@ impl Follower<'_> {
             }
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
-                    // Round-off decides whether the pair collides, but not where and when.
+                    // Round-off may change whether the pair collides, but not where and when.
                     let (known, judged) = (self.expected_polynomials(), &mut self.judged);
                     let finding =
                         contact::possible_hit(self.context, &self.records, known.as_ref(), pair, &actual, judged);

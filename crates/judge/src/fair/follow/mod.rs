@@ -30,7 +30,7 @@ use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial, vector::sam
 /// The initial capacity of the list of decisions.
 const DECISIONS: usize = 1 << 14;
 
-/// Follows one step. The simulation fills it; [`super::step`] reads it.
+/// Follows one step. The simulation calls it as an observer; [`super::step`] reads the result.
 pub(super) struct Follower<'a> {
     context: &'a Context<'a>,
     records: Records<'a>,
@@ -42,12 +42,12 @@ pub(super) struct Follower<'a> {
     pub judged: StepJudgement,
     /// All decisions of the step.
     pub decisions: Vec<FollowedDecision>,
-    /// Calls of hybrid scenes whose decisions round-off may flip, in order (in the second comparison).
+    /// Calls of hybrid scenes whose decisions round-off may change, in order (in the second comparison).
     pub borderline: Vec<usize>,
     pass: Pass,
-    /// Passes so far, before and after the mid record.
+    /// The numbers of passes so far, before and after the mid record.
     passes: [usize; 2],
-    /// Passes in the trace; `None` if its polynomials don't fill whole passes.
+    /// The numbers of passes in the trace; `None` if its polynomials don't fill whole passes.
     logged_passes: Option<[usize; 2]>,
     /// The index of the pass's next polynomial in the end record's list; `None` if it is not logged.
     next: Option<usize>,
@@ -78,7 +78,7 @@ pub(super) struct Follower<'a> {
 struct CurrentCall {
     /// The result of the reference's own polynomials, if the logged polynomials are right but different.
     own: Option<OwnImpact>,
-    /// Whether right polynomials lead the root finder to another decision than the reference's.
+    /// Whether right polynomials lead the root finder to a decision that differs from the reference's.
     is_disputed: bool,
     /// Whether the polynomials are right and complete, and the logged ones exclude an impact.
     misses_logged: bool,
@@ -91,7 +91,7 @@ struct CurrentCall {
 #[derive(Debug, Clone, Copy)]
 struct SeenCall {
     motion: BoundedPairMotion,
-    /// Whether the trace has the right approach polynomial, and not the course's.
+    /// Whether the trace uses the mathematically right approach polynomial instead of the course's.
     has_right_approach: bool,
 }
 
@@ -166,7 +166,8 @@ impl<'a> Follower<'a> {
         }
     }
 
-    /// Compares the states at the end of the step. Pairs that explain the trace's state are left out.
+    /// Compares the states at the end of the step. Differences that wrong forces of pairs explain are not counted
+    /// again.
     fn settle_states(&mut self, own: &State) {
         let Records { frame, before, end, .. } = self.records;
         let tolerances = Tolerances::from_context(self.context, own, self.sensitivity.map(|known| &known.end));
@@ -195,7 +196,7 @@ impl Observer for Follower<'_> {
             self.moved[particle] = true;
         }
         if matches!(pass.stage, Stage::Geometric { round: 0 }) {
-            // The geometric part starts from the mid record, which is known.
+            // The geometric part starts from the positions of the mid record, which are known.
             self.moved.fill(false);
         }
         let part = self.part();
@@ -217,7 +218,7 @@ impl Observer for Follower<'_> {
                 particles.for_each(|particle| self.moved[particle] = true);
                 self.floors = None;
             }
-            // A round's responses follow its last detection.
+            // The responses of a round come after its last detection.
             Stage::Impulses { .. } => self.moving.extend(particles),
             Stage::Simple | Stage::Geometric { .. } => {}
         }
@@ -246,7 +247,7 @@ impl Steer for Follower<'_> {
         if same {
             self.judged.same[pair.kind] += 1;
             if self.sensitivity.is_some() || !self.is_hybrid() {
-                // If the decision is disputed, the range of round-off must be known.
+                // If the decision is disputed, the effect of round-off must be known.
                 let motion = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end);
                 self.call.seen = Some(SeenCall { motion, has_right_approach: false });
             }
@@ -260,7 +261,7 @@ impl Steer for Follower<'_> {
             let lengths = || polynomials.iter().enumerate().map(|(k, own)| (own.coefficients().len(), logged(k).len()));
             let differ = at_once[..count].contains(&None) && lengths().any(|(own, logged)| logged != own);
             self.judged.lost += u64::from(differ);
-            // In this case the root search must also end for the reference's own polynomials.
+            // The root search must also end for the reference's own polynomials.
             self.call.misses_logged = !differ
                 && polynomials.iter().all(|own| contact::is_searchable(own.coefficients()))
                 && exclusion_of((0..count).map(logged)).is_some();
@@ -286,7 +287,7 @@ impl Steer for Follower<'_> {
                 return;
             }
         }
-        // The submission's polynomials decide, even if they are wrong: a wrong polynomial is counted once.
+        // The submission's polynomials decide, even if they are wrong, so that a wrong polynomial is counted only once.
         polynomials.copy_from_slice(&searched[..count]);
     }
 

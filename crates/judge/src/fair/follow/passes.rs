@@ -33,7 +33,7 @@ impl<'a> Follower<'a> {
             return;
         };
         for (index, part) in [Part::Impulses, Part::Geometric].into_iter().enumerate() {
-            // An earlier error determines whether the geometric part runs.
+            // An earlier error may decide whether the geometric part runs, so its passes are not counted again.
             let follows = index == 1 && self.tainted[0];
             if logged[index] != self.passes[index] {
                 if !self.tainted[index] && !follows {
@@ -53,7 +53,7 @@ impl<'a> Follower<'a> {
         usize::from(matches!(self.pass.stage, Stage::Geometric { .. }))
     }
 
-    /// Returns the end positions of the step that this pass certainly uses, because the trace holds them.
+    /// Returns the end positions of the step that this pass certainly uses, because the trace contains them.
     pub(super) fn known_positions(&self) -> Option<&'a [f64]> {
         let [before, after] = self.logged_passes?;
         let number = self.passes[self.part()];

@@ -82,7 +82,7 @@ impl<'a> Follower<'a> {
                     self.charge_polynomial(&logged, &expected, mismatch, is_known);
                 }
             }
-            // Positions that result from a response have its round-off.
+            // Positions after a response have the round-off of the response.
             self.judged.hangs |= self.is_moved(pair) && (hangs || matches!(said, PolynomialJudgement::Wrong(_)));
         }
         self.call.seen = Some(SeenCall { motion: seen, has_right_approach });
@@ -132,7 +132,7 @@ impl<'a> Follower<'a> {
                 return;
             }
             if self.is_moved(logged.place.pair) {
-                // A formula that is known to be wrong is wrong here as well, wherever the particles are.
+                // A formula that is known to be wrong is wrong at all positions.
                 if !self.wrong_formulas[kind][number] {
                     self.charge(FindingDetail::PassPositions { place: logged.place });
                     self.tainted[part] = true;

@@ -12,10 +12,11 @@ use crate::{
 use fosssim_findings::{Grade, GroupGrade, Verdict};
 use std::fmt::Write;
 
-/// The number of groups that are listed where there are at least two more; those that are not accepted come first.
+/// The maximum number of listed groups if there are more than one further group. Groups that are not accepted come
+/// first.
 const MAX_GROUPS: usize = 12;
 
-/// Renders the closing lines below the verdict. With `alone`, no scenes are above them.
+/// Renders the closing lines below the verdict. `alone` is whether the report lists no scenes.
 pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let style = options.style;
     let mut text = String::new();
@@ -33,7 +34,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let heading = style.paint(Look::Strong, "Where it fails");
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::describe_located(located)));
     }
-    // A fault of the whole submission explains everything.
+    // A fault of the whole submission explains all groups.
     let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
     let wrong = count_wrong(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {

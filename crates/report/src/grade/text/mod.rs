@@ -1,4 +1,5 @@
-//! Grades for people at a terminal: first the faults, and last, where a terminal shows it, the result.
+//! Renders grades for people at a terminal. The faults come first and the result last, because a terminal shows the
+//! last lines.
 
 mod closing;
 mod scenes;
@@ -21,12 +22,12 @@ const MAX_SHOWN_LINES: usize = 10;
 pub enum TextDetail {
     /// One line per submission.
     Line,
-    /// A table with a row for each of several submissions; the result for a single submission.
+    /// A table with a row for each submission, or the result if there is only one submission.
     Table,
-    /// Also every scene that is not accepted.
+    /// The summary and every scene that is not accepted.
     #[default]
     Wrong,
-    /// Also every accepted scene.
+    /// The summary and every scene.
     All,
 }
 
@@ -73,7 +74,7 @@ impl Text<'_> {
     }
 
     /// Writes one submission. Its verdict is above its scenes and, unless other submissions follow, also below them,
-    /// where it stays visible.
+    /// where a terminal still shows it.
     fn write_submission(&self, text: &mut String, grade: &Grade, is_one_of_several: bool) {
         let details = scenes::render(self, grade);
         if !details.is_empty() {
@@ -101,7 +102,7 @@ impl Text<'_> {
         format!("{}: {}, {reached}", self.style.paint(Look::Strong, &name), self.style.paint(look, verdict))
     }
 
-    /// Returns the fault of the whole submission, with the option that helps if the reader can type the command.
+    /// Returns the fault of the whole submission, with the option that helps, if the reader runs the command.
     fn unfit(&self, grade: &Grade) -> Option<String> {
         let option = match (grade.unfit(), self.closer) {
             (Some(SubmissionFault::Milestone(other)), Some(_)) => {
@@ -144,7 +145,7 @@ pub fn extra(grade: &Grade) -> String {
     })
 }
 
-/// Returns the name of the rule book that counts, if a reader might expect the other; empty if both agree.
+/// Returns the name of the rule book that counts, if it matters; empty if both books agree.
 fn describe_rules(grade: &Grade) -> String {
     match (grade.rules, grade.differing() as u64) {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
@@ -167,7 +168,7 @@ const fn verdict_style(verdict: Verdict) -> Look {
     }
 }
 
-/// Returns the lines of program output, marked so that they cannot be confused with the report's.
+/// Returns the lines of program output, each with a mark, so that they cannot be confused with lines of the report.
 fn quote_output(output: &str, most: usize) -> String {
     let output = clean_output(output);
     let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();

@@ -13,16 +13,16 @@ use crate::{
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
-/// The greatest number of causes that are described with an example. The others have a sentence, unless every scene is
-/// shown.
+/// The maximum number of causes that are described with an example. Other causes get only a sentence, unless every
+/// scene is shown.
 const MAX_DESCRIBED: usize = 3;
 
-/// The greatest number of scenes named that end the same way.
+/// The maximum number of scenes with the same end that are named.
 const MAX_NAMED: usize = 3;
 
 /// Renders the groups that have something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
-    // A fault of the whole submission is not repeated for each scene.
+    // A fault of the whole submission is reported once, not for each scene.
     if options.shown < TextDetail::Wrong || grade.unfit().is_some() {
         return String::new();
     }
@@ -75,7 +75,8 @@ impl<'a> Scenes<'a, '_> {
         text
     }
 
-    /// Returns whether a scene is only counted, because it is accepted or another one with its cause is described.
+    /// Returns whether a scene is only counted, because it is accepted, or another scene with the same cause is
+    /// described.
     fn is_folded(&self, scene: &SceneGrade) -> bool {
         self.options.shown < TextDetail::All
             && (scene.verdict.is_accepted()

@@ -73,7 +73,7 @@ pub fn shorten_name(name: &str) -> String {
         return name.to_owned();
     }
     let letters: Vec<char> = name.chars().collect();
-    // Wide letters take two columns.
+    // A wide letter takes two columns.
     let taken = |letters: &mut dyn Iterator<Item = &char>| -> Vec<char> {
         let mut room = END_WIDTH;
         letters
@@ -108,7 +108,7 @@ fn render_rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> St
             let blanks = " ".repeat(column_width(column) - columns(cell));
             let look = match row.checked_sub(1) {
                 None => Some(Look::Faint),
-                // The column of the verdict.
+                // This is the column of the verdict.
                 Some(grade) if number == 2 => Some(super::verdict_style(grades[grade].verdict)),
                 Some(_) => None,
             };

@@ -15,7 +15,7 @@ use fosssim_student::{Area, Mistake, Row, StepMistake, find};
 pub(crate) use letters::explain_letters;
 pub(crate) use places::place;
 
-/// Returns the mistake as a sentence for the student, which does not give a formula away.
+/// Returns the mistake as a sentence for the student, which does not reveal a formula.
 #[must_use]
 pub fn what(explanation: &Explanation) -> String {
     let sentence = match &explanation.about {
@@ -50,8 +50,8 @@ pub fn what_or(explanation: &Explanation) -> String {
     }
 }
 
-/// Returns the exact form, one line each: which term of which coefficient has which weight. It may give the right
-/// formula away. A known mistake, which the reference has reproduced, has no lines about other weights that fit.
+/// Returns the lines of the exact form: the terms of each coefficient and their weights. The exact form may reveal the
+/// right formula. A known mistake, which the reference has reproduced, has no lines about other weights that fit.
 #[must_use]
 pub fn details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
@@ -84,7 +84,7 @@ pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
     }
 }
 
-/// Returns advice where in the program a wrong stage may be.
+/// Returns advice about the place of a wrong stage in the program.
 pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.about {
         About::Stage(fault) => fault.areas().first().map(|area| area.advice()),
@@ -92,7 +92,7 @@ pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     }
 }
 
-/// Returns whether an explanation says more than that something is wrong.
+/// Returns whether an explanation contains more than the fact that something is wrong.
 pub(crate) fn is_known(explanation: &Explanation) -> bool {
     !matches!(explanation.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
 }

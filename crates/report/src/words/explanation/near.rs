@@ -37,7 +37,7 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
 pub(super) fn what(wrong: &WrongPairs) -> String {
     let faults = faults(wrong);
     let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
-    // Velocities of pairs that press on each other may reveal too much.
+    // Velocities of pairs that press on each other may reveal too much, so they are not mentioned.
     if 50 * (once + twice) <= missing {
         return "Not written yet: the search for near pairs. No pair is reported.".to_owned();
     }

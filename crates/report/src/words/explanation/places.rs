@@ -1,4 +1,4 @@
-//! The places of examples.
+//! Describes the place of an example: the step, the record and the objects.
 use fosssim_judge::PairWords;
 use fosssim_mistakes::diagnose::{ExamplePlace, StepRecord};
 use fosssim_model::sim::PairKind;

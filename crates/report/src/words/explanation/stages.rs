@@ -12,7 +12,7 @@ pub(super) fn what(fault: &StageFault) -> String {
     format!("{}: {}.", describe_place(fault), capitalize(&describe_fault(fault)))
 }
 
-/// Returns the parts of the assignment that may hold the fault, with the kind of pair if it concerns only one.
+/// Returns the parts of the assignment that may contain the fault, with the kind of pair if it concerns only one.
 fn describe_place(fault: &StageFault) -> String {
     let areas: Vec<String> = fault.areas().iter().map(|area| area.name().to_lowercase()).collect();
     let areas = match areas.split_last() {
@@ -114,7 +114,7 @@ fn describe_responses(wrong: &WrongResponses) -> String {
     }
 }
 
-/// Returns the objects that change wrongly.
+/// Names the objects whose quantities change wrongly.
 fn who_changes(all: &[ChangedQuantity]) -> String {
     let quantities = distinct(all.iter().map(|one| one.quantity));
     let bodies = distinct(all.iter().map(body));
@@ -150,7 +150,7 @@ const fn plural(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Returns a line of the exact form; `None` if a number would add nothing.
+/// Returns a line of the exact form; `None` if the number is not worth a line.
 pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
         StageDetail::Factor(ratio) => format!("each change is {} what it should be", times(Ratios::All(*ratio))),
