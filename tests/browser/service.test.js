@@ -162,7 +162,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByText("2 students, 0 staff").waitFor();
   await page.getByLabel("Who").selectOption("staff");
   await page.getByRole("button", { name: "Show", exact: true }).click();
-  await page.getByText("Nobody is like that.").waitFor();
+  await page.getByText("No member matches the filter.").waitFor();
   await accessible(page);
 
   // A student hands in a program with a mistake, watches its state, and reads what is wrong with it.
@@ -181,7 +181,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   assert.deepEqual([await student.page.locator("h1").count(), await student.page.locator("iframe").count()], [1, 0]);
   assert.match(
     await student.page.locator("main").innerText(),
-    /Next: mend what the report names first[^]*Likely mistake[^]*head-on-equal-masses/,
+    /Next: fix the first mistake in the report[^]*Likely mistake[^]*head-on-equal-masses/,
   );
   await student.page.locator("html[data-ready]").waitFor({ state: "attached" });
   await student.page.locator(".report canvas").first().waitFor();

@@ -185,7 +185,7 @@ pub enum StartProblem {
     /// The file is the grader itself.
     #[error("this is the grader's own program, not a submission; name the submission's program")]
     GradersOwn,
-    /// Another process has the file open for writing.
+    /// The file is open for writing in another process.
     #[error("the file is still being written (text file busy); wait for the build or the copy to end")]
     Busy,
     /// The program tried to open a window.

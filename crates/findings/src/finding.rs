@@ -119,7 +119,7 @@ pub enum FindingDetail {
         /// The trace's collision.
         actual: LoggedImpulse,
     },
-    /// Both have the collision, with different normals.
+    /// The collision is in both, with different normals.
     WrongNormal {
         /// The reference's collision.
         expected: Impulse,

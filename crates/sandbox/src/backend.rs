@@ -58,7 +58,7 @@ impl Supervisor {
     fn command(&self, mode: &str) -> Command {
         let mut command = Command::new(&self.program);
         command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
-        // Copies of programs are in this folder, so the probe tries to execute there.
+        // Copies of programs are in this folder, so the probe tests execution there.
         command.env("TMPDIR", std::env::temp_dir());
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
@@ -72,7 +72,7 @@ impl Supervisor {
             Ok(SpawnedSupervisor { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
         let asked = begin().map_err(|source| self.not_started(source))?;
-        // A supervisor that does not read reports the reason, or ends.
+        // If the supervisor does not read the order, its answer or its end shows the reason.
         let _ = wire::send(&asked.control, order);
         Ok(asked)
     }
@@ -235,13 +235,13 @@ impl Backend {
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
-    /// Returns whether all layers required on this host hold.
+    /// Returns whether all layers that are required on this host work.
     #[must_use]
     pub fn is_complete(&self) -> bool {
         self.layers.iter().all(|report| report.active || !report.required)
     }
 
-    /// Returns one line per required layer that does not hold; empty for a complete sandbox.
+    /// Returns one line per required layer that does not work; empty for a complete sandbox.
     #[must_use]
     pub fn weaknesses(&self) -> Vec<String> {
         layers::missing(&self.layers)
@@ -304,7 +304,7 @@ impl Backend {
                 None => (supervisor.spawn_for(&order)?, false),
             };
             match asked.first() {
-                // The keeper had ended because it received no order in time.
+                // The keeper has ended because it received no order in time.
                 Err(_) if kept => asked.host.kill(),
                 first => break (asked, first),
             }

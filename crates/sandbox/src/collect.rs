@@ -2,7 +2,7 @@
 //!
 //! A hostile program leaves a link to a reference, a pipe, a device or a terabyte of holes where its output should be.
 //! The file is therefore opened beneath the folder without following links and without waiting. The open descriptor
-//! must be a regular file, with one name, within the limit. Call this only after every process is dead, which is the
+//! must be a regular file, with one name, within the limit. Call this only after every process has ended, which is the
 //! case when [`RunningProgram::wait`](super::RunningProgram::wait) has returned.
 
 use std::{
@@ -27,7 +27,7 @@ pub fn remove_folder(path: &Path) -> io::Result<()> {
     if std::fs::remove_dir_all(path).or_else(gone).is_ok() {
         return Ok(());
     }
-    // In a folder that others may write to, there could be a link by now.
+    // In a folder that others may write to, the path could meanwhile be a link.
     open_up(File::options().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NOFOLLOW).open(path)?.as_fd());
     std::fs::remove_dir_all(path).or_else(gone)
 }

@@ -1,8 +1,8 @@
 //! Decides from the supervisor's facts how a run ended.
 //!
 //! The kernel's facts decide first: the reason of the supervisor's kill, the wait status, the counters. The program's
-//! output only explains a failure: why it did not start, or whether it ran out of memory. Forging the output gains
-//! nothing, because it only replaces one failure by another.
+//! output only explains a failure: why it did not start, or whether it ran out of memory. A program gains nothing by
+//! forging the output, because this only replaces one failure by another.
 
 use super::{
     outcome::{RunEnd, StartProblem},
@@ -33,7 +33,7 @@ pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ru
         Some(libc::SIGSYS) => return RunEnd::Violation { call: "a call of another architecture (32 bits)".into() },
         _ => {}
     }
-    // A short run can exceed a limit and end between two checks.
+    // A short run can exceed a limit and end between two checks of the supervisor.
     if report.peak_memory > order.limits.memory {
         return RunEnd::MemoryLimit;
     }

@@ -22,7 +22,7 @@ pub struct FakeRun {
     pub stdout: Vec<u8>,
     /// The standard error.
     pub stderr: Vec<u8>,
-    /// The processor time, which is also used as the time on the clock.
+    /// The processor time, which is also used as the wall time.
     pub cpu: Duration,
     /// The peak memory in bytes.
     pub peak_memory: u64,

@@ -27,7 +27,7 @@ pub enum SandboxError {
     /// The supervisor ended without a report.
     #[error("the sandbox's supervisor ended unexpectedly ({how}); its processes were ended")]
     Lost {
-        /// A description of the supervisor's end, if known.
+        /// A description of how the supervisor ended.
         how: String,
     },
     /// A step of the set-up failed.
@@ -77,13 +77,13 @@ pub(super) fn from_setup_failure(failure: wire::Failure) -> SandboxError {
     SandboxError::SetUp { stage: failure.stage, source }
 }
 
-/// Returns the error for a supervisor that ended without a report. Its channel must be closed, which ends a supervisor
-/// that only failed to answer.
+/// Returns the error for a supervisor that ended without a report. Its channel must be closed, so that a supervisor
+/// that is only stuck ends.
 pub(super) fn loss_error(mut child: Child) -> SandboxError {
     let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
     let mut text = String::new();
     if let Some(stderr) = child.stderr.take() {
-        // The last lines of its output are helpful, but not required.
+        // The last lines of the supervisor's output help to find the cause, but may be missing.
         let _ = stderr.take(2000).read_to_string(&mut text);
     }
     let text = text.trim();

@@ -20,12 +20,12 @@ pub enum Policy {
     Tools,
 }
 
-/// The limits of one run. All limits are always enforced; none can be unlimited.
+/// The limits of one run. All limits are always enforced.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limits {
     /// The processor time of all the program's threads and processes together.
     pub cpu: Duration,
-    /// The time on the clock, from the start to the end.
+    /// The wall time, from the start to the end.
     pub wall: Duration,
     /// The resident memory of all processes together, in bytes. Files of the working folder do not count unless they
     /// are mapped, even if the folder is in memory. The stack of the main thread is always limited to 8 MiB.
@@ -62,7 +62,7 @@ impl Default for Limits {
     }
 }
 
-/// The identity of the file at a path, which shows that the file has not been written to since.
+/// The identity of the file at a path, which shows whether the file was changed since.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ProgramIdentity([i64; 5]);
 
@@ -185,7 +185,7 @@ impl Job {
     }
 
     /// Declares that the program is the grader's copy, with this identity. If the file is missing or different at the
-    /// start, that is an error of the grader and not of the program.
+    /// start, this is an error of the grader and not of the program.
     #[must_use]
     pub fn with_identity(mut self, identity: Option<ProgramIdentity>) -> Self {
         self.staged = identity;

@@ -23,8 +23,8 @@ use super::{
     wire::{self, Report, RunOrder},
 };
 
-/// The properties that all runs of one keeper share: the whole order except arguments, environment and the working
-/// folder with its contents, and the identities of the files that the order names.
+/// The properties that all runs of a keeper share: the whole order except arguments, environment and the working folder
+/// with its contents, and the identities of the files that the order names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: RunOrder,
@@ -33,8 +33,8 @@ pub(super) struct Kind {
 }
 
 impl Kind {
-    /// Returns whether a keeper may serve the order. It may not if the run has no namespaces, which end with the run,
-    /// or if processes are not counted.
+    /// Returns whether a keeper may serve the order. It may not if the run has no namespaces that end with it, or if
+    /// processes are not counted.
     pub(super) fn exists_for(order: &RunOrder) -> bool {
         order.volatile && !order.tools && order.walls.namespaces && order.walls.seccomp
     }
@@ -58,7 +58,7 @@ impl Kind {
     }
 }
 
-/// A keeper process. Dropping it ends the process and waits for the end.
+/// A keeper process. Dropping the value ends the process and waits for its end.
 #[derive(Debug)]
 pub(super) struct Keeper {
     kind: Kind,
@@ -94,7 +94,7 @@ impl Drop for Keeper {
     fn drop(&mut self) {
         self.dismiss();
         if let Some(child) = &mut self.child {
-            // Its exit status no longer matters.
+            // The exit status of the keeper no longer matters.
             let _ = child.wait();
         }
     }
@@ -107,7 +107,8 @@ pub(super) struct KeeperPool {
 }
 
 impl KeeperPool {
-    /// Takes a keeper for runs of this kind. If there is none, a keeper of another kind is removed to make room.
+    /// Takes a keeper for runs of this kind. If there is none, an idle keeper of a different kind is removed to make
+    /// room.
     pub(super) fn take(&self, kind: &Kind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = idle.iter().rposition(|keeper| keeper.kind == *kind);
@@ -116,7 +117,7 @@ impl KeeperPool {
             None => idle.pop(),
         };
         drop(idle);
-        // Dropped here, where no thread waits for the lock.
+        // The keeper is dropped here, outside the lock, so that no thread waits.
         taken.filter(|_| fits.is_some())
     }
 
@@ -149,7 +150,7 @@ impl Host {
         }
     }
 
-    /// Kills the keeper, whatever its state.
+    /// Kills the keeper in any state.
     pub(super) fn kill(&mut self) {
         let child = match self {
             Self::Own(child) => Some(child),
@@ -163,7 +164,7 @@ impl Host {
     pub(super) fn rest(self, report: Option<&Report>) -> Option<RestingKeeper> {
         match self {
             Self::Own(mut child) => {
-                // It ends by itself after its report; its exit status no longer matters.
+                // The supervisor ends by itself after its report; its exit status no longer matters.
                 let _ = child.wait();
                 None
             }

@@ -1,4 +1,4 @@
-//! The layers of the sandbox, and which of them hold on this host.
+//! The layers of the sandbox, and which of them work on this host.
 //!
 //! The module contains only data, which `doctor` and reports print. A layer counts as active only if a probe process
 //! has set it up on this host.
@@ -60,13 +60,13 @@ const SIGNAL_SCOPE_ABI: u8 = 6;
 pub struct LayerReport {
     /// The layer.
     pub layer: Layer,
-    /// Whether the layer holds.
+    /// Whether the layer works.
     pub active: bool,
-    /// Whether this host may not grade without the layer.
+    /// Whether grading on this host requires the layer.
     pub required: bool,
-    /// The effect of the layer, or the reason why it does not hold.
+    /// The effect of the layer, or the reason why it does not work.
     pub detail: String,
-    /// The component to install or enable, if the layer does not hold and there is a remedy.
+    /// The component to install or enable, if the layer does not work and there is a remedy.
     pub remedy: Option<&'static str>,
 }
 
@@ -237,7 +237,7 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
             report.remedy = None;
         }
     }
-    // Root may grade without file rules if the host's files are hidden.
+    // Without file rules, root may grade only if the host's files are hidden.
     if [Layer::FileRules, Layer::Namespaces].contains(&layer) {
         let hidden = is_active(&reports, Layer::OwnUser) && is_active(&reports, Layer::Namespaces);
         for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules) {
@@ -262,8 +262,8 @@ pub(super) fn select_layers(reports: &[LayerReport]) -> Result<Walls, String> {
     if missing.is_empty() { Ok(active(reports)) } else { Err(missing.join("\n")) }
 }
 
-/// Returns the layers that hold, whether or not the required set is complete. The error names missing layers if root
-/// would have to run programs as itself.
+/// Returns the layers that work, even if required ones are missing. The error names missing layers if root would have
+/// to run programs as itself.
 pub(super) fn available_layers(reports: &[LayerReport]) -> Result<Walls, String> {
     match reports.iter().find(|report| report.layer == Layer::OwnUser && report.required && !report.active) {
         Some(report) => Err(line(report)),
@@ -271,7 +271,7 @@ pub(super) fn available_layers(reports: &[LayerReport]) -> Result<Walls, String>
     }
 }
 
-/// Returns one line per required layer that does not hold.
+/// Returns one line per required layer that does not work.
 pub(super) fn missing(reports: &[LayerReport]) -> Vec<String> {
     reports.iter().filter(|report| report.required && !report.active).map(line).collect()
 }
@@ -281,7 +281,7 @@ fn line(report: &LayerReport) -> String {
     format!("{}: {}{remedy}", report.layer.name(), report.detail)
 }
 
-/// Returns whether a layer holds.
+/// Returns whether a layer works.
 pub(super) fn is_active(reports: &[LayerReport], layer: Layer) -> bool {
     reports.iter().any(|report| report.layer == layer && report.active)
 }
@@ -293,7 +293,7 @@ fn active(reports: &[LayerReport]) -> Walls {
         landlock_version: 0,
         scopes: active(Layer::Scopes),
         seccomp: active(Layer::CallFilter),
-        // A listener belongs to the filter.
+        // The listener is a part of the filter.
         notify: active(Layer::NamedCalls) && active(Layer::CallFilter),
         own_user: active(Layer::OwnUser),
         namespaces: active(Layer::Namespaces),

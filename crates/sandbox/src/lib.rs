@@ -1,22 +1,23 @@
 //! Runs one program under limits and reports how it ended.
 //!
-//! This crate does not use scenes, traces or verdicts: its inputs and outputs are bytes, and a [`RunOutcome`] holds the
-//! kernel's facts. A [`Job`] describes a run, a [`Backend`] starts it, and a [`RunningProgram`] is a started program.
+//! This crate does not use scenes, traces or verdicts: its inputs and outputs are bytes, and a [`RunOutcome`] contains
+//! the kernel's facts. A [`Job`] describes a run, a [`Backend`] starts it, and a [`RunningProgram`] is a started
+//! program.
 //!
 //! The grader starts its own binary again with a hidden first argument ([`supervisor_main`]). The new, single-threaded
 //! process is the *supervisor*. It becomes the reaper of all its descendants, forks, restricts the child (new session,
 //! other user when it is root, resource limits, no new privileges, Landlock, seccomp) and executes the program. It
 //! watches clocks, memory, output and the working folder, kills the whole process tree, and reports only when every
-//! process is dead. The child dies with the supervisor, and the supervisor's tree dies with the grader, whatever the
-//! cause.
+//! process has ended. The kernel kills the child when the supervisor ends for any reason, and the supervisor ends when
+//! the grader ends.
 //!
 //! If the kernel allows it, the supervisor first moves into new namespaces that contain only the run's processes and
-//! files and no network. If a process in them dies, all its descendants die as well. Namespaces are an additional
-//! layer; everything else holds without them. With namespaces, the runs of one submission share a *keeper*, which is
+//! files and no network. If the first process in them ends, all others are killed as well. Namespaces are an additional
+//! layer; all other layers work without them. With namespaces, the runs of one submission share a *keeper*, which is
 //! prepared once and forks a supervisor into new namespaces for each run. After a run that was stopped, crashed or left
 //! something behind, its keeper serves no other run.
 //!
-//! The sandbox never trusts a path that the program could change, never reads a result while the program lives, and
+//! The sandbox never trusts a path that the program could change, never reads a result while the program runs, and
 //! never continues silently if a required layer is missing ([`Backend::best`] fails).
 //!
 //! ```no_run
@@ -65,9 +66,9 @@ pub use wire::read_messages;
 /// The processes whose processor time is requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum TimeOf {
-    /// This thread.
+    /// The calling thread.
     Thread,
-    /// This process.
+    /// The calling process.
     Process,
     /// The processes of all finished runs, and their supervisors.
     Children,

@@ -22,7 +22,7 @@ pub struct RunOutcome {
     pub ended: RunEnd,
     /// The processor time of the whole process tree, user and system.
     pub cpu: Duration,
-    /// The time on the clock.
+    /// The wall time.
     pub wall: Duration,
     /// The peak of the resident memory in bytes.
     pub peak_memory: u64,

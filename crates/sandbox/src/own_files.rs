@@ -1,4 +1,4 @@
-//! Finds the grader's own files, which no program that it runs may read or execute.
+//! Finds the grader's own files, which no submission may read or execute.
 //!
 //! The files contain the answers: the grader and its Python module compute the original's traces, and the sample is a
 //! right submission. Landlock can only allow files, so a folder that contains such a file is allowed entry by entry.
@@ -68,7 +68,7 @@ fn files(programs: &[&Path]) -> Vec<PathBuf> {
     let programs: Vec<PathBuf> = programs.iter().filter_map(|program| program.canonicalize().ok()).collect();
     let beside = programs.iter().filter_map(|program| program.parent()).map(Path::to_path_buf);
     let installed = FOLDERS.into_iter().map(PathBuf::from).chain(beside);
-    // Some of the files are links to others, and large.
+    // Some of the files are large, and some are links to others.
     let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
     let entries = folders.iter().flat_map(|folder| entries(folder));
     let named = entries.filter(|entry| is_named(&entry.file_name())).map(|entry| entry.path());
@@ -88,7 +88,7 @@ pub fn is_own(length: u64, digest: &blake3::Hash, itself: (u64, u64)) -> bool {
     files(&[Path::new(THIS)]).into_iter().any(|path| {
         let Ok(metadata) = path.metadata() else { return false };
         let sample = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(SAMPLE));
-        // The content decides, because the grader may have other names.
+        // The content is compared, because the grader's file may have any name.
         let shown = sample && (metadata.dev(), metadata.ino()) == itself;
         metadata.len() == length && !shown && digest_of(&path).is_some_and(|own| own == *digest)
     })

@@ -15,7 +15,7 @@ use super::{outcome::StartProblem, own_files};
 
 /// The first bytes of an ELF file.
 const ELF_MAGIC: &[u8] = b"\x7fELF";
-/// The number of bytes that show the kind of a file. The kernel reads as many for the first line of a script.
+/// The number of bytes that show the kind of a file. The kernel reads the same number for the first line of a script.
 const FIRST_BYTES: u64 = 256;
 /// The folders of the system's programs that a script may name, in the order of the sandbox's `PATH`.
 const PROGRAMS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
@@ -39,7 +39,7 @@ pub(super) struct Program {
 pub(super) struct Script {
     /// The interpreter's file.
     pub(super) interpreter: PathBuf,
-    /// The interpreter's name for itself, followed by its arguments before the script.
+    /// The interpreter's own name, followed by its arguments before the script.
     pub(super) words: Vec<String>,
     /// The environment variables set by the first line.
     pub(super) environment: Vec<(String, String)>,
@@ -82,7 +82,7 @@ fn other_system(start: &[u8]) -> Option<&'static str> {
     match *start.first_chunk::<8>()? {
         [b'M', b'Z', ..] => Some("Windows"),
         [0xcf | 0xce, 0xfa, 0xed, 0xfe, ..] => Some("macOS"),
-        // The number of programs in one file. A Java class has its version there, from 45 on.
+        // In a universal binary, this is the number of programs. A Java class has its version there, from 45 on.
         [0xca, 0xfe, 0xba, 0xbe, 0, 0, 0, 1..45] => Some("macOS"),
         _ => None,
     }
@@ -111,7 +111,7 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
         hint: hint.into(),
     };
     if line.ends_with('\r') {
-        // The kernel takes the carriage return for the last character of the name.
+        // The kernel treats the carriage return as the last character of the name.
         let hint =
             ": its name ends with a carriage return, because the lines end with CR LF; convert them with dos2unix";
         return Err(missing(line.trim_start(), hint));

@@ -22,7 +22,7 @@ use super::{
 /// The connection to the supervisor; `None` after the run.
 type ControlSocket = Arc<Mutex<Option<UnixStream>>>;
 
-/// A running program. Dropping it stops the program and waits until every process is dead.
+/// A running program. Dropping the value stops the program and waits until every process has ended.
 #[derive(Debug)]
 pub struct RunningProgram {
     state: State,
@@ -142,13 +142,13 @@ impl RunningProgram {
     }
 }
 
-/// The working folder after the program's end. Every process of the run is dead, so the folder no longer changes.
+/// The working folder after the program's end. Every process of the run has ended, so the folder no longer changes.
 /// Dropping it makes the run's supervisor available to others.
 #[derive(Debug, Default)]
 pub struct LeftFolder {
     in_memory: Option<OpenFolder>,
     path: PathBuf,
-    // Dropped last, because the pages of a folder in memory count for the keeper's next run.
+    // The host is dropped last, because the pages of a folder in memory would count for the keeper's next run.
     _keeper: Option<RestingKeeper>,
 }
 
@@ -179,7 +179,7 @@ impl Drop for RunningProgram {
     fn drop(&mut self) {
         if let State::Supervised(supervised) = std::mem::replace(&mut self.state, State::Taken) {
             self.canceller.cancel();
-            // Stopped by the grader, so its further actions do not matter.
+            // The grader stopped the program, so its further actions do not matter.
             let _ = self.conclude(*supervised);
         }
     }

@@ -410,7 +410,7 @@ pub(super) struct PendingCall {
     pub(super) arguments: [u64; 6],
 }
 
-/// Receives the next announcement; `None` if the caller has died.
+/// Receives the next announcement; `None` if the caller has ended.
 pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<PendingCall>> {
     // SAFETY: an all-zero notification is valid, and the kernel requires zeros.
     let mut notification: libc::seccomp_notif = unsafe { std::mem::zeroed() };

@@ -23,7 +23,7 @@ pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
 pub(super) const COMMAND_CANCEL: u8 = b'c';
 /// The size that few messages exceed, in bytes.
 const USUAL_MESSAGE_BYTES: u64 = 4 << 10;
-/// The maximum size of a message, in bytes. A larger size means that the streams are out of step.
+/// The maximum size of a message, in bytes. A larger size means that the stream is corrupt.
 const MAX_MESSAGE_BYTES: u64 = 64 << 20;
 
 /// The byte that starts a run in a supervisor of several runs. It is sent with three descriptors: the channel of
@@ -89,7 +89,7 @@ pub(super) struct RunOrder {
     pub(super) tools: bool,
     /// The interpreter of a script, which is executed instead of it.
     pub(super) interpreter: Option<RawBytes>,
-    /// The interpreter's name for itself, followed by its arguments before the script.
+    /// The interpreter's own name, followed by its arguments before the script.
     pub(super) words: Vec<RawBytes>,
     /// Whether the program may use a sanitizer, which reserves terabytes of address space.
     pub(super) sanitizers: bool,
@@ -119,7 +119,7 @@ pub(super) enum Event {
     Ready { session: Option<i32>, user: Option<u32> },
     /// The sandbox could not be set up, which is an error of the grader or host.
     Failed(Failure),
-    /// All processes are dead; the captured bytes of both streams follow.
+    /// All processes have ended; the captured bytes of both streams follow.
     Done(Report),
 }
 
@@ -169,7 +169,7 @@ pub(super) struct Report {
     pub(super) survivors: u32,
 }
 
-/// The results of the probe; a text is the reason why a layer does not hold.
+/// The results of the probe; a text is the reason why a layer does not work.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Probe {
     pub(super) root: bool,
@@ -224,13 +224,16 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
     from.read_exact(&mut length)?;
     let length = u64::from_le_bytes(length);
     if length > MAX_MESSAGE_BYTES {
-        return Err(io::Error::new(io::ErrorKind::InvalidData, "a message of the supervisor is out of step"));
+        return Err(io::Error::new(
+            io::ErrorKind::InvalidData,
+            "the supervisor sent an unexpected message; please report this",
+        ));
     }
-    // The length is not trusted.
+    // Do not trust the length in the message.
     Ok(serde_json::from_slice(&receive_bytes(from, length)?)?)
 }
 
-/// Reads as many messages of each kind as the bytes hold, and requires that each is the same after sending; for the
+/// Reads as many messages of each kind as the bytes contain, and requires that each is the same after sending; for the
 /// fuzz target. Returns the number of messages.
 #[doc(hidden)]
 #[must_use]

@@ -23,7 +23,7 @@ pub struct Pair {
 /// An object that a particle may collide with, by its index among its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Object {
-    /// Another particle.
+    /// A second particle.
     Particle(usize),
     /// An edge.
     Edge(usize),

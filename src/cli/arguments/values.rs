@@ -42,7 +42,7 @@ pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
         (
             "both",
             Rules::Both,
-            "The original's rules give the verdict, and the report says where the fair ones differ, and why",
+            "The original's rules give the verdict, and the report shows where and why the fair rules differ",
         ),
     ])
 }
@@ -52,7 +52,7 @@ pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
     word_parser(&[
         ("none", Hints::None, "The verdict only"),
         ("where", Hints::Where, "The place of the first difference"),
-        ("what", Hints::What, "Also the likely mistake, in a sentence"),
+        ("what", Hints::What, "The place of the first difference, and the likely mistake in one sentence"),
         ("full", Hints::Full, "Everything, including formulas and values"),
     ])
 }
@@ -61,7 +61,11 @@ pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
 pub(in crate::cli) fn explanation_hints() -> impl TypedValueParser<Value = Hints> {
     word_parser(&[
         ("what", Hints::What, "The likely mistake, in one sentence"),
-        ("full", Hints::Full, "Also the exact terms and an example: this may give the right formula away"),
+        (
+            "full",
+            Hints::Full,
+            "The likely mistake with its exact terms and an example, which may reveal the right formula",
+        ),
     ])
 }
 

@@ -25,7 +25,7 @@ enum Outcome {
     First,
     /// The mistake is one that this trace cannot distinguish from the first one.
     Among(String),
-    /// Another mistake is named.
+    /// A mistake is named, but not the one that was made; the value is its name.
     Other(String),
     /// No mistake is named, although the parity rules find wrong steps.
     Nothing(u64),

@@ -57,7 +57,7 @@ impl ExpectedEnd {
         let detail = match ended {
             RunEnd::Exited(code) => code.to_string(),
             RunEnd::Signalled(signal) => signal.to_string(),
-            // The call's name is reported first; if calls cannot be named, any violation is accepted.
+            // Usually the forbidden call is named; if calls cannot be named, any violation is accepted.
             RunEnd::Violation { call } if call.contains("of another architecture") => return self.kind == "violation",
             RunEnd::Violation { call } => call.split(' ').next().unwrap_or_default().into(),
             _ => String::new(),

@@ -61,7 +61,7 @@ impl Decoy {
             std::fs::write(&path, text)?;
             std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode))?;
         }
-        // The umask must not be the protection of the secrets, so every folder on the path is opened to all users.
+        // The umask must not protect the secrets, so every folder on the path is opened to all users.
         for folder in [root, &secrets, &secrets.join("inner"), &scenes, &neighbor] {
             std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))?;
         }
@@ -114,7 +114,7 @@ impl Decoy {
 
 impl Drop for Decoy {
     fn drop(&mut self) {
-        // The attack may have killed it.
+        // The attack may have killed the victim.
         let _ = self.victim.kill();
         let _ = self.victim.wait();
     }

@@ -1,7 +1,7 @@
 //! Runs the attack suite on this machine, with one hostile program for each promise of the sandbox.
 //!
 //! The programs are the C files of `tests/attacks`, which are part of the binary. Each runs in the sandbox next to
-//! decoys: secrets, a scene, another submission and a process. A promise holds if the program ends as expected, the
+//! decoys: secrets, a scene, another submission and a process. A promise is kept if the program ends as expected, the
 //! decoys are unchanged, no secret is printed, and no process is left. Outside the sandbox the programs do nothing.
 
 mod attack;
@@ -51,7 +51,7 @@ const MAX_TRACE_BYTES: u64 = 1 << 20;
 /// The state of a promise on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PromiseState {
-    /// The attack failed and left no trace of itself.
+    /// The attack failed and left nothing behind.
     Held,
     /// The sandbox broke the promise. Holds a description.
     Broken(String),
@@ -78,12 +78,12 @@ pub struct PromiseTable {
 }
 
 impl PromiseTable {
-    /// Returns the promises that do not hold here.
+    /// Returns the promises that are broken on this machine.
     pub fn broken(&self) -> impl Iterator<Item = &Promise> {
         self.promises.iter().filter(|promise| matches!(promise.state, PromiseState::Broken(_)))
     }
 
-    /// Returns the number of promises that hold.
+    /// Returns the number of promises that are kept.
     #[must_use]
     pub fn count_held(&self) -> usize {
         self.promises.iter().filter(|promise| promise.state == PromiseState::Held).count()
@@ -186,7 +186,7 @@ impl Place<'_> {
         let fault = |error: &dyn std::fmt::Display| PromiseState::NotTested(format!("the test itself failed: {error}"));
         let mut decoy =
             Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique()))).map_err(|e| fault(&e))?;
-        // A separate copy of the program for every run, so that surviving processes can be recognized.
+        // Each run gets a separate copy of the program, so that surviving processes can be recognized.
         let program = decoy.bring(&built).map_err(|e| fault(&e))?;
         let before = decoy.state().map_err(|e| fault(&e))?;
         let job = Job::new(&program, &decoy.work)
@@ -199,7 +199,7 @@ impl Place<'_> {
             .limits(limits(attack));
         let mut running = self.backend.start(&job).map_err(|e| fault(&e))?;
         if attack.expects_exit() && running.is_in_memory() {
-            // Such runs share a supervisor, so things left in it would be visible in the next run.
+            // Such runs share a supervisor, so the next run would see anything that is left in it.
             let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
             if !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
                 return Err(broken(format!("in a first run it {}{}", outcome.ended, last_output(&outcome))));
@@ -252,7 +252,7 @@ impl Place<'_> {
         let said = |error: std::io::Error| format!("{}: {error}", self.cc.display());
         let path = self.sources.join(format!("{}.c", attack.name));
         put(&path, source.contents()).map_err(said)?;
-        // Built under another name, so that an incomplete program is never used.
+        // Build under a temporary name, so that an incomplete program is never used.
         let fresh = self.programs.join(format!("{}-{}", attack.name, unique()));
         let output = Command::new(self.cc).args(FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
         if !output.status.success() {

@@ -75,7 +75,7 @@ impl SharedWaits {
             wait.pause = (2 * wait.pause).min(Self::MAX_PAUSE);
             wait.due = now + wait.pause;
             match wait.answer(now) {
-                // A signal may have ended the wait.
+                // A signal may have ended the wait already.
                 None => sys::is_waiting(listener, wait.id),
                 Some(answer) => {
                     // Answering fails if the thread has ended, which does not matter.

@@ -55,7 +55,7 @@ pub(super) struct ChildPlan {
 
 /// Sets up the layers and executes the program in this process.
 pub(super) fn become_program(mut plan: ChildPlan) -> ! {
-    // Written as a file, because the filter allows no socket calls.
+    // Write to the socket as to a file, because the filter allows no socket calls.
     let mut status = match plan.status.as_fd().try_clone_to_owned() {
         Ok(status) => File::from(status),
         Err(_) => sys::exit_now(125),
@@ -91,8 +91,8 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     if let Some(user) = plan.user {
         sys::switch_user(user).map_err(stage("become the sandbox's user"))?;
     }
-    // A change of user resets the parent-death signal, so it is set afterwards; a parent that died earlier is detected
-    // here.
+    // A change of user resets the parent-death signal, so the signal is set afterwards. A parent that ended earlier is
+    // detected here.
     sys::die_with_parent().map_err(stage("bind the program's life to the supervisor's"))?;
     if std::os::unix::process::parent_id() != plan.supervisor {
         sys::exit_now(125);
@@ -126,7 +126,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
 
 /// Sets the resource limits. Except for file sizes they are a second line behind the supervisor's checks.
 fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
-    // The default of Linux, so that a deep recursion ends in the same way on every grading host.
+    // This is the default of Linux, so that a deep recursion ends in the same way on every host.
     const STACK: u64 = 8 << 20;
     const SPARE_MEMORY: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;
@@ -136,7 +136,7 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     const PENDING_SIGNALS: u64 = 1024;
     // The address sanitizer reserves 20 TiB in addition to the program's own space; other sanitizers reserve more.
     const SANITIZERS_SPACE: u64 = 64 << 40;
-    // One byte instead of zero: with a limit of 0 the kernel pipes core dumps to a handler, if the host has one.
+    // The limit is one byte instead of zero, because with zero the kernel may pipe core dumps to a handler.
     sys::limit(Resource::Core, 1)?;
     let limits = &order.limits;
     sys::limit(Resource::Fsize, order.file_bytes())?;

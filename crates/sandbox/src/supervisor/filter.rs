@@ -191,7 +191,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
         vec![condition(1, SeccompCmpOp::Eq, libc::F_SETFL as u64)?, condition(2, SeccompCmpOp::MaskedEq(flag), flag)?];
     let commands = if asked { [&HARMLESS_COMMANDS[..], &LOCK_COMMANDS[..]].concat() } else { HARMLESS_COMMANDS.into() };
     refuse(libc::EPERM, libc::SYS_fcntl, vec![all_differ(1, &commands)?, rule(asynchronous)?]);
-    // Opening a file for reading can truncate it, which older versions of Landlock do not notice.
+    // Opening a file for reading can truncate it, which older versions of Landlock do not prevent.
     let (mask, emptied) = ((libc::O_ACCMODE | libc::O_TRUNC) as u64, libc::O_TRUNC as u64);
     refuse(libc::EPERM, libc::SYS_openat, vec![mask_rule(2, mask, emptied)?]);
     #[cfg(target_arch = "x86_64")]
@@ -218,7 +218,7 @@ fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> 
     }
     if let Some(pid) = own.filter(|_| !purpose.tools) {
         for call in QUESTIONS {
-            // A thread also has a number. The C library works without this answer if the call does not exist.
+            // The argument may also be a thread's number. The C library works without this call if it does not exist.
             let errno = if call == libc::SYS_sched_getaffinity { libc::ENOSYS } else { libc::EPERM };
             refusals.push((errno, call, vec![all_differ(0, &[0, pid])?]));
         }

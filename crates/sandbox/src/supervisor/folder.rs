@@ -22,7 +22,7 @@ use crate::{
     sys::{self, OFlags},
 };
 
-/// The depth beyond which no user nests folders by accident.
+/// The maximum depth of folders. Nobody nests folders deeper by accident.
 const MAX_DEPTH: u32 = 32;
 /// The size of the blocks in which `stat` counts, in bytes.
 pub(super) const BLOCK: u64 = 512;
@@ -41,7 +41,7 @@ pub(super) struct FolderUsage {
 }
 
 impl FolderUsage {
-    /// Returns the larger value of each number.
+    /// Returns the field-wise maximum.
     pub(super) fn at_least(self, other: Self) -> Self {
         Self {
             bytes: self.bytes.max(other.bytes),
@@ -56,7 +56,7 @@ impl FolderUsage {
 /// files in use.
 pub(super) fn in_use(folder: BorrowedFd<'_>) -> FolderUsage {
     let (bytes, files) = mounts::file_system_usage(folder).unwrap_or_default();
-    // The root itself counts as one.
+    // The root folder itself counts as one file.
     FolderUsage { bytes, files: files.saturating_sub(1), ..FolderUsage::default() }
 }
 

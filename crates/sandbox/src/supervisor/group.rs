@@ -142,7 +142,7 @@ impl Group {
             for (file, value) in values {
                 match part.open(file, OFlags::WRONLY) {
                     Ok(mut file) => file.write_all(value.as_bytes())?,
-                    // The controller is missing; `controls` shows it.
+                    // A missing controller is not an error, because `controls` reports it.
                     Err(error) if error.kind() == io::ErrorKind::NotFound => {}
                     Err(error) => return Err(error),
                 }
@@ -190,7 +190,7 @@ impl Part {
         let mut tries = 0;
         loop {
             match Self::try_in(kind, place) {
-                // A cleanup may have removed it before it was locked.
+                // A cleanup may have removed the group before it was locked.
                 Err(error) if error.kind() == io::ErrorKind::NotFound && tries < TRIES && place.is_dir() => tries += 1,
                 done => return done,
             }
@@ -233,7 +233,8 @@ impl Drop for Part {
     fn drop(&mut self) {
         const ROUNDS: u32 = 200;
         for _ in 0..ROUNDS {
-            // Processes leave the group a moment after they were reaped. The next run removes a group that remains.
+            // Processes leave the group shortly after they were reaped. If the group cannot be removed yet, the next
+            // run removes it.
             match std::fs::remove_dir(&self.path) {
                 Err(error) if error.raw_os_error() == Some(libc::EBUSY) => {
                     std::thread::sleep(Duration::from_millis(1));
@@ -255,7 +256,7 @@ fn value_of(text: &str, key: &str) -> Option<u64> {
 ///
 /// Fails with `NotFound` if the group was removed before it was locked.
 fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
-    // In process namespaces, others may have the same process number.
+    // In other process namespaces, a process may have the same number.
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
     let path = place.join(format!("{PREFIX}{}-{now}", std::process::id()));
     std::fs::create_dir(&path)?;

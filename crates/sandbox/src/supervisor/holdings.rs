@@ -54,7 +54,7 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
         }
     }
     let shown = path_in_maps(root);
-    // Only root can find how much of a mapped file is on disk, so the mapped size counts in full.
+    // Only root can find how much of a mapped file is on disk, so the whole mapped size counts.
     mapped.sort_unstable_by_key(|mapping| (mapping.inode, std::cmp::Reverse(mapping.end)));
     for mapping in mapped {
         let memory = mapping.shared && SHARED_MEMORY.iter().any(|name| mapping.name.starts_with(name));

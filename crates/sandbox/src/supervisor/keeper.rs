@@ -45,7 +45,7 @@ pub(super) fn main() -> ExitCode {
     let Ok(Some(mut first)) = RunRequest::next(&socket) else { return ExitCode::from(2) };
     ExitCode::from(match settle(&first.order) {
         Ok(Side::Guardian { keeper, held }) => {
-            // The pipe that the grader reads must end with the run.
+            // The pipe that the grader reads must be closed at the end of the run.
             drop((first, socket));
             let code = sys::wait_for(keeper).unwrap_or(1);
             drop(held);
@@ -136,14 +136,14 @@ impl Keeper {
     fn run(&mut self, mut request: RunRequest) -> u8 {
         let folder = wire::path(&request.order.folder);
         let namespaces = libc::CLONE_NEWPID | libc::CLONE_NEWNS | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
-        // The place for the folder exists only during its run.
+        // The mount point of the folder exists only during its run.
         let forked = std::fs::create_dir_all(&folder).and_then(|()| self.prepared.fork_into(namespaces));
         match forked {
             Ok(Fork::Child) => sys::exit_now(self.supervise(request).into()),
             Ok(Fork::Parent(supervisor)) => {
                 drop(request);
                 let code = sys::wait_for(supervisor).unwrap_or(1);
-                // If it was visible before, it must not be removed.
+                // A folder that was visible before must not be removed.
                 let _ = std::fs::remove_dir(folder);
                 code
             }

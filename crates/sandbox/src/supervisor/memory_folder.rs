@@ -14,7 +14,7 @@ use rustix::io::Errno;
 
 use crate::wire::{self, RawBytes, RunOrder};
 
-/// Additional bytes beyond the limit, so that the supervisor sees a program exceed it.
+/// Additional bytes beyond the limit, so that the supervisor can see that a program exceeds it.
 const SPARE_BYTES: u64 = 1 << 20;
 const SPARE_FILES: u64 = 64;
 /// The number of bytes that are copied at a time.

@@ -1,4 +1,4 @@
-//! The supervisor, a new process of this binary that runs one program and reports when all processes are dead.
+//! The supervisor, a new process of this binary that runs one program and reports when all processes have ended.
 //!
 //! It never reads a scene, a trace or a verdict, and trusts only the kernel's wait status, counters and announcements,
 //! not the program's output.

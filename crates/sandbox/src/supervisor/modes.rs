@@ -43,7 +43,7 @@ pub(super) fn change(announced: &PendingCall, folder: BorrowedFd<'_>, root: &Pat
         // The remaining call is `chmod`.
         _ => (change_named(thread, &Start::Current, first, folder, root)?, second),
     };
-    // The current name of the open file decides; the same file is changed.
+    // The current name of the open file is checked, and the same open file is changed.
     let entry = format!("/proc/self/fd/{}", file.as_raw_fd());
     let place = std::fs::read_link(&entry).map_err(|_| libc::EPERM)?;
     if place == root || !place.starts_with(root) {

@@ -11,7 +11,7 @@ use super::{
 /// user. A process namespace ends all of its processes by itself, and its session numbers are not valid here.
 pub(crate) fn end(session: Option<i32>, user: Option<u32>) {
     const ROUNDS: u32 = 1000;
-    // The supervisor's lock of the user ended with it, and another run may have the user by now.
+    // The lock of the user ended with the supervisor, so another run may already have the user.
     let slot = user.and_then(slot::retake);
     let user = slot.as_ref().map(|slot| slot.user);
     for _ in 0..ROUNDS {

@@ -157,7 +157,7 @@ fn try_namespaces() -> Option<String> {
         drop(answer);
         let word = match namespaces::enter(&order) {
             Ok(Side::Inside) => Some(None),
-            // The child has reported the reason, or died without a report.
+            // The child has reported the reason, or has ended without a report.
             Ok(Side::Outside(_)) => None,
             Err(Failure { stage, errno }) => {
                 Some(Some(format!("could not {stage}: {}", io::Error::from_raw_os_error(errno))))

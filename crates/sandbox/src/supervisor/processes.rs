@@ -185,7 +185,7 @@ pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
         }
     }
     for &pid in &stopped {
-        // As above.
+        // The process may have ended by itself.
         let _ = sys::kill(pid, libc::SIGKILL);
     }
     stopped.into_iter().collect()

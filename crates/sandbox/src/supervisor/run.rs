@@ -203,7 +203,7 @@ impl Run {
             let _ = group.kill();
         }
         if main_status.is_none() {
-            // The process number is not reused until the process is reaped.
+            // The process number stays valid until the process is reaped.
             let _ = sys::kill(child, libc::SIGKILL);
         }
         let left = processes::end_all(user, walls.namespaces, |process| {
@@ -243,7 +243,8 @@ impl Run {
             Some(failure) => return Err(failure),
             None => None,
         };
-        // A process that the kernel blocks is the host's problem; the program has caused any other that did not end.
+        // If the kernel itself blocks a process, the host is at fault; any other process that did not end is the
+        // program's fault.
         self.record_cause(
             left.count > 0 && !left.held,
             RunEnd::Violation { call: "none, but it left processes that did not end".into() },

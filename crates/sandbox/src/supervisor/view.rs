@@ -139,7 +139,7 @@ fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     if own.is_empty() {
         return Ok(());
     }
-    // The sample may be graded at its own path, to demonstrate grading.
+    // The sample may be graded at its own path, as a demonstration.
     let program = wire::path(&order.program).canonicalize().map_err(stage("look at the program"))?;
     for path in own.iter().filter(|path| **path != program) {
         hide(path).map_err(stage("hide the grader's own files"))?;

@@ -91,7 +91,7 @@ impl Places {
         for path in MACHINE {
             places.add(Path::new(path), read);
         }
-        // The kernel executes the loader. The filter prevents any other execution below.
+        // The kernel must be able to execute the loader. The filter prevents all other executions.
         let libraries: BTreeSet<PathBuf> =
             LIBRARIES.iter().filter_map(|folder| Path::new(folder).canonicalize().ok()).collect();
         for folder in &libraries {

@@ -46,7 +46,7 @@ pub struct BuriedJob {
 pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result<Tick, DbError> {
     let pulse =
         transaction.row("SELECT beat_at, {now} AS now FROM pulse WHERE id = 1 {skip locked}", values![]).await?;
-    // Another process is doing this.
+    // Another process is searching at the moment.
     let Some(pulse) = pulse else { return Ok(Tick::default()) };
     let (beat, now) = (pulse.int("beat_at")?, pulse.int("now")?);
     if (0..millis(policy.tick_every())).contains(&(now - beat)) {

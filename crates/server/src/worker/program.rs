@@ -85,7 +85,7 @@ impl Program {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
         }
         isolate(&mut command, folder);
-        // Other graders may not have these options.
+        // A grader other than fosssim-oracle may not have these options.
         command.env("FOSSSIM_PLATFORM_HIDES", "true");
         command.env("FOSSSIM_PROGRESS", folder.join(PROGRESS_FILE));
         command.env("FOSSSIM_STAFF_PAGE", folder.join(STAFF_PAGE));

@@ -93,7 +93,7 @@ impl Turns {
                     state.running.push(account);
                     turn.began = Some(Instant::now());
                     drop(state);
-                    // Another account may now be next.
+                    // The turn may now belong to a different account.
                     self.0.changed.notify_waiters();
                     return Ok(turn);
                 }

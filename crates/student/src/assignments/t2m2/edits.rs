@@ -49,7 +49,7 @@ pub enum FormulaEdit {
     Weight(Subject, usize, &'static [usize], f64),
     /// The formula's letters have other values.
     Letters(Subject, fn(&mut [BoundedValue], &Inputs)),
-    /// Another formula is used.
+    /// A different formula is used.
     Formula(Subject, fn(&Inputs) -> Vec<BoundedValue>),
     /// The coefficients change, highest power first.
     List(Subject, fn(&mut Vec<f64>)),
