@@ -68,7 +68,7 @@ fn shows_signs() -> bool {
     name.contains("utf-8") || name.contains("utf8")
 }
 
-/// The minimum width for line breaks; a terminal that claims less does not know its size.
+/// The minimum width for line breaks; a terminal that reports less does not know its size.
 const MIN_WIDTH: u16 = 20;
 
 /// Returns the width of standard output's terminal in columns, if it is one.

@@ -29,7 +29,7 @@ pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
 pub(super) fn clean_up_when_interrupted() {
     static ONCE: OnceLock<()> = OnceLock::new();
     ONCE.get_or_init(|| {
-        // Without a handler, an interrupt leaves a hidden file behind, which is better than not working at all.
+        // Without a handler, an interrupt only leaves a temporary file behind, so the error is ignored.
         drop(ctrlc::set_handler(|| end()));
     });
 }

@@ -25,7 +25,7 @@ pub(super) fn write_above_bars(text: &[u8]) {
 pub(super) fn clear_bars() {
     if let Some(bars) = on_screen().take() {
         drop(bars.clear());
-        // Another thread may have drawn since; after this none can, and its drawing is removed.
+        // Another thread may have drawn in the meantime. From here on none can, and the last drawing is removed.
         bars.set_draw_target(ProgressDrawTarget::hidden());
         drop(io::stderr().lock().write_all(b"\r\x1b[2K"));
     }

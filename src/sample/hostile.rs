@@ -55,7 +55,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
         }
         Some(Mistake::HostileChildren) => {
             for _ in 0..3 {
-                // No process waits for the child, because it is meant to be left behind.
+                // No process waits for the child, which is left behind on purpose.
                 let _child = Command::new(std::env::current_exe()?)
                     .env(CHILD_VARIABLE, "1")
                     .args(["--list"])

@@ -8,7 +8,7 @@ pub(crate) type PageAnswer = Result<(Value, Vec<Vec<u8>>), String>;
 /// Returns a list as one byte string.
 ///
 /// # Panics
-/// Panics if a part has 4 GiB or more, which the memory here cannot hold.
+/// Panics if a part has 4 GiB or more, which the memory of a browser page cannot contain.
 #[must_use]
 pub fn join_parts(parts: &[&[u8]]) -> Vec<u8> {
     let mut bytes = Vec::with_capacity(parts.iter().map(|part| part.len() + 4).sum());

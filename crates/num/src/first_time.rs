@@ -101,7 +101,7 @@ fn counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNot
     let mut storage = [0.0; MAX_DEGREE];
     let breaks = sorted_real_parts(&zeros, &mut storage);
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
-        // No real zero is known, so t = 0 represents the whole line.
+        // If there is no real zero, t = 0 represents the whole line.
         if evaluate(coefficients, 0.0) > 0.0 {
             set.push(Interval::EVERYTHING);
         }

@@ -48,7 +48,7 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
     /// Appends an interval without merging it.
     ///
     /// # Panics
-    /// Panics if the list already holds `CAPACITY` intervals.
+    /// Panics if the list already contains `CAPACITY` intervals.
     #[inline]
     pub fn push(&mut self, interval: Interval) {
         self.list[self.length] = interval;
@@ -83,10 +83,10 @@ impl<const CAPACITY: usize> Intervals<CAPACITY> {
         self.length = last + 1;
     }
 
-    /// Returns the times in both lists (root-finder.md 16.1). Intervals that only touch give a single point.
+    /// Returns the times that are in both lists (root-finder.md 16.1). Intervals that only touch give a single point.
     ///
     /// # Panics
-    /// Panics if the result would hold more than `CAPACITY` intervals.
+    /// Panics if the result would contain more than `CAPACITY` intervals.
     #[inline]
     #[must_use]
     pub fn intersection<const OTHER: usize>(&self, other: &Intervals<OTHER>) -> Self {

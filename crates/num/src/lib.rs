@@ -1,5 +1,5 @@
 //! Arithmetic whose bits matter: polynomials, the Jenkins-Traub root finder, first satisfaction times, certificates
-//! that make a root search unnecessary, decisions that hold for any rounding, the linear solver of the implicit
+//! that make a root search unnecessary, decisions that are valid with any rounding, the linear solver of the implicit
 //! integrators, elementary functions, and numbers as C++ prints them.
 //!
 //! This crate uses no other crate of the project, does not print, does not use files or processes, and does not

@@ -76,7 +76,7 @@ impl Work for Decomposition<'_> {
         for (modulus, column) in self.moduli.iter_mut().zip(self.matrix.chunks_exact(n.max(1))) {
             *modulus = largest(simd, column);
         }
-        // Without an early end these are vector instructions.
+        // Without an early exit, the compiler uses vector instructions.
         let may_skip = self.matrix.iter().fold(true, |may, entry| may & (entry.to_bits() != (-0.0_f64).to_bits()));
         let mut cutoff = 0.0;
         for k in 0..n {
@@ -96,8 +96,8 @@ impl Work for Decomposition<'_> {
 }
 
 impl Decomposition<'_> {
-    /// Returns the entry of largest modulus in rows and columns from k on: of equal ones the first, column by column.
-    /// NaN never wins, but a NaN at the start stays.
+    /// Returns the entry of largest modulus in rows and columns from k on: on a tie the first, column by column. NaN
+    /// never replaces another entry, but a NaN at the start stays.
     #[inline(always)]
     fn pivot(&self, k: usize) -> Pivot {
         let n = self.n;
@@ -121,7 +121,7 @@ impl Decomposition<'_> {
     fn exchange(&mut self, k: usize, pivot: &Pivot) {
         let n = self.n;
         self.row_swaps[k] = pivot.row;
-        // The compiler then knows both rows to be in each column.
+        // The compiler can then prove that both rows are in each column.
         assert!(k < n && pivot.row < n, "the pivot must be in the matrix");
         if pivot.row != k {
             for column in self.matrix.chunks_exact_mut(n) {

@@ -10,7 +10,7 @@ pub const IMAGINARY_PART: f64 = 1e-8;
 /// Parity: contact normals may differ by this Euclidean distance (scene length unit; oracle-behavior.md 6).
 pub const PARITY_NORMAL: f64 = 1e-9;
 
-/// Parity: a rescaled coefficient may differ by this (absolute, whatever its size; oracle-behavior.md 6).
+/// Parity: the absolute bound for the difference of a rescaled coefficient (oracle-behavior.md 6).
 pub const PARITY_COEFFICIENT: f64 = 1e-10;
 
 /// Parity: polynomials count as zero if the sum of their coefficients' moduli is below this (oracle-behavior.md 6).
@@ -81,13 +81,13 @@ pub const SEARCH_MIN_COEFFICIENT: f64 = 1e-150;
 pub const SEARCH_MAX_COEFFICIENT: f64 = 1e150;
 
 /// Detection in lanes: positions, displacements, radii, half-planes' points and normals up to this modulus (scene
-/// length unit) give no NaN and no infinity among coefficients, which are of degree six; with larger inputs pairs are
-/// computed one by one. With a much larger limit, the sign of a NaN would depend on the grouping of pairs.
+/// length unit) give no NaN and no infinity among coefficients, which are of degree six; with larger inputs, pairs are
+/// computed individually. With a much larger limit, the sign of a NaN would depend on the grouping of pairs.
 pub const LANES_MAX_INPUT: f64 = 1e48;
 
 /// Fair: a correct program may deviate by this many units of the running error bound (numerics.md 2; LAPACK's test
-/// ratios use 30). Smaller values reject correct programs that evaluate in another way, larger ones hide small
-/// mistakes.
+/// ratios use 30). Smaller values reject correct programs that evaluate formulas in a different way, larger ones hide
+/// small mistakes.
 pub const FAIR_UNITS: f64 = 64.0;
 
 /// Fair: a coefficient may additionally deviate by this many units of the sum of the polynomial's error bounds.
@@ -104,8 +104,8 @@ pub const FAIR_CLEAR: f64 = 0.25;
 /// Covers deflation and other solvers than the course's.
 pub const FAIR_ROOT_UNITS: f64 = 1024.0;
 
-/// Fair: a time of impact may deviate by this fraction of the step, whatever the polynomials are, because a careful
-/// root finder other than the course's may have this error.
+/// Fair: a time of impact may deviate by this fraction of the step, for all polynomials, because even a careful root
+/// finder may have this error.
 pub const FAIR_TIME: f64 = 1.0 / (1_u64 << 40) as f64;
 
 /// Fair: two times of impact are the same moment if nothing moves between them by more than this many roundings of its

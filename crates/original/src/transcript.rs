@@ -61,7 +61,7 @@ struct Clock {
     frame: Instant,
 }
 
-/// The share of the steps after which another dot is printed.
+/// The share of the steps after which the next dot is printed.
 const DOT: f64 = 0.02;
 
 const BANNER: [&str; 7] = [
@@ -112,7 +112,7 @@ impl<'a, W: Write> Transcript<'a, W> {
                 let text = format!("{RED}Error while trying to deserialize time step impulses. Exiting.\n");
                 self.write(text.as_bytes());
             }
-            // The original crashes or hangs here; the reason goes to standard error, but the run is closed normally.
+            // Here the original crashes or hangs. The reason goes to standard error, but the run is closed normally.
             Some(
                 Stop::Trace { cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io, .. } | Stop::Step(_),
             ) => self.write(b"\n"),

@@ -1,7 +1,7 @@
 //! Draws scenes, traces and detections: SVG, PNG, GIF and plots.
 //!
 //! The functions turn states and findings into bytes, or encode picture by picture. They open no file, start no process
-//! and read no clock, and hold at most two pictures at a time. The same input gives the same bytes on every run,
+//! and read no clock, and keep at most two pictures in memory. The same input gives the same bytes on every run,
 //! because there are no fonts of the machine, no threads, and no vector instructions chosen at run time.
 //!
 //! `Painter` turns the positions of a motion into [`shape::Shape`]s, `svg` or `raster` draws the shapes, and `film`

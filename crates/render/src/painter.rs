@@ -102,7 +102,7 @@ impl Painter {
         self.view.size()
     }
 
-    /// Returns the color behind everything.
+    /// Returns the background color.
     #[must_use]
     pub const fn background(&self) -> Rgb {
         self.background
@@ -194,7 +194,7 @@ impl Painter {
         if matches!(paint, Paint::Dashed(_)) {
             return;
         }
-        // Its edge looks straight here, and is perpendicular to the direction from its center.
+        // The edge of such a disc looks straight, and is perpendicular to the direction from its center.
         let points = match distance > 0.0 {
             true => {
                 let unit = [away[0] / distance, away[1] / distance];

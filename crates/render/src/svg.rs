@@ -36,7 +36,7 @@ pub fn escape(text: &str) -> String {
             '"' => safe += "&quot;",
             '\'' => safe += "&#39;",
             '\t' | '\n' => safe.push(' '),
-            // Marks that change the reading direction could make a name look like another.
+            // Characters that change the reading direction could make two names look the same.
             '\u{0}'..='\u{1f}' | '\u{7f}'..='\u{9f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}' => {
                 safe.push('\u{fffd}');
             }

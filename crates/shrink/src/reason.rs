@@ -1,4 +1,5 @@
-//! The reason why a program is wrong on a scene, and whether it is wrong for the same reason on another.
+//! Finds the reason why a program is wrong on a scene, and checks whether it is wrong on a smaller scene for the same
+//! reason.
 use crate::size::is_clear;
 use fosssim_ended::RunEnd;
 use fosssim_findings::{
@@ -58,9 +59,9 @@ impl WrongReason {
         likely.or_else(|| is_plain(detail).then_some(fault))
     }
 
-    /// Returns whether a program is wrong on a scene for this reason, and plainly: not by round-off, unless that is the
-    /// named mistake, and not by a decision that round-off may flip. `is_alone` asks for it to be the first thing that
-    /// the scene alone shows: other mistakes must not have the same effect there.
+    /// Returns whether a program is wrong on a scene for this reason, and clearly: by more than round-off, unless that
+    /// is the named mistake, and not by a decision that round-off may change. With `is_alone`, the reason must be the
+    /// first one that the scene shows, without other mistakes that have the same effect.
     #[must_use]
     pub fn holds(&self, scene: &Scene, seen: &Observation, is_alone: bool) -> bool {
         let Some((fault, detail)) = fault(scene, seen) else { return false };

@@ -54,7 +54,7 @@ struct Search<'a, 'b> {
     holds: &'a mut Holds<'b>,
     scene: Scene,
     size: Size,
-    /// The number of warnings, and of parts that programs of the assignment do not know.
+    /// The number of warnings, and of parts that programs of the assignment do not support.
     oddities: usize,
     /// Whether no decision depends on round-off.
     is_clear: bool,
@@ -69,7 +69,7 @@ impl Search<'_, '_> {
             for reduction in REDUCTIONS {
                 let mut index = 0;
                 while let Some(attempts) = reduction(&self.scene, self.assignment, index) {
-                    // After an attempt that helped there may be another one.
+                    // After a successful attempt, the same kind is tried again.
                     index += usize::from(!self.take(attempts)?);
                 }
             }
@@ -100,7 +100,7 @@ impl Search<'_, '_> {
     }
 }
 
-/// Counts the warnings about a scene, and its parts that programs of the assignment do not know. A scene that is not
+/// Counts the warnings about a scene, and its parts that programs of the assignment do not support. A scene that is not
 /// sound has more of them than any other.
 fn oddities(scene: &Scene, assignment: Assignment) -> usize {
     let loaded = scene::read("", scene::write(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene);

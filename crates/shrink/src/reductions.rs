@@ -6,7 +6,7 @@ use fosssim_model::{
 };
 use std::ops::Range;
 
-/// Returns a kind's `index`-th attempts, the best first; `None` behind the last ones.
+/// A kind of reduction: returns the scenes of attempt `index`, the best first, or `None` after the last attempt.
 pub(crate) type Reduction = fn(&Scene, Assignment, usize) -> Option<Vec<Scene>>;
 
 /// All kinds, in the order in which they are tried.
@@ -54,7 +54,8 @@ fn retain<Part>(parts: &mut Vec<Part>, mut stays: impl FnMut(&mut Part) -> bool)
     numbers
 }
 
-/// Makes one feature plainer, the greatest relief first; nothing that the assignment's library does not know.
+/// Simplifies one feature, beginning with the most complex one. The result uses only features of the assignment's
+/// library.
 fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<Scene>> {
     let with = |collision: Collision| Scene { collision, ..scene.clone() };
     let mut all = Vec::new();

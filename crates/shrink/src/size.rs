@@ -4,9 +4,9 @@ use fosssim_model::{
     sim::{Detection, Observer, Pair, RootSearch, Simulation},
 };
 
-/// The reference is asked about scenes of at most this many bodies and steps.
+/// Only scenes with at most this many bodies and steps are simulated.
 const FEW: usize = 8;
-/// Digits of a number that is computed by hand.
+/// The maximum number of digits of a number that people compute by hand.
 const HANDY: usize = 3;
 /// The relative and absolute change of numbers that must not matter, and the factor by which it may grow.
 const SHIFT: f64 = 1e-9;
@@ -120,7 +120,7 @@ fn digits(value: f64) -> usize {
     text.strip_prefix("0.").unwrap_or(&text).chars().filter(char::is_ascii_digit).count()
 }
 
-/// Returns whether the reference has a result, and no other round-off would lead to another one.
+/// Returns whether the reference has a result, and round-off cannot change the result.
 pub(crate) fn is_clear(scene: &Scene) -> bool {
     let Some((decisions, end)) = run(scene) else { return false };
     (1..=2_usize).all(|seed| {

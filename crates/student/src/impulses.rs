@@ -13,7 +13,7 @@ use super::{
 const MAX_IMPULSE: f64 = 0.5;
 
 /// Applies impulses until a pass finds no contact (returns true) or `max_iterations` rounds are over (returns false).
-/// `state` holds the prediction first and the result at the end.
+/// `state` is the prediction at first and the result at the end.
 pub fn apply(
     world: &World,
     q_start: &[f64],

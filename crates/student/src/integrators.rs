@@ -47,7 +47,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
 
 const SYMPLECTIC: [Term; 2] = [Term::SymplecticPositions, Term::SymplecticVelocities];
 
-/// Returns the quantity that stands for the whole step of an integrator written by students.
+/// Returns the term that represents the whole step of an integrator that students write.
 const fn whole_step_term(integrator: Integrator) -> Option<Term> {
     Some(match integrator {
         Integrator::ExplicitEuler => Term::Explicit,
@@ -71,7 +71,8 @@ fn treat_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
     }
 }
 
-/// Returns the rate at which velocities move positions, for a student who may use another one than the assignment's.
+/// Returns the rate at which velocities move positions, for a student who may use a different rate than the
+/// assignment's.
 fn rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     match () {
         () if world.student.slips_by(term, Slip::OtherVelocity) => other.to_vec(),
@@ -82,11 +83,11 @@ fn rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     }
 }
 
-/// Makes one step of the explicit integrators, which move positions with the old or the new velocities, under the
-/// forces of a world that may have another author.
+/// Makes one step of the explicit integrators, which move positions with the old or the new velocities, with the forces
+/// of a world that may have a different author.
 fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_by_old: bool, state: &mut State) {
     let (student, h) = (world.student, world.scene.time_step);
-    // The factor must stay a multiplication, because a change of sign would flip the sign of a NaN.
+    // The factor must stay a multiplication, because a change of sign would also change the sign of a NaN.
     let minus_one = black_box(-1.0);
     let x = if student.slips_by(of_v, Slip::Behind) { &student.sum(&state.x, h, &state.v) } else { &state.x };
     let mut accelerations = forces::gradient(forces, x, &state.v);

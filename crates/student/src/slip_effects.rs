@@ -93,7 +93,7 @@ impl World {
                 Slip::OnlyFirst if particle > 0 => return,
                 Slip::OneEnd if role == 2 => return,
                 Slip::Missing => return,
-                // With one statement for the whole force, the first part replaces the previous value.
+                // If one statement assigns the whole force, its first part overwrites the previous value.
                 Slip::Assigned => is_assigned = term != Term::SpringDamping || edit.term == term,
                 Slip::SameSign if role > 0 => value = -value,
                 Slip::XOnly => value.y = 0.0,

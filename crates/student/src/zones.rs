@@ -51,7 +51,7 @@ fn merge_overlapping(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
     loop {
         let before = zones.len();
         let mut merged: Vec<Zone> = Vec::new();
-        // A student who requires two shared particles still finds a zone of one particle in another.
+        // A student who requires two shared particles still finds that a zone of one particle is part of another zone.
         let meet = |one: &Zone, other: &Zone| {
             let most = if student.makes(Mistake::ZonesJoinTwoShared) {
                 one.particles.len().min(other.particles.len()).min(2)
@@ -127,7 +127,7 @@ fn root(parents: &[usize], mut particle: usize) -> usize {
     particle
 }
 
-/// Returns whether two lists hold the same zones, in any order.
+/// Returns whether two lists contain the same zones, in any order.
 pub fn equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
     let same = |one: &Zone, other: &Zone| match student.mistake_in(HERE) {
         Some(Mistake::ZonesEqualByCount) => true,

@@ -90,11 +90,11 @@ pub(in crate::cli) struct GradeArguments {
     /// reader do not count.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PROGRESS")]
     pub(in crate::cli) progress: Option<PathBuf>,
-    /// With reports for students, also write the page for staff, which shows everything.
+    /// Also writes the page for staff, which shows everything, if reports are for students.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_STAFF_PAGE")]
     pub(in crate::cli) staff_page: Option<PathBuf>,
-    /// With reports for students, also write the page that they see after hidden groups are published, if there are
-    /// any.
+    /// Also writes the page that students see after hidden groups are published, if reports are for students and there
+    /// are hidden groups.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PUBLISHED_PAGE")]
     pub(in crate::cli) published_page: Option<PathBuf>,
     /// Keep hidden groups in reports for students, because the platform that requests them hides the groups itself.
@@ -180,7 +180,7 @@ Example:
 
 All shards of one grading must be there, each once. The exit code is that of the grading.")]
 pub(in crate::cli) struct MergeArguments {
-    /// Folders of shards, or folders that hold them.
+    /// Folders of shards, or folders that contain such folders.
     #[arg(required = true)]
     pub(in crate::cli) folders: Vec<PathBuf>,
     /// The folder for the results. By default the folder that contains the shards, if you name only one.
@@ -229,10 +229,10 @@ Example:
 pub(in crate::cli) struct SuiteCheckArguments {
     /// The suite: a file, or the name of a built-in one.
     pub(in crate::cli) suite: String,
-    /// Also list the pairs of properties that no step of the suite's scenes has.
+    /// Lists the pairs of properties that no step of the suite's scenes has.
     #[arg(long)]
     pub(in crate::cli) missing: bool,
-    /// Also list the known mistakes that no scene shows, by area of the assignment. Takes some seconds.
+    /// Lists the known mistakes that no scene shows, by area of the assignment. This takes some seconds.
     #[arg(long)]
     pub(in crate::cli) mistakes: bool,
 }

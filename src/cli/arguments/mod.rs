@@ -84,7 +84,7 @@ pub(super) enum Command {
     Demo(DemoArguments),
     /// Reports which layers of the sandbox work on this machine, and what to install.
     Doctor(DoctorArguments),
-    /// Runs hostile programs in the sandbox of this machine, and prints which of its promises hold.
+    /// Runs hostile programs in the sandbox of this machine, and prints which of its promises are kept.
     Selftest(SelftestArguments),
     /// Runs a course's grading server, which is the program fosssim-server in the same folder.
     Serve(ServeArguments),
@@ -181,7 +181,7 @@ pub(super) struct CheckArguments {
     /// Show all wrong steps, not only the first one, with expected and actual values.
     #[arg(long, conflicts_with = "step")]
     pub(super) all: bool,
-    /// Also show tables: residuals, the used share of each tolerance, and all kinds of findings with their first
+    /// Shows tables as well: residuals, the used share of each tolerance, and all kinds of findings with their first
     /// examples.
     #[arg(long)]
     pub(super) tables: bool,

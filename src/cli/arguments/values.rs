@@ -20,7 +20,7 @@ pub(in crate::cli) enum TextOrJson {
     Json,
 }
 
-/// A word of the command line, the value that it stands for, and its help.
+/// A word of the command line, its value, and its help text.
 type Word<T> = (&'static str, T, &'static str);
 
 /// Returns a parser for one of several words.

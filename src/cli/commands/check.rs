@@ -140,7 +140,7 @@ fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
         bail!(why);
     }
     match (&outcome.stop, trace.failure()) {
-        // It is unknown whether further steps were read by then, so their faults are not used.
+        // Whether later steps were read is unknown, so their faults are not used.
         (Some(Stop::Step(_)), _) | (_, None) => Ok(()),
         // Missing bytes within polynomials do not stop the original, but may be missing only in this copy.
         (_, Some(message)) => bail!(describe_unread(outcome, &trace.name, &message)),

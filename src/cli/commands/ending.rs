@@ -38,7 +38,7 @@ pub(super) fn file_name(name: &str) -> String {
     format!("{}{plain}~{digest}", if is_device(plain) { "_" } else { "" })
 }
 
-/// Returns whether a name is reserved for a device on Windows, whatever follows its first dot.
+/// Returns whether a name is reserved for a device on Windows; extensions do not matter.
 fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
     let numbered = |device: &str| stem.strip_prefix(device).is_some_and(|number| "0123456789".contains(number));

@@ -68,7 +68,7 @@ fn explain_trace(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> Re
     }
     let (case, card, _) =
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, drawing(arguments));
-    // Bytes behind the last step are of interest only where they can't be read.
+    // Bytes after the last step matter only if they can't be read.
     let _ = io::copy(&mut (&mut trace.reader).take(MAX_KEPT_BYTES as u64), &mut io::sink());
     trace.ensure_not_failed()?;
     Ok((case, card))

@@ -144,7 +144,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     session.grade_and_report(&submissions, &reports, &mut last_run, &earlier).map(|(_, code)| code)
 }
 
-/// The data that are the same in all gradings of `--watch`.
+/// The data that all gradings of `--watch` share.
 struct GradingSession<'a> {
     arguments: &'a Arguments,
     plan: &'a Plan,

@@ -139,7 +139,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         backend = backend.without(layer.with_context(unknown)?)?;
     }
     let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;
-    // If this process is root's, the programs run as another user, who has to reach the folder.
+    // If this process is root, programs run as another user, who must be able to reach the folder.
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("the temporary folder")?;
     let mut done = 0;
     let chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));

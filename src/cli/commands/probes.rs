@@ -267,8 +267,8 @@ pub(super) fn named_tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
     scenes.iter().map(read).collect()
 }
 
-/// Returns the absolute path of a program, without `..`, which would be another folder in a sandbox. Its own name
-/// stays, even that of a link, because programs may depend on it.
+/// Returns the absolute path of a program, without `..`, which may mean a different folder in a sandbox. The last name
+/// is kept, even that of a link, because programs may depend on it.
 fn make_absolute(program: &Path) -> PathBuf {
     let folder = program.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (folder.canonicalize(), program.file_name()) {

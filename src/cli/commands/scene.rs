@@ -77,7 +77,7 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
     Ok(())
 }
 
-/// Returns whether a file has the given content; `None` if there is no such file.
+/// Returns whether a file has the given content; `None` if the file does not exist.
 fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
     match place.read(MAX_SCENE_BYTES as u64) {
         Ok(old) => Some(old == bytes),

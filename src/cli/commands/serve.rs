@@ -12,7 +12,7 @@ pub(super) fn run(arguments: &ServeArguments) -> Result<()> {
             server.display()
         );
     }
-    // This returns only if it fails.
+    // The call returns only if it fails.
     let error = Command::new(&server).arg("serve").args(&arguments.words).exec();
     Err(error).with_context(|| format!("cannot start {}", server.display()))
 }

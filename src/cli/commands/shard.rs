@@ -79,7 +79,7 @@ impl Part {
     ///
     /// # Errors
     ///
-    /// Fails if the file can't be read, or is from another version.
+    /// Fails if the file can't be read, or was written by a different version.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
         let file = folder.join(SHARD_FILE);
         let opened = match Place::new(folder, SHARD_FILE).file(MAX_BYTES) {
@@ -87,7 +87,7 @@ impl Part {
             Err(FileError::Missing { .. }) => return Ok(None),
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
         };
-        // Read as a stream, so that a file that is not JSON ends at its first byte, however long it is.
+        // The file is read as a stream, so that a long file that is not JSON is rejected at its first byte.
         let part: Self = serde_json::from_reader(BufReader::new(opened))
             .with_context(|| format!("{} is damaged, or of another version; grade this shard again", file.display()))?;
         part.check().with_context(|| format!("{} has invalid content; grade this shard again", file.display()))?;

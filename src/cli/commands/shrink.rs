@@ -149,10 +149,10 @@ pub(super) fn describe(
 fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
     let named = own.iter().find(|one| is_named_in(cause, std::slice::from_ref(one)));
     match named.or_else(|| own.first()) {
-        // Its counts are the run's.
+        // The explanation of pairs counts over the whole run.
         Some(own) if matches!(own.about, About::Pairs(_)) && named.is_some() => own.clone(),
         own => {
-            // It lists the stages that are not written yet.
+            // An unfinished cause lists its empty stages.
             let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
             // Many other formulas agree with a single sample of wrong polynomials.
             let is_fitted = cause.samples < 2 && matches!(cause.about, About::Polynomials { .. });

@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
                 found.push(self.folder(path));
             } else {
                 match self.gather_entries(path, &mut found, &mut passed_over) {
-                    // One empty folder of a class must not stop the others: its grade says what it lacks.
+                    // One empty folder of a class must not stop the others: its grade names what is missing.
                     Err(_) if self.arguments.programs.len() > 1 => found.push(self.folder(path)),
                     other => other?,
                 }

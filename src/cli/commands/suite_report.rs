@@ -19,7 +19,7 @@ use crate::{
 use serde_json::json;
 use std::{collections::BTreeSet, fmt::Write};
 
-/// A scene with the reference's decisions that round-off may flip, or the reason why it has no run.
+/// A scene with the reference's decisions that round-off may change, or the reason why it has no run.
 pub(super) type UndecidedScene = (String, Result<Vec<Borderline>, StepError>);
 
 /// The maximum number of listed decisions per scene.

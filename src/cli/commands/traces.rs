@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
 /// Returns the grade of a folder of traces.
 fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
-    // The order is the plan's, whatever the number of threads.
+    // The results are in the plan's order, with any number of threads.
     let opened = Folder::open(folder);
     let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| judge_scene(plan, task, &opened, pages)).collect();
     let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();

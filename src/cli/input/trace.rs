@@ -188,8 +188,8 @@ fn decompress(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -> 
     Ok(Box::new(UnpackedReader { decoder, format: "zstd", failure: failure.clone() }))
 }
 
-/// A decoder whose errors describe the fault of the file, and are stored: a damaged copy proves nothing about the
-/// trace. Bytes after the last zstd frame that do not begin another one are damage, too.
+/// A decoder whose errors describe the fault of the file and are stored, because a damaged file shows nothing about the
+/// trace. Bytes after the last zstd frame that do not begin a frame are damage, too.
 struct UnpackedReader<R> {
     decoder: R,
     format: &'static str,

@@ -29,7 +29,7 @@ enum Outcome {
     Other(String),
     /// No mistake is named, although the parity rules find wrong steps.
     Nothing(u64),
-    /// No mistake is named, and nothing is wrong except round-off.
+    /// No mistake is named, because nothing is wrong except round-off.
     Unseen,
 }
 

@@ -1,9 +1,9 @@
 //! Prints the verdicts of both rule books on a corpus of submissions, one line each; `docs/rules/measurements.md`
 //! summarizes them.
 //!
-//! usage: `fair-table CORPUS [--all]`. The folder holds `verdicts.jsonl`, `scenes/` and `submissions/`. Without `--all`
-//! only rows with different verdicts, and rows of correct kinds that fair rejects, are printed. The summary counts all
-//! rows.
+//! usage: `fair-table CORPUS [--all]`. The folder contains `verdicts.jsonl`, `scenes/` and `submissions/`. Without
+//! `--all` only rows with different verdicts, and rows of correct kinds that fair rejects, are printed. The summary
+//! counts all rows.
 #![forbid(unsafe_code)]
 use anyhow::Context;
 use fosssim_lab::{

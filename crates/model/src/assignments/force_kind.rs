@@ -1,7 +1,7 @@
 //! The kinds of forces (simulation.md 3).
 
 fosssim_num::closed_set! {
-    /// A kind of force. The scenes' readers know its form in scenes.
+    /// A kind of force. The scene readers define how it is written in a scene.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum ForceKind {
         /// A spring along an edge, with damping.

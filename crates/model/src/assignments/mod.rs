@@ -1,7 +1,7 @@
 //! The course's assignments: what each assignment's programs detect, log and drop, the features of its starter library,
 //! and the parts written by its student.
 //!
-//! Each [`Definition`] holds this as data, one file per assignment. Everything else that depends on an assignment
+//! Each [`Definition`] contains this as data, one file per assignment. Everything else that depends on an assignment
 //! (suites, the catalogue of mistakes, formulas, probe scenes) is in a folder `assignments/<key>` of the crate that
 //! needs it. Readers of traces, simulator and judge use the assignment of a scene, which follows from its collision
 //! type ([`Assignment::for_collisions`]). This module does not use scenes, states or files.
@@ -113,7 +113,7 @@ pub struct Definition {
     pub prints_times: bool,
     /// The part of a scene that the starter library supports.
     pub library: Library,
-    /// The parts written by the student. Only these can hold a student's mistake.
+    /// The parts written by the student. Only these parts can contain a student's mistake.
     pub student: &'static [Part],
 }
 
@@ -197,7 +197,7 @@ pub struct RecordLists {
 pub enum ImpulseList {
     /// Records have no list of impulses.
     Absent,
-    /// Records have an empty list, whatever happens in the step.
+    /// Records always have an empty list.
     Empty,
     /// The responses of the step.
     Responses,

@@ -4,7 +4,7 @@ use super::{ForceKind, Integrator, PairKind};
 /// A part of a student's work: a function, or a few related functions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub enum Part {
-    /// The kinetic energy, which no trace holds.
+    /// The kinetic energy, which traces do not contain.
     KineticEnergy,
     /// The step of an integrator.
     Integrator(Integrator),

@@ -169,7 +169,7 @@ fn check_directions_of_forces(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-/// The severity for a body that starts exactly on another.
+/// The severity for a body that starts at exactly the same place as another.
 struct ContactRule {
     /// Whether the penalty force acts; its direction is then NaN.
     penalty: bool,

@@ -3,7 +3,7 @@ use super::model::{Collision, CollisionDetection, Scene};
 use crate::assignments::{Assignment, CollisionType, ForceKind, Integrator};
 use std::fmt;
 
-/// A part of a scene that the programs of an assignment do not know.
+/// A part of a scene that programs of an assignment do not support.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct UnknownFeature {
     /// The assignment whose programs lack the feature.
@@ -12,7 +12,7 @@ pub struct UnknownFeature {
     pub part: UnknownPart,
 }
 
-/// The part of a scene that an assignment's programs do not know.
+/// The part of a scene that programs of an assignment do not support.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum UnknownPart {
     /// An unknown integrator; programs reject the scene.
@@ -62,7 +62,7 @@ impl fmt::Display for UnknownFeature {
 }
 
 impl Scene {
-    /// Returns everything in the scene that programs of `assignment` do not know, each kind once.
+    /// Returns everything in the scene that programs of `assignment` do not support, each kind once.
     pub fn unknown_to(&self, assignment: Assignment) -> impl Iterator<Item = UnknownFeature> {
         let library = &assignment.definition().library;
         let integrator = Some(self.integrator).filter(|integrator| !library.integrators.contains(integrator));

@@ -48,7 +48,7 @@ impl Scene {
 /// Collision handling (collisions.md).
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Collision {
-    /// No handling; records hold only positions and velocities.
+    /// Collisions are not handled, and records contain only positions and velocities.
     None,
     /// Impulses on overlap at the end of the step.
     Simple {
@@ -258,7 +258,7 @@ pub struct Color {
     pub blue: f64,
 }
 
-/// A trail behind a particle.
+/// The visible trail of a particle.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct ParticlePath {
     /// The index of the particle.

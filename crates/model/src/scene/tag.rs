@@ -52,7 +52,7 @@ pub(super) fn read<'t>(
                 tag.add(text, name, value, report);
             }
             Err(error) => {
-                // The text after the fault may belong to another element.
+                // The text after the error may belong to a different element.
                 tag.broken = true;
                 report.error(|| broken(rule, inner, start, &error));
                 break;

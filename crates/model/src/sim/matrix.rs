@@ -14,7 +14,8 @@ pub(crate) fn couple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matr
     }
 }
 
-/// Subtracts the block, the opposite of [`couple`]. With the negated block, [`couple`] would give a NaN another sign.
+/// Subtracts the block, the opposite of [`couple`]. Calling [`couple`] with the negated block would give a NaN a
+/// different sign.
 pub(crate) fn decouple(matrix: &mut DMatrix<f64>, [a, b]: [usize; 2], block: &Matrix2<f64>) {
     for [row, column] in [[a, a], [b, b]] {
         let mut place = matrix.fixed_view_mut::<2, 2>(2 * row, 2 * column);

@@ -88,11 +88,11 @@ pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> R
 /// The pairs of a detection pass that an observer needs.
 #[derive(Debug)]
 pub enum WantedPairs<'a> {
-    /// Every call, one by one.
+    /// The observer needs every call individually.
     Calls,
     /// The polynomials in the form of a trace, to be appended here.
     Bytes(&'a mut PolynomialBytes),
-    /// No pairs.
+    /// The observer needs no pairs.
     Nothing,
 }
 
@@ -311,7 +311,7 @@ impl Decision {
 /// The information about the time of a pair that does not collide.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Time {
-    /// No time was searched, because a certificate proves that it is not within the step.
+    /// The time was not searched, because a certificate proves that it is not within the step.
     Excluded,
     /// The search found this time (greater than 1 or infinite, or at most 1 with a zero normal).
     Found(f64),

@@ -107,7 +107,7 @@ impl Simulation {
         self.handler.counts().work() + self.stepper.work()
     }
 
-    /// Computes later pairs one by one, even for observers that only need bytes. The results are the same.
+    /// Computes the following pairs individually, even for observers that only need bytes. The results are the same.
     pub fn disable_lanes(&mut self) {
         self.handler.disable_lanes();
     }

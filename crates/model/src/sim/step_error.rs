@@ -5,7 +5,7 @@ use serde::{Deserialize, Serialize};
 /// The reason why a step has no result. The original hangs or continues with garbage in this case.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, thiserror::Error)]
 pub enum StepError {
-    /// The root search of a pair would never end, because its polynomials hold values that are not finite.
+    /// The root search of a pair would never end, because its polynomials contain values that are not finite.
     #[error("step {step}: the root search of this pair does not terminate")]
     RootSearch {
         /// The step, from 1.

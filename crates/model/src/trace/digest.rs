@@ -122,7 +122,7 @@ impl Digests {
         let unread = matches!(&failed, Some(TraceError { what: Malformation::Endless { .. }, .. }));
         let end = reader.offset();
         let Hashing { digest, bytes, .. } = all;
-        // The buffer may hold a few more bytes than were read, depending on the stream.
+        // The buffer may contain a few more bytes than were read, depending on the stream.
         let bytes = if unread { end } else { bytes };
         let (sha256, trailing, stopped) = (finish(digest), bytes - begin, stopped.or(failed));
         Self { steps, sha256, bytes, records, trailing, unread, stopped }

@@ -8,7 +8,8 @@ use crate::sim::State;
 pub(crate) const IMPULSE_BYTES: usize = 36;
 
 /// Appends `values` one after the other.
-// Not inlined, because it would be compiled in the crate of each recorder, at that crate's optimization level.
+// This function is not inlined, because it would then be compiled in the crate of each recorder, at that crate's
+// optimization level.
 pub(crate) fn append_numbers(out: &mut Vec<u8>, values: &[f64]) {
     let start = out.len();
     out.resize(start + 8 * values.len(), 0);

@@ -6,9 +6,9 @@ use crate::{assignments::ImpulseList, scene::Scene};
 pub struct Layout {
     /// The number of particles N.
     pub particles: usize,
-    /// Whether records hold an impulse list (`simple`, `continuous-time`, `hybrid`).
+    /// Whether records contain an impulse list (`simple`, `continuous-time`, `hybrid`).
     pub has_impulses: bool,
-    /// Whether records hold polynomials and each step has a mid record (`continuous-time`, `hybrid`).
+    /// Whether records contain polynomials and each step has a mid record (`continuous-time`, `hybrid`).
     pub has_polynomials: bool,
     /// The number of steps.
     pub steps: u32,
@@ -46,8 +46,8 @@ impl Layout {
         1 + u64::from(self.records_per_step()) * u64::from(self.steps)
     }
 
-    /// Returns whether a trace of `bytes` bytes holds only a state for each step although records of this layout hold
-    /// more. Programs whose library has no collisions write such traces.
+    /// Returns whether a trace of `bytes` bytes contains only a state for each step although records of this layout
+    /// contain more. Programs whose library has no collisions write such traces.
     #[must_use]
     pub fn is_states_only(&self, bytes: u64) -> bool {
         let more = self.has_impulses || self.has_polynomials;

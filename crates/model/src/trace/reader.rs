@@ -1,6 +1,6 @@
 //! The strict reader, which is a [`Lenient`] that stops at the first damage.
 //!
-//! Memory is bounded by one frame, whatever the trace's size, and grows only with bytes that arrive.
+//! For traces of any size, memory is bounded by one frame, and grows only with bytes that arrive.
 use super::{
     error::{List, Malformation, TraceError},
     frame::{Frame, LoggedImpulse},

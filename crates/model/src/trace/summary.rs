@@ -1,8 +1,8 @@
 //! A readable summary of a trace, for snapshot tests and for people.
 //!
-//! A pure function of scene and bytes: the same trace gives the same text everywhere. Numbers are printed with the
-//! fewest digits that read back to the same bits. Passes, pair kinds and zones, which a trace does not hold, are
-//! counted by [`EventCounts`](super::EventCounts) while a simulation runs.
+//! The text depends only on the scene and the bytes, so the same trace gives the same text everywhere. Numbers are
+//! printed with the fewest digits that read back to the same bits. Passes, pair kinds and zones, which a trace does not
+//! contain, are counted by [`EventCounts`](super::EventCounts) while a simulation runs.
 use super::{
     digest::Digests,
     error::TraceError,

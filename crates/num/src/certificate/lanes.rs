@@ -22,7 +22,7 @@ pub fn is_small<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
 #[inline(always)]
 pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (zero, small) = (a.splat_like(0.0), is_small(a));
-    // Without the leading coefficient the polynomial is empty, or a constant that is not positive.
+    // Without its leading coefficient, the polynomial is empty or a constant that is not positive.
     let constant = small & b.below(LEADING_COEFFICIENT);
     let near = a.lt(zero) & b.le(zero) & (LINE_NEAR * a).le(b);
     let known = constant | (!small & (b.is_zero() | near));

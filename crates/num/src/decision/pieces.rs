@@ -30,7 +30,7 @@ pub(crate) enum Answer {
     Reached(f64),
     /// At every time in `[0, 1]` a polynomial is negative.
     Never,
-    /// No such time was found, but open pieces are left.
+    /// No such time was found, but some pieces are undecided.
     Unknown,
 }
 
@@ -122,7 +122,7 @@ impl PieceWalk<'_> {
                 Sign::Noise => open.push(*control),
             }
         }
-        // Without open polynomials this holds as well: all are positive on the whole piece.
+        // If no polynomial is open, all are positive on the whole piece.
         if open.begin_positive() {
             return Some(lo);
         }
@@ -188,7 +188,7 @@ enum Sign {
     Negative(f64),
     /// All coefficients are positive.
     Positive,
-    /// No coefficient is clearly larger than rounding.
+    /// No coefficient is clearly larger than its rounding error.
     Noise,
     /// The signs are mixed, so halving helps.
     Mixed,

@@ -1,7 +1,7 @@
 //! A GIF film with 256 colors, chosen from the scene's own colors.
 //!
-//! Edges of shapes are blends of two colors. The palette holds steps from each color to the background, and a cube of
-//! all colors if there is room. Other colors are replaced by the nearest one in the palette.
+//! Edges of shapes are blends of two colors. The palette contains steps from each color to the background, and a cube
+//! of all colors if there is room. Other colors are replaced by the nearest one in the palette.
 use super::{Rate, changed_area::ChangedArea};
 use crate::{color::Rgb, raster::Raster, size::Size};
 use std::{

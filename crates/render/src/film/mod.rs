@@ -1,4 +1,4 @@
-//! Encodes pictures to files: one PNG, or a GIF. Encoders receive picture by picture and hold at most two.
+//! Encodes pictures to files: one PNG, or a GIF. Encoders receive one picture at a time and keep at most two.
 mod changed_area;
 mod gif;
 mod png;

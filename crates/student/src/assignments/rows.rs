@@ -1,6 +1,6 @@
 //! Everything that a student's program can do differently, one row each.
 //!
-//! There are three kinds of rows: `wrong` programs have a mistake and write another trace; `variant`s are correct
+//! There are three kinds of rows: `wrong` programs have a mistake and write a different trace; `variant`s are correct
 //! except for round-off or a positive factor; `hostile` programs attack the grader. The place in the simulation where a
 //! mistake is made calls [`Student::makes`](crate::Student::makes). The rows of detection, responses, zones and traces
 //! are in [`t2m2`](super::t2m2), those of forces, integrators and their results in [`states`](super::states).
@@ -31,8 +31,8 @@ pub struct RowOf<M> {
     pub kind: RowKind,
     /// The area of the assignment in which the mistake is made.
     pub area: Area,
-    /// The mistake in one sentence, as a teacher would say it, without formulas, symbols or numbers, so that it does
-    /// not reveal the solution.
+    /// The mistake in one sentence, in a teacher's words, without formulas, symbols or numbers, so that it does not
+    /// reveal the solution.
     pub what: &'static str,
     /// The exact form: the wrong and the right expression, in the assignment's notation.
     pub term: &'static str,
@@ -108,7 +108,7 @@ const fn are_equal(one: &str, other: &str) -> bool {
     at == one.len() && at == other.len()
 }
 
-/// A table of rows, and the type of its mistakes: name of the type, name of the table, further variants that hold
+/// A table of rows, and the type of its mistakes: name of the type, name of the table, further variants that contain
 /// mistakes of other tables, and the type of edits. A group may name a file with the sentences of its rows and of the
 /// following rows. A mistake in a formula has its edit in brackets, from which the student's program is derived.
 macro_rules! rows {

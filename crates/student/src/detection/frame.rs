@@ -6,7 +6,7 @@ use crate::{Area, Mistake, author::Student};
 /// The areas whose mistakes are made in this module.
 const HERE: &[Area] = &[Area::Handover];
 
-/// The origin of a program whose coordinates are the scene's with another origin.
+/// The origin of a program whose coordinates are shifted.
 const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
 
 /// The cosine and sine of the angle by which a program rotates its coordinates. The angle of 3-4-5 would not do,
@@ -18,9 +18,9 @@ const TURN: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
 pub enum Axes {
     /// The axes of the scene.
     Scene,
-    /// Axes with another origin.
+    /// The axes have a different origin.
     Shifted,
-    /// Axes with another origin in each detection, which moves with the first particle.
+    /// The axes have a different origin in each detection, which moves with the first particle.
     Comoving,
     /// Axes with other directions.
     Rotated,

@@ -9,7 +9,7 @@ const HERE: &[Area] = &[Area::Handover];
 /// Passes on the polynomials of one pair, without small leading coefficients: unchanged, or changed by this student's
 /// mistake.
 pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
-    // A detection that was left empty passes nothing on, whatever the student's other mistakes are.
+    // An empty detection passes nothing on, even if the student made other mistakes.
     if lists.is_empty() {
         return Vec::new();
     }

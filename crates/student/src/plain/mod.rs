@@ -1,6 +1,6 @@
 //! Checks whether a sentence uses only plain words, or contains a formula.
 //!
-//! The hint level `what` describes the fault to students and leaves the formula to them. Its sentences are written by
+//! The hint level `what` describes the fault to students and does not reveal the formula. Its sentences are written by
 //! hand in many places; this check enforces the rule.
 
 /// Names of polynomials in the assignment, which do not count as formulas.

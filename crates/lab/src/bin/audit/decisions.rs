@@ -86,7 +86,7 @@ impl Decisions {
         }
     }
 
-    /// Adds the counts of another worker.
+    /// Adds the counts of a worker.
     pub(super) fn add(&mut self, other: Self) {
         let counts = self.levels.iter_mut().zip(other.levels);
         for (sum, count) in counts.chain(self.certainties.iter_mut().zip(other.certainties)) {

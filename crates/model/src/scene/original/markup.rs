@@ -83,7 +83,8 @@ struct Cursor<'t> {
 }
 
 impl<'t> Cursor<'t> {
-    /// Returns the byte at distance `ahead` from the current position; 0 after the end (the text itself holds no NUL).
+    /// Returns the byte at distance `ahead` from the current position; 0 after the end (the text itself contains no
+    /// NUL).
     fn peek(&self, ahead: usize) -> u8 {
         self.text.get(self.at + ahead).copied().unwrap_or(0)
     }

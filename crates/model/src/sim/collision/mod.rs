@@ -1,6 +1,6 @@
 //! Collision handling: detection per pair type, responses, impact zones (collisions.md).
 //!
-//! One file per pair type holds its detection and its responses; `pass` visits all pairs, `blocks` many at a time;
+//! One file per pair type contains its detection and its responses; `pass` visits all pairs, `blocks` many at a time;
 //! `simple`, `continuous_time` and `hybrid` are the three handlers, of which `hybrid` uses `zones` and `failsafe`.
 //! Nothing is pruned: every pair is checked in every pass, including two fixed particles (collisions.md 1).
 mod blocks;
@@ -104,7 +104,7 @@ impl Handler {
         self.detector.limit_work(most);
     }
 
-    /// Computes later pairs one by one.
+    /// Computes the following pairs individually, without lanes.
     pub fn disable_lanes(&mut self) {
         self.detector.disable_lanes();
     }

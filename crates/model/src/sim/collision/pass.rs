@@ -32,7 +32,7 @@ pub(super) enum Reaction {
     Moved,
 }
 
-/// Runs detection passes; holds the values that a pass shares between pairs.
+/// Runs detection passes, and stores the values that all pairs of a pass share.
 #[derive(Debug, Clone)]
 pub(super) struct Detector {
     search: RootSearch,
@@ -63,7 +63,7 @@ impl Detector {
         }
     }
 
-    /// Checks later pairs one by one.
+    /// Checks the following pairs individually, without lanes.
     pub fn disable_lanes(&mut self) {
         self.has_lanes = false;
     }

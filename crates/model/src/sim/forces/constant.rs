@@ -1,4 +1,4 @@
-//! One force on every particle, whatever its mass (simulation.md 3, constantforce). It has no Hessian.
+//! The same force on every particle, independent of its mass (simulation.md 3, constantforce). It has no Hessian.
 use super::subtract;
 use fosssim_num::vector::Vec2;
 

@@ -1,8 +1,8 @@
 //! The forces: gradients of their potentials, and the Hessians that the implicit integrators need.
 //!
-//! One file per kind; this file holds the acting order and the dispatch over all kinds. All gradients are accumulated
-//! into one array that starts at +0; the penalty force comes last (simulation.md 2, 3). Forces ignore whether particles
-//! are fixed; the integrators set the entries of fixed particles to zero.
+//! Each kind has its own file; this file contains the order of the forces and the dispatch over all kinds. All
+//! gradients are accumulated into one array that starts at +0; the penalty force comes last (simulation.md 2, 3).
+//! Forces ignore whether particles are fixed; the integrators set the entries of fixed particles to zero.
 mod constant;
 mod drag;
 mod gravitation;

@@ -27,7 +27,8 @@ pub(super) fn advance(
         *dx = h * velocity;
     }
     scratch.dv.fill(0.0);
-    // Opaque, because a compiler could turn the product into a sign flip of the product with `h` (see `Stepper::new`).
+    // The value is opaque to the compiler, which could otherwise turn the product into a sign flip of the product with
+    // `h` (see `Stepper::new`).
     let minus_h = std::hint::black_box(-h);
     let mut update = f64::INFINITY;
     let mut iteration = 0_u32;

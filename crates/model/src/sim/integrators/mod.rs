@@ -81,8 +81,8 @@ impl Stepper {
         Self {
             kind: scene.integrator,
             time_step: scene.time_step,
-            // The factor of `F = -1 * g` is a multiplication. A compiler that knew the factor would make it a sign
-            // flip, which differs for NaN, and the original's sign of a NaN residual would be lost.
+            // The factor of `F = -1 * g` is a multiplication. A compiler that knew the factor would replace it by a
+            // sign flip, which gives a NaN residual a different sign than the original's.
             minus_one: std::hint::black_box(-1.0),
             gradient: vec![0.0; entries],
             implicit,

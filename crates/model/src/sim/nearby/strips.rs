@@ -110,7 +110,7 @@ impl Strips {
     /// Calls `visit` for all pairs that may reach each other, each once, until it returns false. Returns the number of
     /// tested pairs.
     pub fn pairs(&self, mut visit: impl FnMut(&PlacedParticle, &PlacedParticle) -> bool) -> u64 {
-        // No distance is negative, and NaN reaches nothing.
+        // If the reach is negative or NaN, no pair is near.
         if !(self.reach > 0.0) {
             return 0;
         }

@@ -26,7 +26,7 @@ pub enum ExactAnswer {
         time: [f64; 2],
         /// Whether only the closures of the positive sets meet, and there is no time in `[0, 1]` at which all
         /// polynomials are positive. For example, one becomes positive exactly when another stops, or all become
-        /// positive right after 1. The slightest change of a coefficient may undo this.
+        /// positive right after 1. A tiny change of a coefficient may change this.
         touching: bool,
     },
     /// A coefficient is infinite or NaN; nothing is decided.

@@ -41,7 +41,7 @@ impl NamedEdit {
 /// A change of the formulas of one kind of pair.
 #[derive(Clone, Copy)]
 pub enum FormulaEdit {
-    /// A change that explanations know by its name.
+    /// A change that has a name in explanations.
     Named(&'static NamedEdit),
     /// All formulas use other inputs.
     OtherInputs(fn(&mut Inputs)),

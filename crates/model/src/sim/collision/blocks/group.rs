@@ -34,8 +34,8 @@ pub(super) const TWO_KNOWN: usize = 3;
 /// The index at which the line begins.
 pub(super) const LINE: usize = 4;
 
-/// The numbers after a row that may be read, whatever their values: the number of coefficients of a polynomial, plus
-/// two.
+/// The numbers after a row that may be read, regardless of their values: the number of coefficients of a polynomial,
+/// plus two.
 pub(super) const BEHIND: usize = 8;
 
 /// The facts about a pair, in the bits of a number. The lowest bit is set if the certificate must decide whether there

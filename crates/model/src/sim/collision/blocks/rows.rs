@@ -61,7 +61,7 @@ impl Work for Pairs<'_> {
 }
 
 impl Pairs<'_> {
-    /// Computes the rest of the pairs of one particle. Returns whether the output holds a result; after a hit the
+    /// Computes the rest of the pairs of one particle. Returns whether the output contains a result; after a hit the
     /// position is that of the next pair.
     #[inline(always)]
     fn row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut LoggedRows<'_>) -> bool {
@@ -145,7 +145,7 @@ impl Pairs<'_> {
 }
 
 /// Decides a pair with an edge, if the certificate left it open, and writes its polynomials. Returns whether the output
-/// holds a result.
+/// contains a result.
 #[inline(always)]
 fn compute_edge(
     pair: Pair,
@@ -163,8 +163,8 @@ fn compute_edge(
     ends
 }
 
-/// Decides a particle-particle or particle-half-plane pair and writes its polynomials. Returns whether the output holds
-/// a result.
+/// Decides a particle-particle or particle-half-plane pair and writes its polynomials. Returns whether the output
+/// contains a result.
 #[inline(always)]
 fn compute_two(
     pair: Pair,

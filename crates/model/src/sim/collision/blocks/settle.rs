@@ -15,7 +15,7 @@ use fosssim_num::{lanes::copy_little_endian, polynomial::Polynomial};
 
 crate::drops_leading!();
 
-/// The maximum number of bytes of a pair with an edge, and of another pair.
+/// The maximum number of bytes of a pair with an edge.
 pub(super) const EDGE_BYTES: usize = 4 * 4 + 8 * 17;
 pub(super) const TWO_BYTES: usize = 2 * 4 + 8 * 5;
 
@@ -123,7 +123,7 @@ pub(super) fn decide_edge(
     decide(setting, counts, pair, row, [5, 3, 3, 6])
 }
 
-/// Decides another pair.
+/// Decides a pair without an edge.
 #[inline(never)]
 pub(super) fn decide_two(
     setting: &Setting<'_>,

@@ -1,7 +1,7 @@
 //! The penalty force, which repels all bodies closer than the thickness (simulation.md 3, penalty force).
 //!
 //! Its Hessians count as zero, as in the original. There is no guard against zero distance: the direction is then NaN,
-//! and enters the gradient if the distance test holds. Only the contest's detection has a guard.
+//! and enters the gradient if the distance test is passed. Only the contest's detection has a guard.
 //!
 //! Each detection sums the pairs in a specific order ([`PenaltyPairs`]).
 mod introsort;

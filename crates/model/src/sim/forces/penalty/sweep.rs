@@ -133,7 +133,7 @@ impl Sweep {
             let (lows, more_lows) = self.heights[0][index + 1..end].as_chunks::<BLOCK>();
             let (highs, _) = self.heights[1][index + 1..end].as_chunks::<BLOCK>();
             for (block, (lows, highs)) in lows.iter().zip(highs).enumerate() {
-                // As wide as the floating-point numbers, so that several are compared at a time.
+                // Keys are as wide as the floating-point numbers, so that several are compared at a time.
                 let mut far = [0_u64; BLOCK];
                 for ((far, low), high) in far.iter_mut().zip(lows).zip(highs) {
                     *far = u64::from(one.low[1] > *high) | u64::from(*low > one.high[1]);

@@ -11,7 +11,7 @@ use std::collections::BTreeSet;
 enum FamilyCell {
     /// The row with this id.
     Is(&'static str),
-    /// No row, for this reason.
+    /// There is no row, for this reason.
     None(&'static str),
 }
 
