@@ -90,11 +90,11 @@ pub(in crate::cli) struct GradeArguments {
     /// reader do not count.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PROGRESS")]
     pub(in crate::cli) progress: Option<PathBuf>,
-    /// Also writes the page for staff, which shows everything, if reports are for students.
+    /// Write an additional page for staff, which shows everything. Only with reports for students.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_STAFF_PAGE")]
     pub(in crate::cli) staff_page: Option<PathBuf>,
-    /// Also writes the page that students see after hidden groups are published, if reports are for students and there
-    /// are hidden groups.
+    /// Write an additional page, which students see after hidden groups are published. Only with reports for
+    /// students, and if groups are hidden.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PUBLISHED_PAGE")]
     pub(in crate::cli) published_page: Option<PathBuf>,
     /// Keep hidden groups in reports for students, because the platform that requests them hides the groups itself.
@@ -229,10 +229,10 @@ Example:
 pub(in crate::cli) struct SuiteCheckArguments {
     /// The suite: a file, or the name of a built-in one.
     pub(in crate::cli) suite: String,
-    /// Lists the pairs of properties that no step of the suite's scenes has.
+    /// List the pairs of properties that no step of the suite's scenes has.
     #[arg(long)]
     pub(in crate::cli) missing: bool,
-    /// Lists the known mistakes that no scene shows, by area of the assignment. This takes some seconds.
+    /// List the known mistakes that no scene shows, by area of the assignment. This takes some seconds.
     #[arg(long)]
     pub(in crate::cli) mistakes: bool,
 }

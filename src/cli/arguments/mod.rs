@@ -181,7 +181,7 @@ pub(super) struct CheckArguments {
     /// Show all wrong steps, not only the first one, with expected and actual values.
     #[arg(long, conflicts_with = "step")]
     pub(super) all: bool,
-    /// Shows tables as well: residuals, the used share of each tolerance, and all kinds of findings with their first
+    /// Show tables, too: residuals, the used share of each tolerance, and all kinds of findings with their first
     /// examples.
     #[arg(long)]
     pub(super) tables: bool,
