@@ -1,8 +1,8 @@
 //! **fosssim-oracle** re-simulates every step of a FOSSSim submission from the submission's own state, compares every
 //! polynomial that it logged with the one it should have logged, and reports what is right, what is wrong and where.
 //!
-//! The crates of the workspace are re-exported under short names, from the lowest layer to the highest. Each imports
-//! only from those above it in this list. `ARCHITECTURE.md` describes the whole flow.
+//! The crates of the workspace are re-exported under short names, from the lowest layer to the highest. Each crate uses
+//! only those above it in this list. `ARCHITECTURE.md` describes the whole flow.
 #![forbid(unsafe_code)]
 
 pub use fosssim_num as num;

@@ -25,7 +25,7 @@ use terminal_size::{Width, terminal_size_of};
 /// The value of the option `--color`.
 static COLOR: OnceLock<ColorChoice> = OnceLock::new();
 
-/// Stores the value of `--color`; the first call counts.
+/// Stores the value of `--color`; only the first call has an effect.
 pub(super) fn choose_color(color: ColorChoice) {
     let _ = COLOR.set(color);
 }

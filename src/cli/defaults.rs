@@ -48,7 +48,7 @@ pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
         let all = [("suite", suite), ("output", output), ("hints", read.hints), ("jobs", jobs)];
         return Ok(command.mut_subcommand("grade", |grade| {
             let given = all.into_iter().filter_map(|(name, value)| Some((name, value?)));
-            // The value lives as long as the program, as texts of help require.
+            // The value is leaked, because help texts must live as long as the program.
             given.fold(grade, |grade, (name, value)| grade.mut_arg(name, |arg| arg.default_value(&*value.leak())))
         }));
     }

@@ -36,7 +36,7 @@ pub(super) fn clean_up_when_interrupted() {
 
 /// Ends the program, and removes incomplete outputs.
 fn end() -> ! {
-    // The code below could block, too: on a lock, or on a reader of its output.
+    // The following code could block as well: on a lock, or on a reader of the output.
     thread::spawn(|| {
         thread::sleep(Duration::from_secs(1));
         std::process::exit(exit::INTERRUPTED.into());

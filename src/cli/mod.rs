@@ -38,7 +38,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
     if words.get(1).is_some_and(|word| word == "sample") {
         return sample::main(words.into_iter().skip(1), None);
     }
-    // An incomplete output is then removed like after any other error.
+    // A failed write then removes the incomplete output, like any other error.
     crate::sandbox::let_large_writes_fail();
     let program = words.first().cloned().unwrap_or_default();
     let command = match command(&words) {
@@ -55,7 +55,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
         }
     };
     console::choose_color(arguments.color);
-    // Options before the command prevented its recognition above.
+    // With options before it, the command was not recognized above.
     if let arguments::Command::Original(original) = &arguments.command {
         let name = [program.as_bytes(), b" original"].concat();
         return crate::original::main(&name, &original.words, &original::Program);
@@ -74,7 +74,7 @@ fn command(words: &[OsString]) -> Result<clap::Command> {
 
 /// Prints an error.
 fn fault(error: &anyhow::Error) -> ExitCode {
-    // Names of files are untrusted text, too.
+    // File names in the message are untrusted text.
     console::complain(strip_control_characters(&format!("error: {error:#}\n")));
     ExitCode::from(exit::FAULT)
 }

@@ -26,7 +26,7 @@ impl Services for Program {
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String> {
         let png = match Folder::open_existing(Path::new(PNGS)) {
             _ if !png => None,
-            // The original aborts here.
+            // In this case the original aborts.
             None => {
                 return Err(format!("Error opening {PNGS}/frame00001.png: there is no folder {PNGS}; make it first\n"));
             }

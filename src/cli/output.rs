@@ -63,7 +63,7 @@ impl Output {
                 } else if !kind.is_file() {
                     bail!("it is a pipe, socket or block device; use `-` for standard output");
                 }
-                // The rename would replace a protected file as well, so check first whether it may be written.
+                // Renaming would replace even a protected file, so check first whether the file may be written.
                 OpenOptions::new().write(true).open(name)?;
                 // Replace the target of a symbolic link, not the link.
                 target = name.canonicalize()?;
@@ -162,8 +162,8 @@ pub(super) fn print_path(file: &Path, is_page: bool) {
 }
 
 impl Output {
-    /// Calls `act` with the writer. If the reader has closed the pipe, the result is `taken`, so that the command can
-    /// finish.
+    /// Calls `act` with the writer. If the reader has closed the pipe, the result is `taken` instead of an error, so
+    /// that the command can finish.
     fn through<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
         match self {
             Self::Nowhere => Ok(taken),

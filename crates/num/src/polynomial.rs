@@ -26,7 +26,7 @@ impl TryFrom<Vec<Number>> for Polynomial {
     fn try_from(form: Vec<Number>) -> Result<Self, Self::Error> {
         let coefficients: Vec<f64> = form.into_iter().map(|number| number.0).collect();
         let fits = coefficients.len() <= MAX_COEFFICIENTS;
-        fits.then(|| Self::untrimmed(&coefficients)).ok_or("a polynomial of the detection has six coefficients at most")
+        fits.then(|| Self::untrimmed(&coefficients)).ok_or("a detection polynomial must have at most six coefficients")
     }
 }
 

@@ -46,7 +46,7 @@ pub const PARABOLA_NEAR: f64 = (1_u64 << 22) as f64;
 /// values do not cover the rounding of its zeros (about 2^-50).
 pub const PARABOLA_MARGIN: f64 = 1.0 / (1_u64 << 40) as f64;
 
-/// Certificate: a parabola has no real zero if b² is below 4ac times this.
+/// Certificate: a parabola has no real zero if `b² < 4ac` times this factor.
 pub const PARABOLA_COMPLEX: f64 = 1.0 - 1.0 / (1_u64 << 20) as f64;
 
 /// Certificate: the minimum product of complex zeros (fraction of the step, squared) whose imaginary parts are

@@ -7,7 +7,8 @@ use fosssim_model::{
 };
 use fosssim_num::vector::at;
 
-/// Wrong steps that are tried: a later one may show alone the reason that the first one shows together with others.
+/// The maximum number of wrong steps that are tried. A later step may show one cause alone that the first one shows
+/// together with others.
 const MOST_STEPS: usize = 6;
 
 /// Returns scenes to begin with, each with its wrong step, in the order in which they are tried: each of these wrong

@@ -1,4 +1,4 @@
-//! The numbers and the size of a scene: the amount that its reader has to take in.
+//! Measures the complexity of a scene: how many parts, numbers and digits its reader must follow.
 use fosssim_model::{
     scene::{Collision, Force, Integrator, Scene},
     sim::{Detection, Observer, Pair, RootSearch, Simulation},

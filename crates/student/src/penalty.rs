@@ -12,7 +12,7 @@ use super::{
 /// The layer around bodies that repels other bodies.
 #[derive(Clone, Copy)]
 pub struct PenaltyLayer {
-    /// The stiffness.
+    /// The stiffness of the force.
     pub k: f64,
     /// The thickness.
     pub h: f64,

@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(name)?;
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
-    // An output that can't be written is reported before the work is done.
+    // Open the output first, so that an unwritable one is reported before the work begins.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
     let (shown, lasts) = (ShownParts::from_arguments(arguments), is_rereadable(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
@@ -88,7 +88,7 @@ fn write_report(
     }
 }
 
-/// The parts of the report after the verdict. They decide which data of a trace are kept.
+/// The parts of the report after the verdict, which decide which data of a trace are kept.
 struct ShownParts {
     is_explained: bool,
     is_drawn: bool,
@@ -96,7 +96,7 @@ struct ShownParts {
 
 impl ShownParts {
     fn from_arguments(arguments: &CheckArguments) -> Self {
-        // The numbers of single steps are shown.
+        // With `--step`, the values of these steps are shown instead of an explanation.
         let is_explained = arguments.step.is_empty() && !arguments.no_explain;
         Self { is_explained, is_drawn: arguments.format == CheckFormat::Html }
     }
@@ -142,12 +142,13 @@ fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
     match (&outcome.stop, trace.failure()) {
         // Whether later steps were read is unknown, so their faults are not used.
         (Some(Stop::Step(_)), _) | (_, None) => Ok(()),
-        // Missing bytes within polynomials do not stop the original, but may be missing only in this copy.
+        // Missing bytes within polynomials do not stop the original, but may be missing only in this copy of the trace.
         (_, Some(message)) => bail!(describe_unread(outcome, &trace.name, &message)),
     }
 }
 
-/// Returns the evidence, of the whole trace if only a part was kept and the file can be read again.
+/// Returns the evidence. If only a part of the trace was kept and the file can be read again, the evidence covers the
+/// whole trace.
 fn evidence_of(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Evidence {
     let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
     examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::BUDGET)

@@ -1,4 +1,5 @@
-//! Commands that show more of a scene that is not accepted: the user's own command line, reduced to that scene.
+//! Suggests commands that show more about a scene that is not accepted: the user's own command line, reduced to that
+//! scene.
 use crate::{
     assignments::Assignment,
     cli::arguments::grade::GradeArguments as Arguments,

@@ -32,7 +32,7 @@ pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     let text = file.read(MAX_BYTES).with_context(|| format!("cannot read the earlier grading {shown}"))?;
     let grades = match serde_json::from_slice(&text) {
         Ok(GradesFile { grades }) => grades,
-        // Lines without groups are entries that were not submissions.
+        // A line without groups is an entry that was not a submission.
         Err(_) => text.split(|&byte| byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok()).collect(),
     };
     if grades.is_empty() {
@@ -41,7 +41,8 @@ pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     Ok(grades)
 }
 
-/// Adds to each grade the earlier grade with the same name. If there is one of each, names do not matter.
+/// Adds to each grade the earlier grade with the same name. If there is only one earlier and one new grade, names do
+/// not matter.
 pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     if let ([before], [grade]) = (earlier, &mut *grades) {
         grade.before = Some(before.clone());

@@ -52,7 +52,7 @@ impl<'a> LiveDisplay<'a> {
                         bar.finish_and_clear();
                     }
                     match cached {
-                        // A reused result does not show how long the rest will take.
+                        // Leave reused results out, because they do not show how long the rest will take.
                         true => bars.overall.set_length(bars.overall.length().unwrap_or(1).saturating_sub(1)),
                         false => bars.overall.inc(1),
                     }

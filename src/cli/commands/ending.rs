@@ -28,13 +28,13 @@ pub(super) fn file_of_scene(name: &str) -> String {
 pub(super) fn file_name(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
     let plain: String = name.chars().map(safe).take(100).collect();
-    // A name that a shell pattern turns into an option, or that Windows reserves, is changed.
+    // Names that look like an option, or that Windows reserves, are changed.
     let plain = plain.trim_start_matches(['.', '-']).trim().trim_end_matches('.');
     if !plain.is_empty() && plain == name && !is_device(plain) {
         return plain.to_owned();
     }
     let digest = &blake3::hash(name.as_bytes()).to_hex()[..8];
-    // No raw name contains the mark; otherwise two submissions could have the same file.
+    // The mark is not allowed in raw names; otherwise two submissions could have the same file.
     format!("{}{plain}~{digest}", if is_device(plain) { "_" } else { "" })
 }
 

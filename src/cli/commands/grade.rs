@@ -86,7 +86,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         (Some(hints), Audience::Student) => plan.tell_students(hints),
     }
     let reports = reports(&arguments.format)?;
-    // Read the earlier grading before anything is written, because it may be in the folder for results.
+    // Read the earlier grading before anything is written, because its files may be in the folder for results.
     let earlier = arguments.compare.as_deref().map(compare::read).transpose()?.unwrap_or_default();
     if arguments.traces {
         return traces::run(arguments, plan, &reports, &earlier);
@@ -112,7 +112,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     // Install the signal handler before an output is opened, whose own handler would end the program immediately.
     let cancellation = cancelled_by_signals();
     for file in reports.iter().filter_map(|report| report.file.as_deref()) {
-        // An output that can't be written is reported before the work is done.
+        // Open the outputs first, so that an unwritable one is reported before the work begins.
         drop(output::Output::create(file, &[])?);
     }
     let backend = backend(arguments.unsafe_no_sandbox)?;
@@ -250,7 +250,7 @@ impl GradingSession<'_> {
                 let _ = log_error.set(error);
             }
         };
-        // This program acts as the original if it is called by that name.
+        // If this program is called by the original's name, it acts as the original.
         let reference = std::env::current_exe().ok();
         let grader = Grader {
             plan: self.plan,
@@ -337,7 +337,7 @@ impl GradingSession<'_> {
             }
             earlier = grades.iter().map(EarlierGrade::from).collect();
             console::complain("waiting for a change; Ctrl-C ends\n");
-            // A file is graded after it has stopped changing, because a linker writes in several steps.
+            // Wait until a file has stopped changing, because a linker writes in several steps.
             let mut last = seen.clone();
             loop {
                 std::thread::sleep(Duration::from_millis(300));

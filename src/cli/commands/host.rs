@@ -60,7 +60,7 @@ pub(super) fn doctor() -> Result<u8> {
 pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     let mistake = arguments.mistake.as_deref().unwrap_or(DEMO_MISTAKE);
     for id in mistake.split(',') {
-        // A variant is right, so a program with it would be a right submission.
+        // A variant is right, so a program with a variant would be a right submission.
         if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
             let meant = near::suggest(id, student::all_rows().map(|row| row.id));
             bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them{meant}");

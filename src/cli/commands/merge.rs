@@ -25,7 +25,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The folders of a grading whose files have unique names, or that of their submission.
+/// The folders of a grading whose files have unique names or the names of their submissions.
 const COPIED_FOLDERS: [&str; 4] = ["cards", "logs", "traces", "faults"];
 
 /// The maximum depth of folders that are copied.
@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let names = &first.common.submissions;
     refuse_several(&reports, names.len(), "")?;
     Folder::make(&output).with_context(|| format!("cannot make {}", output.display()))?;
-    // The lock is held to the end, so that no other process uses the folder.
+    // The lock is kept until the end, so that no other process uses the folder.
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
         for name in COPIED_FOLDERS {
@@ -166,7 +166,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", place.path().display())),
     };
     for_each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
-        // A damaged entry is graded again.
+        // A damaged entry is skipped, so a later grading repeats it.
         if let Some(entry) = read_line(line) {
             kept.keep(&entry.key, &entry.submission, &entry.result)?;
         }
@@ -199,6 +199,6 @@ fn copy_file(file: File, target: &Place) -> io::Result<()> {
     if length > MAX_FILE_BYTES {
         return Err(io::Error::other(format!("it has {length} bytes, the limit is {MAX_FILE_BYTES}")));
     }
-    // Stop at the length, even if the file grows.
+    // Copy only the length that was read before, even if the file grows.
     output::copy_at(target, &mut file.take(length))
 }

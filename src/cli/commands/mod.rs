@@ -45,7 +45,7 @@ use anyhow::Result;
 pub(super) fn run(command: &Command) -> Result<u8> {
     console::be_quiet(is_quiet(command));
     let done = match command {
-        // The exit code of these commands is a verdict.
+        // For these commands the exit code is a verdict.
         Command::Check(arguments) => return check::run(arguments),
         Command::Explain(arguments) => return explain::run(arguments),
         Command::Shrink(arguments) => return shrink::run(arguments),
@@ -57,7 +57,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Demo(arguments) => return host::demo(arguments),
         Command::Doctor(_) => return host::doctor(),
         Command::Selftest(arguments) => return host::selftest(arguments),
-        // This is unreachable, because the command ends the process itself.
+        // This arm is unreachable, because the command ends the process itself.
         Command::Original(_) => return Ok(exit::FAULT),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Detect(arguments) => detect::run(arguments),

@@ -38,7 +38,7 @@ pub(super) struct Pages {
 }
 
 impl Pages {
-    /// Creates pages in the folder for results; without one, cards that exist as long as the grading.
+    /// Creates pages in the folder for results. Without such a folder, cards exist only during the grading.
     pub(super) fn new(folder: Option<&Path>, for_students: bool) -> Result<Self> {
         let (cards, temporary) = match folder {
             Some(folder) => (Place::new(folder, "cards"), None),
@@ -60,7 +60,7 @@ impl Pages {
     pub(super) fn forget(&self) {
         let is_card = |name: &OsString| Path::new(name).extension().is_some_and(|extension| extension == "zst");
         for name in self.cards.names().unwrap_or_default().iter().filter(|name| is_card(name)) {
-            // A card that can't be removed only takes space.
+            // If a card can't be removed, it only takes space.
             drop(self.cards.join(name).remove());
         }
     }
@@ -106,7 +106,7 @@ impl Pages {
             let name = format!("reports/{}.html", file_name(&grade.submission));
             write(&name, &self.render_one(grade, Some("../index.html"), Audience::Staff)).map(drop)
         })?;
-        // In names of files, an address has to escape only blanks.
+        // File names are already safe in a URL, except for blanks.
         let page = |grade: &Grade| format!("reports/{}.html", file_name(&grade.submission).replace(' ', "%20"));
         write("index.html", &ClassPage { grades, passed_over, page: &page }.html())
     }

@@ -1,4 +1,4 @@
-//! A program that is run on many small scenes: its faults on each, and its likely mistakes.
+//! Runs a program on many small scenes, and finds its faults on each scene and its likely mistakes.
 use super::{host::backend, pages};
 use crate::{
     assignments::{Assignment, Definition},
@@ -40,7 +40,7 @@ use std::{
 /// The limits of processor time and wall time on scenes that take a right program some milliseconds.
 const TIME_LIMITS: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
 
-/// The maximum number of runs that end at a limit; further scenes would show the same.
+/// The maximum number of runs that end at a limit. After that, no further scenes are run.
 const MAX_STOPPED: usize = 4;
 
 /// The hints of cards, and whether pictures are drawn.
@@ -144,7 +144,7 @@ impl ProgramUnderTest {
     /// Runs the program on scenes; `None` if that was interrupted.
     pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
         let long = self.limits();
-        // The limits after a run that ended at a limit.
+        // The shorter limits that apply after a run has ended at a limit.
         let short = shorten_limits(&long);
         let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
         let bar = console::Bar::for_runs(tasks.len() as u64);
@@ -209,7 +209,7 @@ pub(super) fn case(
     let options = Options { fair: true, ..Options::default() };
     let examined = examine(scene, bytes, KeptPart::All, &options, &mut ());
     let outcome = &examined.outcome;
-    // The end of the program explains more than the end of its trace.
+    // If the program did not end well, its end explains more than the end of its trace.
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| describe_stop(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
@@ -277,7 +277,7 @@ fn make_absolute(program: &Path) -> PathBuf {
     }
 }
 
-/// Returns the remark on the end of a program, unless it ended well.
+/// Returns a note about the end of a program, unless it ended well.
 pub(super) fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
     match (ended, is_traceless) {
         (RunEnd::Exited(0), false) => None,

@@ -17,7 +17,7 @@ use std::{io, path::Path};
 const MAX_RECORDING_BYTES: u64 = 1 << 30;
 
 pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
-    // A folder that was given is used even if it does not exist.
+    // A folder that the user names is used even if it does not exist yet.
     let defaults = arguments.assets == Path::new("assets") && arguments.references == Path::new("references");
     let embedded = arguments.check && defaults && !arguments.assets.is_dir();
     let scenes = if embedded { list_bundled() } else { scenes(&arguments.assets)? };
@@ -126,7 +126,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
         replace(&place("bin.zst"), &packed)?;
         replace(&place("steps"), recording.digests.as_bytes())?;
     }
-    // The folder contains only files for scenes.
+    // All files of the folder belong to scenes, so other recordings are outdated.
     for stem in EarlierRecordings(Some(folder)).stems() {
         if !recordings.iter().any(|(known, _)| *known == stem) {
             for extension in ["bin.zst", "steps"] {

@@ -87,7 +87,7 @@ pub(super) fn wanted_pages(
     let is_asked = arguments.staff_page.is_some()
         || arguments.published_page.is_some()
         || reports.iter().any(|report| report.format == Format::Html);
-    // A class's pages may be requested later, without grading it again.
+    // A class's pages for students may be requested later, without grading it again, so they are always prepared.
     let for_students = arguments.reader == Audience::Student || is_class;
     (folder.is_some() || is_asked).then(|| Pages::new(folder, for_students)).transpose()
 }
@@ -120,7 +120,7 @@ impl Results<'_> {
     /// Fails with the first error. The other files are still written.
     pub(super) fn write(&self, reports: &[Report], text: impl Fn(&[Grade]) -> String) -> Result<()> {
         let (grades, passed_over) = (self.grades, self.passed_over);
-        // An error of one file must not prevent the others.
+        // An error with one file must not prevent the other files.
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if self.is_part && self.folder.is_some() {
@@ -139,7 +139,7 @@ impl Results<'_> {
                 ("grades.jsonl", &lines),
                 ("class.txt", &class),
             ];
-            // All cores write, because for a large class this takes long.
+            // Write with all cores, because this takes long for a large class.
             let written = tables.par_iter().take(if grades.len() > 1 { 4 } else { 3 });
             let write_tables = || written.map(|(name, text)| write_in(folder, name, text)).collect::<Vec<_>>();
             let write_pages = |pages: &Pages| make("the pages", || pages.write(grades, passed_over, self.reader));

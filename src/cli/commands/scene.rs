@@ -20,7 +20,7 @@ pub(super) fn run(command: &SceneCommand) -> Result<()> {
     }
 }
 
-/// Lists the scenes that match patterns; without patterns, all.
+/// Lists the scenes that match patterns, or all scenes if there are no patterns.
 fn print_list(patterns: &[String], quiet: bool) -> Result<()> {
     let names = matching(patterns)?;
     if quiet {

@@ -15,7 +15,7 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The name of the file that marks a shard as complete, and has its exit code.
+/// The name of the file that marks a shard as complete, and contains its exit code.
 const SHARD_FILE: &str = "shard.json";
 
 /// The maximum size of the file, in bytes: twice that of ten thousand submissions of 85 scenes that are all wrong.
@@ -116,8 +116,8 @@ impl Part {
     }
 }
 
-/// Returns a shard's entries of a list, which are every N-th one. Neighbors in the alphabet may have worked together
-/// and share slow programs, so they are in different shards.
+/// Returns a shard's entries of a list, which are every N-th one. Neighbors in the list may have similar slow programs,
+/// so they are put into different shards.
 fn select_own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
 }

@@ -35,7 +35,8 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let program = ProgramUnderTest::new(&arguments.program, arguments.suite.as_deref(), arguments.unsafe_no_sandbox)?;
     let (own, suite) = (program.tasks(&[])?, program.suite_tasks());
     let known = if arguments.suite.is_some() { [suite, own] } else { [own, suite] };
-    // A named scene is examined with those around it, for the likely mistakes; a file alone.
+    // A scene of the suite or the milestone is examined together with the others, to find the likely mistakes; a scene
+    // in a file is examined alone.
     let is_chosen = |name: &str| arguments.scene.as_deref().is_none_or(|scene| Path::new(name) == scene);
     let named = known.into_iter().find(|tasks| tasks.iter().any(|task| is_chosen(&task.name)));
     let mut tasks = match (named, &arguments.scene) {
@@ -112,7 +113,7 @@ pub(super) fn describe(
     let note = FailureKind::from_end(&seen.ended).and_then(|_| note(&seen.ended, seen.trace.is_empty(), &[]));
     let names = ("small.xml".to_owned(), program.to_owned());
     let (case, card, _) = case(names, false, scene, &seen.trace[..], note, drawing);
-    // A card would show two equal motions if the program does not end well and its steps are right.
+    // If the program does not end well but its steps are right, a card would show two equal motions.
     let card = card.filter(|_| case.note.is_none() || case.first.is_some());
     let Case { trace: program, note, first, explanations, .. } = case;
     let names = [program.as_str(), origin, suite].map(quote);
@@ -154,7 +155,7 @@ fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
         own => {
             // An unfinished cause lists its empty stages.
             let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
-            // Many other formulas agree with a single sample of wrong polynomials.
+            // Many formulas agree with a single sample of wrong polynomials, so the exact form is omitted.
             let is_fitted = cause.samples < 2 && matches!(cause.about, About::Polynomials { .. });
             let details = if is_fitted { Vec::new() } else { cause.details.clone() };
             let example = own.and_then(|own| own.example.clone());

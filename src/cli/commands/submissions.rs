@@ -251,9 +251,9 @@ fn last_name(path: &Path) -> OsString {
     absolute.file_name().unwrap_or(absolute.as_os_str()).to_owned()
 }
 
-/// Returns unique names for paths, by default their last components. If several look the same, names that only look
-/// equal are shown exactly, equal names get as many parent folders as needed, and names that still look the same get a
-/// number.
+/// Returns unique names for paths, by default their last components. If several names look the same, names that only
+/// look equal are shown exactly. Equal names get as many parent folders as needed, and names that still look the same
+/// get a number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();

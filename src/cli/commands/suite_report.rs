@@ -87,7 +87,7 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
         })
     };
     let list = json!({ "schema": SCHEMA, "suites": suites.iter().map(entry).collect::<Vec<_>>() });
-    // Plain values always serialize.
+    // Plain values can always be serialized.
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
 }
 

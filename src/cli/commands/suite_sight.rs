@@ -11,7 +11,7 @@ use rayon::prelude::*;
 /// The number of polynomials in a step above which a program counts as endless.
 const MAX_POLYNOMIALS: usize = 1 << 20;
 
-/// The maximum number of particles of a scene that is used; larger ones, which exist for timing, show nothing more.
+/// The maximum number of particles of a scene that is used; larger scenes exist only for timing.
 const MAX_PARTICLES: usize = 2_000;
 
 /// An area of the assignment, with the mistakes that the scenes show.
@@ -37,13 +37,13 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     };
     let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
     scenes.retain(|scene| scene.particles.len() <= MAX_PARTICLES);
-    // Small scenes first, because most mistakes show in the first scenes.
+    // Begin with small scenes, because most mistakes show in the first scenes.
     scenes.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
     let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written(row, scene.assignment()));
     let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_theirs).collect();
     let logs_polynomials = scenes.iter().any(|scene| Layout::for_scene(scene).has_polynomials);
-    // Most mistakes of writing a trace concern lists that logs of states lack.
+    // Most mistakes in writing a trace concern lists, which traces of states do not have.
     let concerns =
         |row: &Row| (logs_polynomials || row.area != Area::Trace) && scenes.iter().any(|scene| can_show(scene, row));
     let seen: Vec<usize> = rows

@@ -73,7 +73,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     let second = index(second, count, kind.second())?;
     match kind {
         PairKind::ParticleParticle if first == second => bail!("a particle cannot form a pair with itself"),
-        // Detection checks each pair once, the lower index first.
+        // Detection checks each pair only once, with the lower index first.
         PairKind::ParticleParticle => Ok(Pair { kind, first: first.min(second), second: first.max(second) }),
         PairKind::ParticleEdge => {
             let edge = &scene.edges[second as usize];

@@ -98,7 +98,7 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         (reader.with_context(context)?, Some(Identity::from_metadata(&metadata)))
     };
     let mut start = Vec::new();
-    // The second reading reports bytes that can't be read.
+    // If bytes can't be read, the second reading reports that.
     let _ = reader.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = if failure.get().is_none() { looks_like(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));
@@ -199,7 +199,7 @@ struct UnpackedReader<R> {
 impl<R: Read> Read for UnpackedReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.decoder.read(buffer).map_err(|error| {
-            // The operating system's message is stored already, and explains more.
+            // The operating system's message is already stored, and explains more than this one.
             if error.kind() == io::ErrorKind::Interrupted || self.failure.get().is_some() {
                 return error;
             }

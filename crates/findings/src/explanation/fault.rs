@@ -322,7 +322,7 @@ fosssim_num::closed_set! {
         /// Zones that have to stop keep their new positions.
         KeepPositions = "zones that must stop do not go back to their start",
         /// Zones that have to stop keep some velocity.
-        KeepVelocities = "zones that must stop do not lose their velocity",
+        KeepVelocities = "zones that must stop keep their velocities",
     }
 }
 
@@ -335,15 +335,15 @@ fosssim_num::closed_set! {
         /// The distances between particles of a zone change.
         Distances = "the distances between particles of a zone change",
         /// The zones do not rotate.
-        NoTurn = "zones do not turn",
+        NoTurn = "zones do not rotate",
         /// The zones rotate less than they should.
-        LessTurn = "zones do not turn as far as they should",
+        LessTurn = "zones rotate too little",
         /// The zones rotate further than they should.
-        MoreTurn = "zones turn further than they should",
+        MoreTurn = "zones rotate too much",
         /// The zones rotate in the opposite direction.
-        TurnBack = "zones turn in the opposite direction",
+        TurnBack = "zones rotate in the opposite direction",
         /// The zones rotate by a wrong angle.
-        Turn = "zones turn by a wrong angle",
+        Turn = "zones rotate by a wrong angle",
         /// The zones' velocities are wrong.
         Velocities = "velocities in a zone do not match its motion from start to end",
         /// The speeds in the zones are wrong.

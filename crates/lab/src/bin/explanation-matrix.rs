@@ -101,7 +101,7 @@ fn count(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     );
 }
 
-/// Counts the explanation from all traces of a mistake together.
+/// Counts the explanation that all traces of a mistake give together.
 fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
     let mut confused = Vec::new();
     for (row, outcomes) in wrong {

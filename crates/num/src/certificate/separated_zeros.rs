@@ -37,7 +37,7 @@ impl<const LENGTH: usize> Entries<LENGTH> {
 }
 
 /// Returns whether no change of the coefficients (highest power first) by [`DISCRIMINANT_MARGIN`] of their moduli makes
-/// two zeros coincide. Also `false` if an intermediate remainder has an unusually low degree.
+/// two zeros coincide. An intermediate remainder of an unusually low degree gives `false`, too.
 #[inline]
 pub(super) fn zeros_are_separated<const LENGTH: usize>(coefficients: &[f64; LENGTH]) -> bool {
     let mut dividend = Entries { values: *coefficients, changes: coefficients.map(f64::abs) };

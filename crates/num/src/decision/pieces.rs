@@ -172,9 +172,9 @@ impl PieceWalk<'_> {
     }
 }
 
-/// Returns whether the Bernstein coefficients are negative up to an index and positive from the next one, or the next
-/// but one. Whatever the sign between them, it changes once, so the polynomial has one change as well (Descartes' rule
-/// of signs).
+/// Returns whether the Bernstein coefficients are negative up to an index and positive after it, with at most one
+/// coefficient between them, whose sign does not matter. The sign changes once, so the polynomial has one change as
+/// well (Descartes' rule of signs).
 fn rises_once(control: &Control) -> bool {
     let values = &control.values[..control.length];
     let negative = values.iter().take_while(|&&value| value < -control.error).count();

@@ -2,9 +2,9 @@
 
 /// The unit error, as a decimal number instead of 2^-52.
 pub(super) const ETA: f64 = 2.22e-16;
-/// A "large" number, of single precision's size.
+/// The "large" number of Algorithm 493: the largest of single precision.
 pub(super) const LARGE: f64 = 3.4e38;
-/// A "small" number.
+/// The "small" number of Algorithm 493: the smallest normal one of single precision.
 pub(super) const SMALL: f64 = 1.2e-38;
 /// The target of scaling for the smallest coefficient.
 pub(super) const LAMBDA: f64 = SMALL / ETA;

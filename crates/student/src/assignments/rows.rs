@@ -120,7 +120,7 @@ macro_rules! rows {
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]
         pub enum $type {
             $($(#[doc = $id] $mistake,)*)*
-            $(#[doc = "One of another table."] $of($other),)*
+            $(#[doc = "A mistake that another table defines."] $of($other),)*
         }
 
         impl $type {

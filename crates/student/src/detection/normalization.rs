@@ -25,8 +25,8 @@ pub fn normalize(student: Student, motion: &PairMotion, lists: &mut [Vec<f64>]) 
     }
 }
 
-/// Returns a number that simplifies the quotients of one pair's formulas: the square of the relative motion, along the
-/// normal if there is one; for edges the square of the length.
+/// Returns the squared length by which a pair's formulas are divided: that of the edge, otherwise that of the relative
+/// motion, along the normal if there is one.
 fn length_for_pair(motion: &PairMotion) -> f64 {
     let square = |v: Vec2| v.dot(&v);
     match motion {

@@ -1,8 +1,7 @@
 //! MP4 films by an external program: pictures are sent to ffmpeg through a pipe.
 //!
-//! Its output is a temporary file, so that nothing has the target's name before it is complete. A program that reads
-//! nothing for a minute is ended. None of its arguments contains a user's file name except for that file's, which
-//! begins with `file:`.
+//! ffmpeg writes a temporary file, so that the target appears only when it is complete. If ffmpeg reads nothing for a
+//! minute, it is ended. Of its arguments, only the output contains a user's file name, which begins with `file:`.
 use crate::{
     cli::output::Output,
     render::{Size, film::Rate},
@@ -75,7 +74,7 @@ impl Ffmpeg {
             ),
             Err(error) => return Err(error).context("ffmpeg can't be started"),
         };
-        // A line is ` V....D libx264   description`.
+        // A line looks like ` V....D libx264 description`.
         let has = |name: &str| list.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
         let found = ENCODERS.into_iter().find(|(name, _)| has(name));
         found.context(
@@ -114,7 +113,7 @@ impl Ffmpeg {
             thread::spawn(move || {
                 let mut words = Vec::new();
                 let _ = errors.by_ref().take(MAX_MESSAGE_BYTES as u64).read_to_end(&mut words);
-                // The rest is read so that the program does not block.
+                // Read the rest, so that the program does not block.
                 let _ = io::copy(&mut errors, &mut io::sink());
                 String::from_utf8_lossy(&words).trim().to_owned()
             })

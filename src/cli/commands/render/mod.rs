@@ -38,7 +38,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let picks = picked_steps(arguments, form, &scene.scene)?;
     let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::MAX_RATE) };
-    // An output that can't work is reported before the work is done.
+    // Check the output first, so that an invalid one is reported before the work begins.
     let target = RenderTarget::open(form, arguments)?;
     let main = match &arguments.trace {
         Some(trace) => motion::read_motion(&scene.scene, trace, picks)?,

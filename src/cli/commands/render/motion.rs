@@ -60,7 +60,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Replaces `row` by the next positions; false at the end.
+    /// Replaces `row` by the next positions; returns `false` at the end.
     ///
     /// # Errors
     ///

@@ -21,7 +21,7 @@ const REASONS: [&str; 3] = [
 
 /// The descriptions of the decisions' levels, in order.
 const LEVELS: [&str; Level::ALL.len()] =
-    ["signs of coefficients", "Bernstein coefficients", "parts of the step", "exact arithmetic"];
+    ["signs of coefficients", "Bernstein coefficients", "subintervals of the step", "exact arithmetic"];
 
 /// Returns the result of the search as text.
 pub(super) fn describe_time(time: Option<f64>) -> String {

@@ -35,7 +35,7 @@ struct MilestoneTally {
     /// The largest share of a tolerance.
     position: f64,
     velocity: f64,
-    /// The smallest factor by which the differences of single steps from the reference must grow to be rejected.
+    /// The smallest power of two that makes a step's multiplied difference from the reference count as wrong.
     room: Option<u32>,
     /// The number of traces with each noise, and the number of rejected ones.
     noisy: u64,

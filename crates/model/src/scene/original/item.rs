@@ -41,7 +41,7 @@ impl<'e> Item<'e> {
         self.element.attribute(name)
     }
 
-    /// Returns an integer; both messages contain `value of`.
+    /// Reads an integer. The messages for a missing and for an invalid value both contain `value of`.
     pub(super) fn read_integer(&self, name: &str) -> Result<i32, Refusal> {
         self.require(name, "value of ", "integer", values::integer)
     }
@@ -56,7 +56,8 @@ impl<'e> Item<'e> {
         Ok(Vec2::new(self.numeric(x)?, self.numeric(y)?))
     }
 
-    /// Returns two scalars that messages call real numbers; both messages contain `value of`.
+    /// Reads two scalars, which messages call real numbers. The messages for a missing and for an invalid value both
+    /// contain `value of`.
     pub(super) fn reals(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
         let real = |name| self.require(name, "value of ", "real number", values::scalar);
         Ok(Vec2::new(real(x)?, real(y)?))

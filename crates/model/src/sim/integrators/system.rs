@@ -17,7 +17,7 @@ pub(super) struct System<'a> {
 }
 
 impl System<'_> {
-    /// Solves the system at the scratch's `x` and `v`: `rhs` becomes the solution.
+    /// Solves the system at `scratch.x` and `scratch.v`; the solution replaces `rhs`.
     pub fn solve(&mut self, scratch: &mut ImplicitScratch, rhs: &mut [f64]) {
         let ImplicitScratch { matrix, workspace, x, v, .. } = scratch;
         assemble(matrix, self.bodies, self.forces, self.h, x, v);

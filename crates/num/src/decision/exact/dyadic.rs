@@ -45,7 +45,7 @@ impl Dyadic {
         let scale = i128::from(dropped) - i128::from(self.exponent);
         let Ok(scale) = i32::try_from(scale) else { return [0.0, f64::from_bits(1)] };
         if scale < -1074 {
-            // Too small for a full mantissa, so the enclosure is coarse. Zero itself is exact.
+            // The time is subnormal, so the enclosure is coarse. Zero itself is exact.
             return if top == 0 { [0.0; 2] } else { [0.0, scaled(top + 1, -1074)] };
         }
         [scaled(top, scale), scaled(if exact { top } else { top + 1 }, scale)]

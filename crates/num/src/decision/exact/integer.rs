@@ -5,7 +5,7 @@
 use super::{super::short_numbers::split, dyadic::Dyadic};
 use num_bigint::{BigInt, Sign};
 
-/// A prime: `2^61 - 1`.
+/// The prime modulus `2^61 - 1`, for a quick test whether polynomials have a common zero.
 const PRIME: u64 = (1 << 61) - 1;
 
 /// The coefficients, lowest power first; the last is not zero. The zero polynomial has none.

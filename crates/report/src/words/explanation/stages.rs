@@ -200,7 +200,7 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
         }
         StageDetail::Turns(Ratios::Between(..)) => "how far they turn differs from zone to zone".to_owned(),
         StageDetail::Turns(ratios) => format!("they turn {} as far", times(*ratios)),
-        StageDetail::Velocities(ratios) => format!("{} the motion over the step size", times(*ratios)),
+        StageDetail::Velocities(ratios) => format!("{} the displacement divided by the step size", times(*ratios)),
     })
 }
 

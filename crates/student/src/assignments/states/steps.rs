@@ -1,5 +1,5 @@
-//! Mistakes of the forces and their derivatives, of the integrators, of the penalty force and the search for its pairs,
-//! and of simple responses (simulation.md 2 to 4, collisions.md 6).
+//! Mistakes in the forces and their derivatives, the integrators, the penalty force and the search for its pairs,
+//! and the simple responses (simulation.md 2 to 4, collisions.md 6).
 use super::{super::rows::rows, terms::Edit};
 
 rows! {

@@ -20,7 +20,7 @@ crate::drops_leading!();
 /// The numbers per pair with an edge: its coefficients, the known facts ([`OPEN`]), and padding.
 pub(super) const EDGE_ROW: usize = 20;
 
-/// The index of the facts in the row.
+/// The index of the known facts in the row of a pair with an edge.
 pub(super) const EDGE_KNOWN: usize = 17;
 
 /// The numbers per pair of particles or pair with a half-plane: the parabola's coefficients, the known facts, the
@@ -43,7 +43,7 @@ pub(super) const BEHIND: usize = 8;
 /// are unused.
 pub(super) const OPEN: u64 = 1;
 
-/// A number whose lowest bits, after a sum of small powers of two is added, are that sum.
+/// 2^52: after small powers of two are added, their sum is in the lowest bits of the mantissa.
 const NOTHING: f64 = (1_u64 << 52) as f64;
 
 /// The pairs of a group of particles with edges and half-planes, as rows of numbers.

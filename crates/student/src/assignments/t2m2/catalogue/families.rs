@@ -142,7 +142,7 @@ const ALPHAS: MistakeFamily = MistakeFamily {
         ("at the start", &[Is("pe-alpha-low-at-start"), Is("pe-alpha-high-at-start")]),
         ("missing", &[Is("pe-alpha-low-missing"), Is("pe-alpha-high-missing")]),
         ("the other one", &[Is("pe-alpha-low-is-high"), Is("pe-alpha-high-is-low")]),
-        ("unscaled", &[No("alpha > 0 has no whole to be scaled"), Is("pe-alpha-high-unscaled")]),
+        ("unscaled", &[No("alpha > 0 has no constant to scale"), Is("pe-alpha-high-unscaled")]),
     ],
 };
 
@@ -167,7 +167,7 @@ const QUANTITIES: MistakeFamily = MistakeFamily {
         ("restored by the loop", &[Is("loop-positions-restored"), Is("loop-velocity-restored")]),
         ("of the prediction in each round", &[Is("loop-from-prediction"), Is("loop-predicted-velocities")]),
         ("kept where zones stop", &[Is("failsafe-stop-keeps-position"), Is("failsafe-stop-keeps-velocity")]),
-        ("kept where zones move", &[No("that is a failsafe that is empty"), Is("failsafe-velocity-kept")]),
+        ("kept where zones move", &[No("that is the same as an empty failsafe"), Is("failsafe-velocity-kept")]),
     ],
 };
 
