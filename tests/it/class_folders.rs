@@ -444,8 +444,8 @@ fn pipes_are_waited_for_nowhere() {
         ("shards/shard-1-of-1/shard.json", &merge, "a pipe"),
         ("shards/shard-1-of-1/journal.jsonl", &merge, "no complete shard"),
         ("scenes/pipe.xml", &traces, "a pipe"),
-        ("suite.toml", &["suite", "check", "suite.toml"], "a pipe without a writer"),
-        ("scene.xml", &["simulate", "scene.xml"], "a pipe without a writer"),
+        ("suite.toml", &["suite", "check", "suite.toml"], "nothing wrote to the pipe"),
+        ("scene.xml", &["simulate", "scene.xml"], "nothing wrote to the pipe"),
     ];
     for (place, arguments, says) in everywhere {
         if arguments == class && !with_programs {

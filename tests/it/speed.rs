@@ -90,7 +90,11 @@ fn a_suite_says_what_is_wrong_with_its_points_for_speed() {
         workspace.run(["suite", "check", "contest.toml"])
     };
     let sound = check(suite(0, SCENES));
-    assert!(sound.code == Some(0) && sound.out().contains("speed: 40 points, all up to 10 times"), "{}", sound.shown());
+    assert!(
+        sound.code == Some(0) && sound.out().contains("speed: 40 points, full points up to 10 times"),
+        "{}",
+        sound.shown()
+    );
     let turned = check(suite(0, SCENES).replace("none_at = 20", "none_at = 5"));
     assert!(turned.code == Some(2) && turned.err().contains("greater than speed.full_at (10)"), "{}", turned.shown());
     let misspelt = check(suite(0, SCENES).replace("none_at", "nothing_at"));

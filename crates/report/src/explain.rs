@@ -289,7 +289,7 @@ pub(crate) mod tests {
         let mut one = explanations().swap_remove(0);
         let other = Detail::Polynomial(PolynomialDetail::Alternative(weights(one.clone())));
         one.details.push(other);
-        assert!(details(&one)[1].starts_with("Can't be told apart"));
+        assert!(details(&one)[1].starts_with("Cannot be distinguished"));
         one.details.insert(0, Detail::Term("pe-radius-not-squared".into()));
         let row = find("pe-radius-not-squared").expect("a row");
         assert_eq!(details(&one), [row.term, "t^2: i R^2 has weight 0, expected 1 (i = d32.d32)"]);

@@ -170,7 +170,8 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
         let (points, runs) = (counted_points(points), format_count(runs.into(), "run"));
         let _ = writeln!(
             text,
-            "  speed: {points}, all up to {full_at} times the reference's processor time, none from {none_at}; {runs}"
+            "  speed: {points}, full points up to {full_at} times the reference's processor time, none from \
+             {none_at} times; {runs}"
         );
     }
     for task in &group.scenes {

@@ -14,9 +14,11 @@ fn what_can_not_be_run_is_explained() {
     }
     workspace.write("of-windows", b"MZ\x90\0\x03\0\0\0");
     std::fs::create_dir(workspace.path("empty")).expect("a folder");
-    for (program, words) in
-        [("text", "not a program"), ("script", "run by /no/such/interpreter"), ("of-windows", "built for Windows")]
-    {
+    for (program, words) in [
+        ("text", "not a program"),
+        ("script", "its interpreter /no/such/interpreter"),
+        ("of-windows", "built for Windows"),
+    ] {
         let run = workspace.run(["grade", program, "--suite", "suite.toml", "--output", "of-one", "--fresh"]);
         assert_eq!(run.code, Some(1), "{}", run.shown());
         assert!(run.out().contains("unusable submission") && run.out().contains(words), "{program}: {}", run.shown());

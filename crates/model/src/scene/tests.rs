@@ -403,8 +403,8 @@ fn broken_tags() {
     );
     says(
         "<dragdamping\nb='1'/>",
-        "4:1: only a line break between `dragdamping` and its first attribute (the original joins the lines and loses \
-         the element; put a space before the attribute)",
+        "4:1: only a line break between `dragdamping` and its first attribute (the original joins the lines and \
+         then misses the element; put a space before the attribute)",
     );
     says("<dragdamping\r\nb='1'/><dragdamping\n b='1'/><dragdamping b='1'\n/><maxsimfreq max='1'\n/>", "fine");
     says("< dragdamping b='1'/>", "4:1: no element name after `<`");

@@ -53,7 +53,8 @@ mod tests {
         assert_eq!(
             said(Some(35.0), measured(3.0, 2.9, 3.4)),
             "35 of 40 points for speed: 3.00 times the reference's processor time; 5 rounds gave 2.90 to 3.40, \
-             which is 33 to 35.5 points (all up to 2, none from 10)"
+             which is 33 to 35.5 points (full points up to 2 times, none from 10 times the \
+             reference's time)"
         );
         assert!(said(Some(40.0), measured(1.0, 0.9, 1.4)).contains("which does not change the points"));
         let failed = SpeedSource::Failed { scene: "a/b".to_owned(), verdict: Verdict::WrongAnswer };
