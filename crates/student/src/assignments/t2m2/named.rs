@@ -146,7 +146,7 @@ named_edits! {
         => "The radii are not multiplied by the edge's squared length when the denominator is cleared"
         => "R^2 is used instead of R^2 (x32 + t d32).(x32 + t d32)";
     ONE_UNSCALED "one-unscaled" [PE] 2.5: Formula(Subject::AlphaHigh, one_unscaled)
-        => "The 1 in alpha < 1 is not multiplied by the edge's squared length when the denominator is cleared"
+        => "The constant in alpha < 1 is not multiplied by the edge's squared length when the denominator is cleared"
         => "1 is used instead of (x32 + t d32).(x32 + t d32)";
     SIGNED_DISTANCE "signed-distance" [PH] 2.5: Formula(Subject::HalfPlaneOverlap, signed_distance)
         => "The overlap is a signed distance, which is right only on one side of the boundary"
