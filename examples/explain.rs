@@ -7,7 +7,7 @@ use std::{env, error::Error, fs};
 pub fn run(scene: &[u8], trace: &[u8]) -> Result<String, Box<dyn Error>> {
     let scene = scene::read("scene", scene)?.scene;
     let line = |found: &diagnose::Explanation| {
-        format!("{} ({} of {}): {}\n", found.key, found.reproduced, found.samples, explanation::what(found))
+        format!("{} ({} of {}): {}\n", found.key, found.reproduced, found.samples, explanation::describe(found))
     };
     Ok(diagnose::explain(&scene, trace).iter().map(line).collect())
 }

@@ -21,7 +21,7 @@ pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String,
     }
     let grader = Grader {
         plan: &plan::find(suite)?,
-        backend: &Backend::best(supervisor)?,
+        backend: &Backend::with_all_layers(supervisor)?,
         program: "FOSSSim",
         options: Options { jobs: 2, fail_fast: false, recorded: false },
         faults: &Place::new(folder, "faults"),

@@ -19,7 +19,7 @@ pub fn run(scene: &[u8]) -> Result<String, Box<dyn Error>> {
     let size = Size::new(640, 480)?;
     let mut painter = Painter::new(&scene, &extent, PictureOptions { size, label: true });
     let shapes = painter.picture(scene.steps(), &simulation.state().positions, None);
-    Ok(svg::document(size, painter.background(), "the last step", &shapes))
+    Ok(svg::render_document(size, painter.background(), "the last step", &shapes))
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -3,7 +3,7 @@
 use fosssim_browser::{PageHost, PageSession, parts};
 use fosssim_model::{
     scene::{self, LoadedScene, Scene},
-    trace::{Frame, Label, Layout, Reader, labels},
+    trace::{Frame, Label, Layout, Reader, collect_labels},
 };
 use fosssim_num::vector::Vec2;
 use fosssim_report::problems;
@@ -36,7 +36,7 @@ fn bytes<'py>(py: Python<'py>, numbers: &[f64]) -> PyResult<Bound<'py, PyBytes>>
 fn read(name: &str, xml: &[u8]) -> PyResult<Scene> {
     match scene::read(name, xml) {
         Ok(LoadedScene { scene, .. }) => Ok(scene),
-        Err(refused) => Err(PyValueError::new_err(problems::errors(name, xml, &refused))),
+        Err(refused) => Err(PyValueError::new_err(problems::render_errors(name, xml, &refused))),
     }
 }
 
@@ -123,7 +123,7 @@ mod _native {
                     impulses.extend(numbers.map(f64::to_ne_bytes).as_flattened());
                 }
                 if let Some(before) = before.take() {
-                    of_step = labels(&scene, &before);
+                    of_step = collect_labels(&scene, &before);
                 }
                 let is_known = of_step.len() >= frame.polynomials.len();
                 for (number, numbers) in frame.polynomials.iter().enumerate() {

@@ -31,15 +31,15 @@ pub(super) fn choose_color(color: ColorChoice) {
 }
 
 /// Whether the option `--quiet` was given.
-static QUIET: AtomicBool = AtomicBool::new(false);
+static IS_QUIET: AtomicBool = AtomicBool::new(false);
 
 /// Turns off reports on standard output, bars and warnings; errors are still printed.
 pub(super) fn be_quiet(quiet: bool) {
-    QUIET.store(quiet, Ordering::Relaxed);
+    IS_QUIET.store(quiet, Ordering::Relaxed);
 }
 
 fn is_quiet() -> bool {
-    QUIET.load(Ordering::Relaxed)
+    IS_QUIET.load(Ordering::Relaxed)
 }
 
 /// Returns the style of reports on standard output. Unless `--color` decides, colors are off with `NO_COLOR`, and on
@@ -118,14 +118,14 @@ pub(super) fn print(text: impl AsRef<[u8]>) -> Result<()> {
 }
 
 /// Prints to standard error, above the bars; its own errors cannot be reported.
-pub(super) fn complain(text: impl AsRef<[u8]>) {
+pub(super) fn print_error(text: impl AsRef<[u8]>) {
     write_above_bars(text.as_ref());
 }
 
 /// Prints a remark that is not an error to standard error.
-pub(super) fn remark(text: impl AsRef<[u8]>) {
+pub(super) fn print_remark(text: impl AsRef<[u8]>) {
     if !is_quiet() {
-        complain(text);
+        print_error(text);
     }
 }
 

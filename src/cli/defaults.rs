@@ -5,7 +5,7 @@ use clap::Command;
 use serde::Deserialize;
 use std::{fs, os::unix::fs::MetadataExt, path::Path};
 
-const FILE: &str = "fosssim.toml";
+const DEFAULTS_FILE: &str = "fosssim.toml";
 
 /// The maximum size of the file, in bytes.
 const MAX_BYTES: u64 = 1 << 16;
@@ -27,15 +27,18 @@ struct Defaults {
 /// Fails if the file can't be read, or has an invalid content.
 pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
     for folder in working.ancestors() {
-        let text = match Place::new(folder, FILE).read(MAX_BYTES) {
+        let text = match Place::new(folder, DEFAULTS_FILE).read(MAX_BYTES) {
             Ok(text) => text,
             Err(FileError::Missing { .. }) => continue,
-            Err(error) => return Err(error).with_context(|| format!("cannot read {}", folder.join(FILE).display())),
+            Err(error) => {
+                return Err(error).with_context(|| format!("cannot read {}", folder.join(DEFAULTS_FILE).display()));
+            }
         };
-        if !is_trusted(&folder.join(FILE)) {
+        if !is_trusted(&folder.join(DEFAULTS_FILE)) {
             continue;
         }
-        let context = || format!("{}: it may contain suite, output, hints and jobs", folder.join(FILE).display());
+        let context =
+            || format!("{}: it may contain suite, output, hints and jobs", folder.join(DEFAULTS_FILE).display());
         let read: Defaults = toml::from_str(&String::from_utf8_lossy(&text)).with_context(context)?;
         let below = |name: &String| {
             let path = if folder == working { name.into() } else { folder.join(name) };

@@ -20,15 +20,15 @@ const IDLE_LIMIT: Duration = Duration::from_secs(5);
 
 /// Returns the temporary files that an interrupt has to remove.
 pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
-    static PENDING: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
-    PENDING.lock().unwrap_or_else(PoisonError::into_inner)
+    static PENDING_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+    PENDING_FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// Removes the temporary files and the bars, and ends the program, on SIGINT and SIGTERM. Does nothing if a command
 /// handles these signals itself.
 pub(super) fn clean_up_when_interrupted() {
-    static ONCE: OnceLock<()> = OnceLock::new();
-    ONCE.get_or_init(|| {
+    static HANDLER_INSTALLED: OnceLock<()> = OnceLock::new();
+    HANDLER_INSTALLED.get_or_init(|| {
         // Without a handler, an interrupt only leaves a temporary file behind, so the error is ignored.
         drop(ctrlc::set_handler(|| end()));
     });
@@ -51,18 +51,18 @@ fn end() -> ! {
 }
 
 /// The number of signs of progress.
-static ACTIVITY: AtomicU64 = AtomicU64::new(0);
+static ACTIVITY_COUNT: AtomicU64 = AtomicU64::new(0);
 
 /// Records progress, so that the wait continues.
 pub(super) fn show_activity() {
-    ACTIVITY.fetch_add(1, Ordering::Relaxed);
+    ACTIVITY_COUNT.fetch_add(1, Ordering::Relaxed);
 }
 
 /// Returns a cancellation that SIGINT and SIGTERM trigger. A second signal ends the program immediately, and so does a
 /// grading that does not finish.
 pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
-    static SHARED: OnceLock<Arc<Cancellation>> = OnceLock::new();
-    SHARED
+    static CANCELLATION: OnceLock<Arc<Cancellation>> = OnceLock::new();
+    CANCELLATION
         .get_or_init(|| {
             let cancellation = Arc::new(Cancellation::default());
             let signalled = cancellation.clone();
@@ -88,10 +88,10 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
 }
 
 fn end_when_nothing_moves() {
-    let (mut moves, mut since) = (ACTIVITY.load(Ordering::Relaxed), Instant::now());
+    let (mut moves, mut since) = (ACTIVITY_COUNT.load(Ordering::Relaxed), Instant::now());
     while since.elapsed() < IDLE_LIMIT {
         thread::sleep(Duration::from_millis(100));
-        let now = ACTIVITY.load(Ordering::Relaxed);
+        let now = ACTIVITY_COUNT.load(Ordering::Relaxed);
         if now != moves {
             (moves, since) = (now, Instant::now());
         }

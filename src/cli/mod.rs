@@ -41,9 +41,9 @@ fn run(words: Vec<OsString>) -> ExitCode {
     // A failed write then removes the incomplete output, like any other error.
     crate::sandbox::let_large_writes_fail();
     let program = words.first().cloned().unwrap_or_default();
-    let command = match command(&words) {
+    let command = match parse_command(&words) {
         Ok(command) => command,
-        Err(error) => return fault(&error),
+        Err(error) => return report_fault(&error),
     };
     let parsed = command.try_get_matches_from(words);
     let arguments = match parsed.and_then(|mut found| arguments::Arguments::from_arg_matches_mut(&mut found)) {
@@ -60,11 +60,11 @@ fn run(words: Vec<OsString>) -> ExitCode {
         let name = [program.as_bytes(), b" original"].concat();
         return crate::original::main(&name, &original.words, &original::Program);
     }
-    commands::run(&arguments.command).map_or_else(|error| fault(&error), ExitCode::from)
+    commands::run(&arguments.command).map_or_else(|error| report_fault(&error), ExitCode::from)
 }
 
 /// Returns the command line, with the defaults in the working folder.
-fn command(words: &[OsString]) -> Result<clap::Command> {
+fn parse_command(words: &[OsString]) -> Result<clap::Command> {
     let command = arguments::Arguments::command();
     match std::env::current_dir() {
         Ok(working) if words.iter().any(|word| word == "grade") => defaults::add(command, &working),
@@ -73,8 +73,8 @@ fn command(words: &[OsString]) -> Result<clap::Command> {
 }
 
 /// Prints an error.
-fn fault(error: &anyhow::Error) -> ExitCode {
+fn report_fault(error: &anyhow::Error) -> ExitCode {
     // File names in the message are untrusted text.
-    console::complain(strip_control_characters(&format!("error: {error:#}\n")));
+    console::print_error(strip_control_characters(&format!("error: {error:#}\n")));
     ExitCode::from(exit::FAULT)
 }

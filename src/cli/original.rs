@@ -10,7 +10,7 @@ use anyhow::Result;
 use std::path::Path;
 
 /// The folder for the pictures of `-g 1`.
-const PNGS: &str = "pngs";
+const FOLDER: &str = "pngs";
 
 /// The width and the height of the pictures, in pixels.
 const PICTURE_SIDE: u32 = 512;
@@ -24,11 +24,13 @@ impl Services for Program {
     }
 
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String> {
-        let png = match Folder::open_existing(Path::new(PNGS)) {
+        let png = match Folder::open_existing(Path::new(FOLDER)) {
             _ if !png => None,
             // In this case the original aborts.
             None => {
-                return Err(format!("Error opening {PNGS}/frame00001.png: there is no folder {PNGS}; make it first\n"));
+                return Err(format!(
+                    "Error opening {FOLDER}/frame00001.png: there is no folder {FOLDER}; make it first\n"
+                ));
             }
             found => found,
         };
@@ -62,7 +64,7 @@ impl PictureFolders {
             folder.write(&format!("frame{step:05}.png"), &bytes)?;
         }
         if let Some(folder) = &self.svg {
-            let picture = svg::document(self.raster.size(), background, &format!("step {step}"), &shapes);
+            let picture = svg::render_document(self.raster.size(), background, &format!("step {step}"), &shapes);
             folder.write(&format!("frame{step:020}.svg"), picture.as_bytes())?;
         }
         Ok(())

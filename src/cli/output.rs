@@ -158,13 +158,13 @@ impl Output {
 /// Prints the path of an output; a page is to be opened in a browser.
 pub(super) fn print_path(file: &Path, is_page: bool) {
     let what = if is_page { "to look at" } else { "written" };
-    console::remark(format!("{what}: {}\n", one_line(&file.display().to_string())));
+    console::print_remark(format!("{what}: {}\n", one_line(&file.display().to_string())));
 }
 
 impl Output {
     /// Calls `act` with the writer. If the reader has closed the pipe, the result is `taken` instead of an error, so
     /// that the command can finish.
-    fn through<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
+    fn write_through<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
         match self {
             Self::Nowhere => Ok(taken),
             Self::Stdout => match act(&mut io::stdout()) {
@@ -179,15 +179,15 @@ impl Output {
 
 impl Write for Output {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.through(bytes.len(), |out| out.write(bytes))
+        self.write_through(bytes.len(), |out| out.write(bytes))
     }
 
     fn write_vectored(&mut self, parts: &[IoSlice<'_>]) -> io::Result<usize> {
-        self.through(parts.iter().map(|part| part.len()).sum(), |out| out.write_vectored(parts))
+        self.write_through(parts.iter().map(|part| part.len()).sum(), |out| out.write_vectored(parts))
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        self.through((), |out| out.flush())
+        self.write_through((), |out| out.flush())
     }
 }
 
@@ -284,8 +284,8 @@ impl Folder {
     }
 
     /// Returns whether the folder has a file with a name.
-    pub(super) fn holds(&self, name: &str) -> bool {
-        self.0.holds(OsStr::new(name))
+    pub(super) fn contains(&self, name: &str) -> bool {
+        self.0.contains(OsStr::new(name))
     }
 
     /// Writes a file atomically.

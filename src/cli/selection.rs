@@ -21,7 +21,7 @@ impl Selection {
             let bare = word.strip_prefix("asset:").unwrap_or(word);
             let bare = bare.strip_suffix(".xml").unwrap_or(bare);
             let pattern = Pattern::new(bare).with_context(|| format!("the pattern {word}"))?;
-            if !names.iter().any(|name| takes(&pattern, name)) {
+            if !names.iter().any(|name| matches_pattern(&pattern, name)) {
                 bail!("{word} matches no scene; there are {}", nearest_names(bare, names));
             }
             patterns.push(pattern);
@@ -30,15 +30,15 @@ impl Selection {
     }
 
     /// Returns whether a scene is selected.
-    pub(super) fn takes(&self, name: &str) -> bool {
-        self.patterns.is_empty() || self.patterns.iter().any(|pattern| takes(pattern, name))
+    pub(super) fn selects(&self, name: &str) -> bool {
+        self.patterns.is_empty() || self.patterns.iter().any(|pattern| matches_pattern(pattern, name))
     }
 }
 
-/// Returns whether a pattern matches a name. It is compared with the full name (like [`library::takes`]), and with the
-/// name without its group.
-fn takes(pattern: &Pattern, name: &str) -> bool {
-    library::takes(pattern, name) || name.rsplit('/').next().is_some_and(|last| pattern.matches(last))
+/// Returns whether a pattern matches a name. It is compared with the full name (like [`library::matches_pattern`]), and
+/// with the name without its group.
+fn matches_pattern(pattern: &Pattern, name: &str) -> bool {
+    library::matches_pattern(pattern, name) || name.rsplit('/').next().is_some_and(|last| pattern.matches(last))
 }
 
 /// The number of names that are given as examples.
@@ -59,7 +59,7 @@ mod tests {
     fn selected(words: &[&str]) -> Vec<&'static str> {
         let words: Vec<String> = words.iter().map(|word| (*word).to_owned()).collect();
         let selection = Selection::new(&words, &NAMES).expect("a selection");
-        NAMES.into_iter().filter(|name| selection.takes(name)).collect()
+        NAMES.into_iter().filter(|name| selection.selects(name)).collect()
     }
 
     #[test]

@@ -72,7 +72,7 @@ impl Options {
 /// environment selects.
 fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>) -> Result<Student, String> {
     let (source, ids) = if let Some(id) = pinned {
-        if id == pin::RIGHT {
+        if id == pin::RIGHT_ID {
             return Ok(Student::default());
         }
         ("this copy of the program", id.to_owned())

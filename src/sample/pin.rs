@@ -5,7 +5,7 @@
 //! any file, which the sandbox might not allow.
 
 /// The id in a copy that makes no mistake. Only the demo creates such a copy, and removes it.
-pub const RIGHT: &str = "right";
+pub const RIGHT_ID: &str = "right";
 
 /// The number of bytes for the id, or for several ids separated by commas; the rest is zero.
 const ID_BYTES: usize = 256;
@@ -18,12 +18,12 @@ const PLACE_BYTES: usize = MARK_BACKWARDS.len() + ID_BYTES;
 /// The place for the id in the program.
 type Place = [u8; PLACE_BYTES];
 
-static PINNED: Place = empty();
+static PINNED_ID: Place = empty();
 
 /// Returns the mistake that is pinned to this program, if there is one.
 #[must_use]
 pub fn pinned_mistake() -> Option<&'static str> {
-    read(&PINNED)
+    read(&PINNED_ID)
 }
 
 /// Returns a place without a mistake.

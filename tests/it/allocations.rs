@@ -48,10 +48,10 @@ struct Heard {
 }
 
 impl Observer for Heard {
-    fn detection(&mut self, _detection: &Detection<'_>) {
+    fn observe_detection(&mut self, _detection: &Detection<'_>) {
         self.detections += 1;
     }
-    fn zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
+    fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         self.zones += zones.len();
     }
 }

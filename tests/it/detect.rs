@@ -123,7 +123,7 @@ fn what_a_factor_keeps_makes_no_polynomial_wrong() {
     let scene = fosssim_oracle::scene::read("scene", text.as_bytes()).expect("a scene").scene;
     let row = fosssim_oracle::student::find("scale-1000").expect("a variant");
     let student = fosssim_oracle::student::Student::new(Some(row.mistake));
-    workspace.write("trace.bin", fosssim_oracle::student::trace(&scene, student).expect("a trace"));
+    workspace.write("trace.bin", fosssim_oracle::student::record_trace(&scene, student).expect("a trace"));
     let mut kept = 0;
     for step in 1..=20 {
         let run = detect(&workspace, &format!("--scene scene.xml --trace trace.bin --step {step} --pair pp:0,1"));
@@ -143,7 +143,7 @@ fn a_pair_of_a_trace_that_logs_too_little_is_found() {
     let scene_file = fosssim_oracle::suite::library::scene(&scene["asset:".len()..]).expect("a scene");
     let read = fosssim_oracle::scene::original::read(scene_file);
     let student = fosssim_oracle::student::Student::new(Some(row.mistake));
-    let trace = fosssim_oracle::student::trace(&read.expect("a scene").scene, student).expect("a trace");
+    let trace = fosssim_oracle::student::record_trace(&read.expect("a scene").scene, student).expect("a trace");
     workspace.write("pruned.bin", trace);
     let pair = |word: &str| detect(&workspace, &format!("--scene {scene} --trace pruned.bin --step 1 --pair {word}"));
     assert!(
@@ -212,7 +212,7 @@ fn the_pair_of_a_later_pass_is_looked_at_in_that_pass() {
     let read = fosssim_oracle::scene::original::read(file).expect("a scene").scene;
     let row = fosssim_oracle::student::find("loop-anew").expect("a mistake");
     let student = fosssim_oracle::student::Student::new(Some(row.mistake));
-    workspace.write("trace.bin", fosssim_oracle::student::trace(&read, student).expect("a trace"));
+    workspace.write("trace.bin", fosssim_oracle::student::record_trace(&read, student).expect("a trace"));
     let run = workspace.run(["check", scene, "trace.bin", "--rules", "fair"]);
     let command = run.out().lines().find(|line| line.contains("fosssim-oracle detect ")).expect("a command").to_owned();
     assert!(command.ends_with(" --step 2 --pair pp:0,1 --pass 3"), "{}", run.shown());

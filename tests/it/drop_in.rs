@@ -305,7 +305,7 @@ fn an_impulse_loop_that_never_converges_fails_however_long_its_record_is() {
     // The response changes velocities only, so every one of the rounds finds the same collisions.
     let row = student::find("response-velocities-only").expect("a known mistake");
     let scene = scene::read("scene.xml", ten_balls(10_000).as_bytes()).expect("a scene").scene;
-    let trace = student::trace(&scene, student::Student::new(Some(row.mistake))).expect("a trace");
+    let trace = student::record_trace(&scene, student::Student::new(Some(row.mistake))).expect("a trace");
     assert!(trace.len() > 40_000_000, "one record is as long as its rounds make it: {}", trace.len());
     let workspace = Workspace::new();
     workspace.write("trace.bin", trace);

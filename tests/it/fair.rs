@@ -47,7 +47,7 @@ fn judged(scene: &Scene, trace: &[u8], threads: usize) -> (Overall, Judgement) {
 }
 
 pub fn simulated(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
-    student::trace(scene, Student::new(row.map(|row| row.mistake))).ok()
+    student::record_trace(scene, Student::new(row.map(|row| row.mistake))).ok()
 }
 
 #[test]

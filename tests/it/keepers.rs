@@ -42,7 +42,10 @@ fn finish(running: RunningProgram) -> RunEnd {
 /// A backend whose keepers no other test has.
 fn alone() -> Option<Backend> {
     with_namespaces()?;
-    Some(Backend::best(Supervisor::from_path(env!("CARGO_BIN_EXE_fosssim-oracle"))).expect("as for all tests"))
+    Some(
+        Backend::with_all_layers(Supervisor::from_path(env!("CARGO_BIN_EXE_fosssim-oracle")))
+            .expect("as for all tests"),
+    )
 }
 
 #[test]

@@ -24,7 +24,7 @@ const SCENES: [&str; 10] = [
 fn scenes() -> Vec<(&'static str, Scene, Vec<u8>)> {
     let read = |name: &&'static str| {
         let scene = original::read(library::scene(name).expect("a scene")).expect("a sound scene").scene;
-        let correct = student::trace(&scene, Student::default()).expect("a trace");
+        let correct = student::record_trace(&scene, Student::default()).expect("a trace");
         (*name, scene, correct)
     };
     SCENES.iter().map(read).collect()
@@ -50,7 +50,8 @@ fn most_mistakes_are_named_on_their_best_scene() {
         .filter(|row| row.kind == RowKind::Wrong)
         .map(|row| {
             let outcomes = scenes.iter().map(|(_, scene, correct)| {
-                let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+                let trace =
+                    student::record_trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
                 if trace == *correct {
                     return Recognized::Unseen;
                 }
@@ -78,7 +79,8 @@ fn no_correct_variant_is_accused() {
         .par_iter()
         .flat_map_iter(|(name, scene, _)| {
             CATALOGUE.iter().filter(|row| row.kind == RowKind::Variant).filter_map(move |row| {
-                let trace = student::trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+                let trace =
+                    student::record_trace(scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
                 let first = find_known(scene, &trace[..]).into_iter().next()?;
                 Some(format!("{} on {name}: {}", row.id, first.key))
             })
@@ -94,7 +96,7 @@ fn a_right_approach_hides_no_mistake() {
     let (_, scene, _) = all.iter().find(|(name, ..)| name.ends_with("spinning-edge-sweeps-balls")).expect("the scene");
     let trace = |mistake| {
         let student = Student::new(mistake).with_right_approach();
-        student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
+        student::record_trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
     };
     let correct = trace(None);
     assert_eq!(find_known(scene, &correct[..]), []);

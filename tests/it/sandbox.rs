@@ -21,7 +21,7 @@ use fosssim_oracle::sandbox::{
 /// The sandbox under the real binary; tests without the required walls are skipped with a line.
 pub fn backend() -> Option<&'static Backend> {
     static BACKEND: OnceLock<Result<Backend, String>> = OnceLock::new();
-    let make = || Backend::best(Supervisor::from_path(env!("CARGO_BIN_EXE_fosssim-oracle")));
+    let make = || Backend::with_all_layers(Supervisor::from_path(env!("CARGO_BIN_EXE_fosssim-oracle")));
     let backend = BACKEND.get_or_init(|| make().map_err(|error| error.to_string()));
     backend.as_ref().map_err(|error| skip(Need::Sandbox, error)).ok()
 }
@@ -462,9 +462,9 @@ fn a_program_cannot_have_the_grader_run_in_its_place() {
 
 #[test]
 fn a_supervisor_that_is_none_is_our_fault_and_not_a_verdict() {
-    let error = Backend::best(Supervisor::from_path("/bin/true")).unwrap_err();
+    let error = Backend::with_all_layers(Supervisor::from_path("/bin/true")).unwrap_err();
     assert!(error.to_string().contains("supervisor"), "{error}");
-    assert!(Backend::best(Supervisor::from_path("/no/such/program")).is_err());
+    assert!(Backend::with_all_layers(Supervisor::from_path("/no/such/program")).is_err());
 }
 
 #[test]

@@ -72,7 +72,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let mut parts = vec![check.json().into_bytes()];
     if request.html {
         let mut again = (!examined.trace.is_whole()).then(|| open(host, request.file, &fault));
-        let evidence = examined.evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::BUDGET);
+        let evidence = examined.evidence(again.as_mut().map(|trace| trace as &mut dyn Read), evidence::MAX_NUMBERS);
         parts.push(page::examined_page(check, &examined, &evidence).into_bytes());
     }
     let value = json!({
@@ -90,6 +90,6 @@ pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String
     };
     match scene::read(name, xml) {
         Ok(loaded) => Ok(loaded.scene),
-        Err(refused) => Err(problems::errors(name, xml, &refused)),
+        Err(refused) => Err(problems::render_errors(name, xml, &refused)),
     }
 }

@@ -58,7 +58,7 @@ pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
     let study = Study::for_motion(&request.motion()?)
         .map_err(|_| "no result: the numbers are too large or too small, and the original would hang")?;
     let report = Detect { study: &study, place: None };
-    let picture = |embedding| detection::picture(&study, &report.title(), embedding).into_bytes();
+    let picture = |embedding| detection::render_picture(&study, &report.title(), embedding).into_bytes();
     let value = json!({ "decision": report.decision(format_g), "collides": study.answer.decision.collides() });
     let parts = vec![
         report.text(Style::Plain).into_bytes(),

@@ -8,7 +8,7 @@ use fosssim_report::page::{ELEMENTS, digest, framed_digests, style};
 use miniz_oxide::deflate::compress_to_vec;
 
 /// The parts of the page's script, in the order of their dependencies.
-const SCRIPT: [&str; 6] = [
+const SCRIPT_PARTS: [&str; 6] = [
     ELEMENTS,
     include_str!("../page/shell.js"),
     include_str!("../page/check.js"),
@@ -18,7 +18,7 @@ const SCRIPT: [&str; 6] = [
 ];
 
 /// The parts of the worker's script.
-const WORKER: [&str; 2] = [include_str!("../page/engine.js"), include_str!("../page/worker.js")];
+const WORKER_PARTS: [&str; 2] = [include_str!("../page/engine.js"), include_str!("../page/worker.js")];
 
 const BODY: &str = include_str!("../page/body.html");
 const STYLE: &str = include_str!("../page/page.css");
@@ -26,8 +26,8 @@ const STYLE: &str = include_str!("../page/page.css");
 /// Returns the page with the module (WebAssembly, not compressed), and with the suite of a course if one is given.
 #[must_use]
 pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
-    let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", lines(&SCRIPT));
-    let worker = lines(&WORKER);
+    let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", lines(&SCRIPT_PARTS));
+    let worker = lines(&WORKER_PARTS);
     let style = style() + STYLE;
     let [framed_script, framed_style] = framed_digests();
     let policy = format!(

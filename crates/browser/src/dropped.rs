@@ -8,7 +8,7 @@ use std::{
 };
 
 /// The number of bytes that are requested from the browser in one call; each call takes about 0.1 ms.
-const PIECE: usize = 1 << 20;
+const PIECE_BYTES: usize = 1 << 20;
 
 /// The first bytes of every zstd frame.
 const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
@@ -40,7 +40,7 @@ impl Progress for PageProgress<'_> {
 
 /// Returns a reader of a dropped trace, decompressed if it is a zstd file.
 pub(crate) fn open<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) -> Box<dyn Read + Send + 'a> {
-    let mut bytes = BufReader::with_capacity(PIECE, DroppedFile { host, file, offset: 0, fault });
+    let mut bytes = BufReader::with_capacity(PIECE_BYTES, DroppedFile { host, file, offset: 0, fault });
     // An unreadable file is reported when it is read.
     match bytes.fill_buf() {
         Ok(start) if start.starts_with(&ZSTD_MAGIC) => Box::new(ZstdContent { frames: Frames::Next(bytes), fault }),

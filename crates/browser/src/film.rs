@@ -128,7 +128,7 @@ impl Film {
         (Self { scene, positions, steps, extent, painter: None }, stopped)
     }
 
-    fn at(&self, step: u32) -> &[f64] {
+    fn step_positions(&self, step: u32) -> &[f64] {
         let width = 2 * self.scene.particles.len();
         &self.positions[step as usize * width..][..width]
     }
@@ -138,7 +138,7 @@ impl Film {
     }
 
     /// Returns one picture, as the only part after the first.
-    pub(crate) fn picture(&mut self, asked: &PictureRequest) -> PageAnswer {
+    pub(crate) fn draw_picture(&mut self, asked: &PictureRequest) -> PageAnswer {
         let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
         let step = asked.step.min(self.steps);
         // The page itself shows the step and the time.
@@ -152,7 +152,7 @@ impl Film {
         }
         let mut shapes = Vec::new();
         for step in next..=step {
-            shapes = painter.picture(step, self.at(step), None);
+            shapes = painter.picture(step, self.step_positions(step), None);
         }
         let background = painter.background();
         let drawn = || {
@@ -161,7 +161,7 @@ impl Film {
             raster
         };
         let bytes = match asked.form {
-            PictureForm::Svg => svg::document(size, background, &format!("step {step}"), &shapes).into_bytes(),
+            PictureForm::Svg => svg::render_document(size, background, &format!("step {step}"), &shapes).into_bytes(),
             PictureForm::Pixels => drawn().rgba().to_vec(),
             PictureForm::Png => {
                 let mut packed = Vec::new();
@@ -174,7 +174,7 @@ impl Film {
     }
 
     /// Returns all pictures as a film, like `render`.
-    pub(crate) fn film(&self, kind: &FilmKind, host: &dyn PageHost) -> PageAnswer {
+    pub(crate) fn draw_film(&self, kind: &FilmKind, host: &dyn PageHost) -> PageAnswer {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
         let rate = Rate::new(PICTURES_PER_SECOND).ok_or("no such rate")?;
         let every = self.steps.div_ceil(MAX_PICTURES).max(1);
@@ -183,7 +183,7 @@ impl Film {
         let (background, colors) = (painter.background(), painter.colors());
         let mut draw = |take: &mut dyn FnMut(&Raster) -> io::Result<()>| -> io::Result<()> {
             for (number, step) in (0..).zip((0..=self.steps).step_by(every as usize)) {
-                let shapes = painter.picture(step, self.at(step), None);
+                let shapes = painter.picture(step, self.step_positions(step), None);
                 raster.draw(background, &shapes);
                 take(&raster)?;
                 host.progress(number, pictures);

@@ -92,8 +92,8 @@ impl PageSession {
                 Ok((value, Vec::new()))
             }
             PageRequest::Trace => Ok((json!({}), vec![self.film.as_ref().ok_or_else(last)?.trace(host)?])),
-            PageRequest::Picture(picture) => self.film.as_mut().ok_or_else(last)?.picture(&picture),
-            PageRequest::Film(kind) => self.film.as_ref().ok_or_else(last)?.film(&kind, host),
+            PageRequest::Picture(picture) => self.film.as_mut().ok_or_else(last)?.draw_picture(&picture),
+            PageRequest::Film(kind) => self.film.as_ref().ok_or_else(last)?.draw_film(&kind, host),
             PageRequest::Detect(request) => detect::answer(&request),
             PageRequest::Suite(request) => {
                 let (value, submission) = DroppedSubmission::begin(&request, rest)?;

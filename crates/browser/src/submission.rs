@@ -99,7 +99,7 @@ impl DroppedSubmission {
             "isMissing": matches!(result.reason, Reason::NoTrace),
             "right": result.right_steps,
             "steps": result.steps,
-            "why": words::summary(&result),
+            "why": words::summarize(&result),
         });
         self.results[asked.number] = Some(result);
         Ok((value, Vec::new()))
@@ -110,17 +110,18 @@ impl DroppedSubmission {
         let results: Option<Vec<SceneResult>> = self.results.iter().cloned().collect();
         let results = results.ok_or("not all scenes have been judged")?;
         let graded = traces::grade(&self.plan, name.to_owned(), results, Vec::new());
-        let points = |points, most| json!({ "points": grade::format_points(points), "of": grade::points(most) });
+        let points =
+            |points, most| json!({ "points": grade::format_optional_points(points), "of": grade::format_points(most) });
         let scene = |scene: &SceneGrade| -> Value {
-            let (points, most) = (grade::format_points(scene.points), grade::points(scene.max_points));
-            json!({ "points": points, "of": most, "likely": scene.settled.first().map(explanation::what) })
+            let (points, most) = (grade::format_optional_points(scene.points), grade::format_points(scene.max_points));
+            json!({ "points": points, "of": most, "likely": scene.settled.first().map(explanation::describe) })
         };
         let scenes: Vec<Value> = graded.scenes().map(scene).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
         let cause = |scenes: &grade::AlikeScenes<'_>| -> Value {
             let names: Vec<&str> = scenes.iter().map(|scene| scene.scene.as_str()).collect();
-            let likely: Vec<String> = scenes[0].settled.iter().map(explanation::what).collect();
-            let words = if likely.is_empty() { words::summary(scenes[0]) } else { likely.join(" ") };
+            let likely: Vec<String> = scenes[0].settled.iter().map(explanation::describe).collect();
+            let words = if likely.is_empty() { words::summarize(scenes[0]) } else { likely.join(" ") };
             json!({ "words": words, "scenes": names })
         };
         let causes: Vec<Value> = grade::by_cause(&graded)
@@ -130,8 +131,8 @@ impl DroppedSubmission {
             .collect();
         let value = json!({
             "causes": causes,
-            "points": grade::format_points(graded.points),
-            "of": grade::points(graded.max_points),
+            "points": grade::format_optional_points(graded.points),
+            "of": grade::format_points(graded.max_points),
             "verdict": graded.verdict.name(),
             "unfit": words::describe_unfit(&graded),
             "scenes": scenes,

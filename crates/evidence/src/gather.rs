@@ -15,10 +15,10 @@ use std::io::Read;
 /// The maximum number of steps with details, and of numbers in their expected states; in large scenes fewer steps are
 /// kept.
 const MAX_INSPECTED_STEPS: usize = 12;
-const NUMBERS: usize = 40_000;
+const MAX_NUMBERS: usize = 40_000;
 
 /// The distance of a coordinate, in scene units, above which a motion differs from the reference's.
-const APART: f64 = 1e-10;
+const MOTION_TOLERANCE: f64 = 1e-10;
 
 /// The class of a step, for the strip over all steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -255,7 +255,7 @@ impl<'a> Gathering<'a> {
 
     /// Returns whether the state of the reference's own run differs from `end`.
     fn is_apart(&self, end: &State) -> bool {
-        self.free_goes_on && largest(&self.free.state().positions, &end.positions) > APART
+        self.free_goes_on && max_distance(&self.free.state().positions, &end.positions) > MOTION_TOLERANCE
     }
 
     fn keep_step(&mut self, class: StepClass, count: &PassCount<'_>, end: &LenientFrame) {
@@ -273,7 +273,7 @@ impl<'a> Gathering<'a> {
 /// Returns the steps shown in detail: those of findings, and those around the first wrong step; if there are too many,
 /// the most important ones.
 fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec<u32> {
-    let (steps, most) = (layout.steps, (NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
+    let (steps, most) = (layout.steps, (MAX_NUMBERS / (8 * layout.particles).max(1)).clamp(3, MAX_INSPECTED_STEPS));
     let near = first_wrong.into_iter().flat_map(|step| [step, step.saturating_sub(1), step + 1]);
     let mut chosen: Vec<u32> = Vec::new();
     for step in near.chain(focus.iter().map(|focus| focus.step)) {
@@ -286,11 +286,11 @@ fn close_steps(focus: &[Focus], first_wrong: Option<u32>, layout: Layout) -> Vec
 
 /// Returns the distances between two states, in positions and in velocities.
 fn distances(one: &State, other: &State) -> [f64; 2] {
-    [largest(&one.positions, &other.positions), largest(&one.velocities, &other.velocities)]
+    [max_distance(&one.positions, &other.positions), max_distance(&one.velocities, &other.velocities)]
 }
 
 /// Returns the largest distance between the numbers of two lists; NaN if one of them is NaN.
-fn largest(one: &[f64], other: &[f64]) -> f64 {
+fn max_distance(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, max_with_nan)
 }
 
@@ -306,7 +306,7 @@ struct MidState {
 }
 
 impl Observer for MidState {
-    fn synchronization(&mut self, state: &State) {
+    fn observe_synchronization(&mut self, state: &State) {
         self.state = Some(state.clone());
     }
 }
@@ -338,7 +338,7 @@ impl Observer for PassCount<'_> {
         self.passes += 1;
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         self.polynomials += detection.polynomials.len();
     }
 

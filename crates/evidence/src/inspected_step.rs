@@ -1,5 +1,5 @@
 //! Inspects one step in detail: every detection pass, contact and zone, and the calls of findings.
-use crate::matching::{differ, matching};
+use crate::matching::{are_different, match_polynomials};
 use fosssim_judge::study::{NoAnswer, Study};
 use fosssim_model::{
     scene::Scene,
@@ -10,7 +10,7 @@ use fosssim_model::{
 /// The maximum number of kept passes of a step, and of numbers in their positions; in large scenes fewer passes are
 /// kept.
 const MAX_PASSES: usize = 24;
-const POSITIONS: usize = 12_000;
+const MAX_POSITIONS: usize = 12_000;
 /// The maximum number of kept pairs of a pass, for each of differing, missing and repeated ones.
 const MAX_PAIRS: usize = 256;
 /// The maximum number of kept calls of a step, used if the trace has logged a different number of polynomials.
@@ -162,7 +162,7 @@ impl<'a> Inspector<'a> {
     }
 
     fn most_passes(&self) -> usize {
-        (POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, MAX_PASSES)
+        (MAX_POSITIONS / (2 * self.scene.particles.len()).max(1)).clamp(1, MAX_PASSES)
     }
 
     /// Returns the inspected step, with the trace's log of each call.
@@ -187,7 +187,7 @@ impl<'a> Inspector<'a> {
 
     /// Assigns the polynomials to calls if the trace has a different number of polynomials than the reference.
     fn assign(&mut self, log: &PolynomialLog) {
-        let Some(found) = matching(&self.right, log) else { return };
+        let Some(found) = match_polynomials(&self.right, log) else { return };
         let mut is_claimed = vec![false; log.len()];
         found.iter().flatten().for_each(|&place| is_claimed[place] = true);
         for pass in &mut self.step.passes {
@@ -208,7 +208,7 @@ impl<'a> Inspector<'a> {
                 let is_wrong = |list: &[Vec<f64>]| {
                     list.iter()
                         .zip(asked.first..)
-                        .any(|(own, place)| own.is_empty() || differ(own, self.right.get(place)))
+                        .any(|(own, place)| own.is_empty() || are_different(own, self.right.get(place)))
                 };
                 match &fate {
                     _ if asked.count == 0 => {}
@@ -235,8 +235,9 @@ impl<'a> Inspector<'a> {
             let again = |asked: &&AskedCall| {
                 asked.count > 0
                     && place + asked.count <= log.len()
-                    && (0..asked.count)
-                        .all(|k| !is_claimed[place + k] && !differ(log.get(place + k), self.right.get(asked.first + k)))
+                    && (0..asked.count).all(|k| {
+                        !is_claimed[place + k] && !are_different(log.get(place + k), self.right.get(asked.first + k))
+                    })
             };
             let before =
                 found.iter().enumerate().filter(|(_, at)| at.is_some_and(|at| at < place)).map(|(own, _)| own).max();
@@ -340,7 +341,7 @@ impl Observer for Inspector<'_> {
         }
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let Some(pass) = self.pass else { return };
         let (first, count) = (self.step.expected_polynomials, detection.polynomials.len());
         self.step.expected_polynomials += count;
@@ -369,7 +370,7 @@ impl Observer for Inspector<'_> {
         }
         let logged = self.log.filter(|log| first + count <= log.len());
         let differs = logged.is_some_and(|log| {
-            (first..).zip(detection.polynomials).any(|(at, right)| differ(log.get(at), right.coefficients()))
+            (first..).zip(detection.polynomials).any(|(at, right)| are_different(log.get(at), right.coefficients()))
         });
         if let Some(up) = self.step.passes.last_mut().filter(|up| up.pass == pass) {
             if up.calls == 0 {
@@ -386,7 +387,7 @@ impl Observer for Inspector<'_> {
         }
     }
 
-    fn impulse(&mut self, impulse: &Impulse) {
+    fn observe_impulse(&mut self, impulse: &Impulse) {
         self.step.expected_contacts.push(*impulse);
     }
 
@@ -394,11 +395,11 @@ impl Observer for Inspector<'_> {
         Some(self)
     }
 
-    fn synchronization(&mut self, state: &State) {
+    fn observe_synchronization(&mut self, state: &State) {
         self.step.expected_mid = Some(state.clone());
     }
 
-    fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
+    fn observe_zones(&mut self, round: u32, zones: &[Zone<'_>]) {
         let zones = zones.iter().map(|zone| (zone.particles.to_vec(), zone.half_plane)).collect();
         self.step.zones.push(MergedZones { round, zones });
     }

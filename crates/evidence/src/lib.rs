@@ -46,4 +46,4 @@ pub use gather::{Evidence, Focus, Step, StepClass, gather};
 pub use inspected_pair::{InspectedPair, inspect};
 pub use inspected_step::{CallLog, InspectedCall, InspectedPass, InspectedStep, MergedZones};
 pub use rulings::{StepRuling, StepRulings};
-pub use track::{BUDGET, Track, Window};
+pub use track::{MAX_NUMBERS, Track, Window};

@@ -10,8 +10,8 @@ use fosssim_model::trace::PolynomialLog;
 const MAX_COMPARISONS: usize = 4 << 20;
 
 /// The costs of an omitted or inserted polynomial, and of a wrong one.
-const GAP: u32 = 2;
-const WRONG: u32 = 3;
+const GAP_COST: u32 = 2;
+const MISMATCH_COST: u32 = 3;
 
 /// The deviation of coefficients, relative to their polynomial's largest, above which a call is marked as differing. A
 /// mark is not a verdict; with a larger value, small differences are not marked.
@@ -19,8 +19,8 @@ const MARKED_DEVIATION: f64 = 1e-9;
 
 /// Returns for each expected polynomial the index of its counterpart in the trace's list, right or wrong; `None` if the
 /// lists are too long to be compared.
-pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
-    let same = |one: usize, other: usize| !differ(actual.get(other), expected.get(one));
+pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
+    let same = |one: usize, other: usize| !are_different(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());
     let shorter = rows.min(columns);
     let head = (0..shorter).take_while(|&place| same(place, place)).count();
@@ -34,42 +34,42 @@ pub(crate) fn matching(expected: &PolynomialLog, actual: &PolynomialLog) -> Opti
         return None;
     }
     let mut cells = vec![0_u8; tall * wide];
-    let mut above: Vec<u32> = (0..=wide).map(|column| GAP * count(column)).collect();
+    let mut above: Vec<u32> = (0..=wide).map(|column| GAP_COST * count(column)).collect();
     for row in 0..tall {
         let mut corner = above[0];
-        above[0] += GAP;
+        above[0] += GAP_COST;
         for column in 0..wide {
-            let across = corner + if same(head + row, head + column) { 0 } else { WRONG };
-            let (out, put) = (above[column + 1] + GAP, above[column] + GAP);
+            let across = corner + if same(head + row, head + column) { 0 } else { MISMATCH_COST };
+            let (out, put) = (above[column + 1] + GAP_COST, above[column] + GAP_COST);
             corner = above[column + 1];
             (above[column + 1], cells[row * wide + column]) =
-                [(across, ACROSS), (out, OUT), (put, PUT)].into_iter().min_by_key(|(cost, _)| *cost)?;
+                [(across, MATCH), (out, DELETE), (put, INSERT)].into_iter().min_by_key(|(cost, _)| *cost)?;
         }
     }
     let (mut row, mut column) = (tall, wide);
     while row > 0 && column > 0 {
         match cells[(row - 1) * wide + column - 1] {
-            ACROSS => {
+            MATCH => {
                 (row, column) = (row - 1, column - 1);
                 found[head + row] = Some(head + column);
             }
-            OUT => row -= 1,
+            DELETE => row -= 1,
             _ => column -= 1,
         }
     }
     Some(found)
 }
 
-const ACROSS: u8 = 0;
-const OUT: u8 = 1;
-const PUT: u8 = 2;
+const MATCH: u8 = 0;
+const DELETE: u8 = 1;
+const INSERT: u8 = 2;
 
 fn count(places: usize) -> u32 {
-    u32::try_from(places).unwrap_or(u32::MAX / GAP)
+    u32::try_from(places).unwrap_or(u32::MAX / GAP_COST)
 }
 
 /// Returns whether one polynomial is visibly not a positive multiple of the other.
-pub(crate) fn differ(own: &[f64], right: &[f64]) -> bool {
+pub(crate) fn are_different(own: &[f64], right: &[f64]) -> bool {
     let largest = |list: &[f64]| list.iter().fold(0.0_f64, |most, c| most.max(c.abs()));
     let (most, scale) = (largest(own), largest(right));
     if scale == 0.0 || most == 0.0 || !most.is_finite() {
@@ -101,7 +101,8 @@ mod tests {
     #[test]
     fn what_is_left_out_put_in_or_wrong_is_told_apart() {
         let [a, b, c, d]: [&[f64]; 4] = [&[1.0, 2.0], &[3.0, -1.0, 0.5], &[-4.0, 1.0], &[7.0]];
-        let matched = |expected: &[&[f64]], actual: &[&[f64]]| matching(&list(expected), &list(actual)).expect("short");
+        let matched =
+            |expected: &[&[f64]], actual: &[&[f64]]| match_polynomials(&list(expected), &list(actual)).expect("short");
         assert_eq!(matched(&[a, b, c, d], &[a, b, c, d]), [Some(0), Some(1), Some(2), Some(3)]);
         assert_eq!(matched(&[a, b, c, d], &[a, d]), [Some(0), None, None, Some(1)]);
         assert_eq!(matched(&[a, b, d], &[a, c, b, c, d]), [Some(0), Some(2), Some(4)]);
@@ -122,8 +123,8 @@ mod tests {
             (0..count).for_each(|_| log.push(&[value, 1.0]));
             log
         };
-        assert_eq!(matching(&many(1.0, 4000), &many(-1.0, 4001)), None);
+        assert_eq!(match_polynomials(&many(1.0, 4000), &many(-1.0, 4001)), None);
         // If all but a few agree, the length does not matter.
-        assert_eq!(matching(&many(1.0, 4000), &many(1.0, 4001)).map(|found| found.len()), Some(4000));
+        assert_eq!(match_polynomials(&many(1.0, 4000), &many(1.0, 4001)).map(|found| found.len()), Some(4000));
     }
 }

@@ -18,19 +18,19 @@ fn judged(scene: &Scene, trace: &[u8]) -> (Outcome, Evidence) {
     let mut rulings = StepRulings::default();
     let outcome = replay::judge(scene, trace, &options, &mut rulings);
     let focus: Vec<Focus> = outcome.findings_by(Book::Fair).examples.iter().map(Focus::from).collect();
-    let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     (outcome, evidence)
 }
 
 fn of_mistake(scene: &Scene, id: &str) -> Vec<u8> {
     let mistake = student::find(id).expect("a mistake").mistake;
-    student::trace(scene, Student::new(Some(mistake))).unwrap_or_else(|(trace, _)| trace)
+    student::record_trace(scene, Student::new(Some(mistake))).unwrap_or_else(|(trace, _)| trace)
 }
 
 #[test]
 fn a_right_trace_moves_as_the_reference_to_the_last_bit() {
     let scene = asset("HolisticTests/balls-in-a-box.xml");
-    let trace = student::trace(&scene, Student::new(None)).expect("a trace");
+    let trace = student::record_trace(&scene, Student::new(None)).expect("a trace");
     let (_, evidence) = judged(&scene, &trace);
     let bits = |track: &Track| track.values.iter().map(|value| value.to_bits()).collect::<Vec<_>>();
     assert_eq!(bits(&evidence.reference), bits(&evidence.submission));
@@ -95,7 +95,7 @@ fn a_motion_beyond_the_budget_is_cut_around_the_first_wrong_step() {
 #[test]
 fn a_cut_trace_shows_what_is_there() {
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
-    let trace = student::trace(&scene, Student::new(None)).expect("a trace");
+    let trace = student::record_trace(&scene, Student::new(None)).expect("a trace");
     let (_, evidence) = judged(&scene, &trace[..trace.len() / 2]);
     assert!(evidence.submission.records < evidence.reference.records);
     assert!(evidence.steps.len() < evidence.layout.steps as usize);

@@ -8,7 +8,7 @@ use std::io::Read;
 /// The maximum number of kept numbers of a motion (16 MB). The largest course scene has 70,444 (11 particles, 1,601
 /// records). With a lower limit, long scenes show only a part of their motion; with a higher limit, memory and pages
 /// grow.
-pub const BUDGET: usize = 1 << 21;
+pub const MAX_NUMBERS: usize = 1 << 21;
 
 /// The kept records: those of steps `first` to `last` (0 is the initial record).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]

@@ -72,7 +72,7 @@ pub(crate) fn escape(name: &OsStr) -> String {
 }
 
 /// Returns the metadata of an open file, and checks that it is a regular file.
-pub(crate) fn regular(file: &File, shown: impl Fn() -> String) -> Result<Metadata, FileError> {
+pub(crate) fn require_regular_file(file: &File, shown: impl Fn() -> String) -> Result<Metadata, FileError> {
     let metadata = file.metadata().map_err(|source| FileError::System { name: shown(), source })?;
     let kind = metadata.file_type();
     if kind.is_file() {

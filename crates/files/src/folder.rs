@@ -1,7 +1,7 @@
 //! Accesses files below a folder that others may have filled, or may be filling.
 use super::{
     Identity,
-    error::{FileError, escape, regular},
+    error::{FileError, escape, require_regular_file},
 };
 use rustix::{
     fs::{AtFlags, CWD, Dir, FileType, Mode, OFlags, mkdirat, openat, statat, unlinkat},
@@ -124,21 +124,22 @@ impl Folder {
     ///
     /// # Errors
     /// Fails if it does not exist, or is a link.
-    pub fn folder(&self, name: &OsStr) -> io::Result<Self> {
-        let inner = step(self.as_fd(), check_single_component(name)?).map_err(|error| match error.raw_os_error() {
-            Some(libc::ELOOP) => io::Error::other("it is a link, which is not followed; remove it"),
-            _ => error,
-        });
+    pub fn open_folder(&self, name: &OsStr) -> io::Result<Self> {
+        let inner =
+            open_component(self.as_fd(), check_single_component(name)?).map_err(|error| match error.raw_os_error() {
+                Some(libc::ELOOP) => io::Error::other("it is a link, which is not followed; remove it"),
+                _ => error,
+            });
         Ok(self.inner(inner?, name))
     }
 
-    /// Opens a subfolder like [`Folder::folder`], and creates it if it does not exist.
+    /// Opens a subfolder like [`Folder::open_folder`], and creates it if it does not exist.
     ///
     /// # Errors
     /// Fails if it cannot be created, or another kind of entry has its name.
     pub fn make_folder(&self, name: &OsStr) -> io::Result<Self> {
         match mkdirat(&*self.fd, check_single_component(name)?, Mode::from_raw_mode(FOLDER_MODE)) {
-            Ok(()) | Err(Errno::EXIST) => self.folder(name),
+            Ok(()) | Err(Errno::EXIST) => self.open_folder(name),
             Err(error) => Err(error.into()),
         }
     }
@@ -148,23 +149,23 @@ impl Folder {
     ///
     /// # Errors
     /// Fails if the file is missing, not a regular file, reached through a link, or longer than `max_bytes`.
-    pub fn file(&self, name: &OsStr, max_bytes: u64) -> Result<(File, u64), FileError> {
+    pub fn open_file(&self, name: &OsStr, max_bytes: u64) -> Result<(File, u64), FileError> {
         let shown = || escape(name);
         let file = self.open_beneath(name).map_err(|error| FileError::not_opened(shown(), error))?;
-        let length = regular(&file, shown)?.len();
+        let length = require_regular_file(&file, shown)?.len();
         if length > max_bytes {
             return Err(FileError::TooLong { name: shown(), length, limit: max_bytes });
         }
         Ok((file, length))
     }
 
-    /// Opens a file like [`Folder::file`]; the file must have no other name.
+    /// Opens a file like [`Folder::open_file`]; the file must have no other name.
     ///
     /// # Errors
-    /// Fails like [`Folder::file`], and if the file has a second name.
+    /// Fails like [`Folder::open_file`], and if the file has a second name.
     pub fn regular_file(&self, name: &str, max_bytes: u64) -> Result<(File, u64), FileError> {
-        let (file, length) = self.file(OsStr::new(name), max_bytes)?;
-        let links = regular(&file, || escape(OsStr::new(name)))?.nlink();
+        let (file, length) = self.open_file(OsStr::new(name), max_bytes)?;
+        let links = require_regular_file(&file, || escape(OsStr::new(name)))?.nlink();
         if links != 1 {
             return Err(FileError::Linked { name: escape(OsStr::new(name)), links });
         }
@@ -174,9 +175,9 @@ impl Folder {
     /// Reads the contents of a regular file.
     ///
     /// # Errors
-    /// Fails like [`Folder::file`], and if the file grows beyond `max_bytes` while it is read.
+    /// Fails like [`Folder::open_file`], and if the file grows beyond `max_bytes` while it is read.
     pub fn read(&self, name: &OsStr, max_bytes: u64) -> Result<Vec<u8>, FileError> {
-        let (file, length) = self.file(name, max_bytes)?;
+        let (file, length) = self.open_file(name, max_bytes)?;
         let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or_default() + 1);
         file.take(max_bytes + 1)
             .read_to_end(&mut bytes)
@@ -196,7 +197,7 @@ impl Folder {
         let opened = openat(&*self.fd, name, flags, Mode::from_raw_mode(0o666));
         let file = opened.map_err(|error| FileError::not_opened(name.to_owned(), error.into()))?;
         let file = File::from(file);
-        regular(&file, || name.to_owned())?;
+        require_regular_file(&file, || name.to_owned())?;
         Ok(file)
     }
 
@@ -213,7 +214,7 @@ impl Folder {
 
     /// Returns whether the folder has an entry named `name`.
     #[must_use]
-    pub fn holds(&self, name: &OsStr) -> bool {
+    pub fn contains(&self, name: &OsStr) -> bool {
         statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok()
     }
 
@@ -233,10 +234,10 @@ impl Folder {
     }
 
     /// Returns the folder at a path of names, to read it or to write into it.
-    pub(crate) fn beneath(&self, path: &Path) -> Result<Self, FileError> {
+    pub(crate) fn open_path(&self, path: &Path) -> Result<Self, FileError> {
         let open = || -> io::Result<Self> {
             let (above, Some(last)) = self.names_of(path)? else { return Ok(self.clone()) };
-            Ok(self.inner(step(above.as_fd(), last)?, path.as_os_str()))
+            Ok(self.inner(open_component(above.as_fd(), last)?, path.as_os_str()))
         };
         open().map_err(|error| FileError::not_opened(escape(path.as_os_str()), error))
     }
@@ -270,7 +271,7 @@ impl Folder {
         let last = names.pop();
         let mut folder = self.fd.clone();
         for name in names {
-            folder = Arc::new(step(folder.as_fd(), name)?);
+            folder = Arc::new(open_component(folder.as_fd(), name)?);
         }
         Ok((folder, last))
     }
@@ -283,7 +284,7 @@ impl AsFd for Folder {
 }
 
 /// Returns the subfolder `name`.
-fn step(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
+fn open_component(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
     openat(above, name, OFlags::PATH | OFlags::DIRECTORY | SAFE_FLAGS, Mode::empty()).map_err(|error| {
         let is_link = statat(above, name, AtFlags::SYMLINK_NOFOLLOW)
             .is_ok_and(|stat| FileType::from_raw_mode(stat.st_mode) == FileType::Symlink);
@@ -310,7 +311,7 @@ pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), FileError> {
     let no_link = if follow { 0 } else { libc::O_NOFOLLOW };
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK | no_link).open(path);
     let file = file.map_err(|error| FileError::not_opened(shown(), error))?;
-    let length = regular(&file, shown)?.len();
+    let length = require_regular_file(&file, shown)?.len();
     Ok((file, length))
 }
 

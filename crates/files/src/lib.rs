@@ -28,7 +28,7 @@ mod replacement;
 pub use error::FileError;
 pub use folder::{Folder, FolderEntry, open_file};
 pub use place::Place;
-pub use replacement::{Replacement, UNFINISHED};
+pub use replacement::{Replacement, UNFINISHED_PREFIX};
 
 use std::{
     fs::{File, Metadata, OpenOptions},

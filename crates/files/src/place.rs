@@ -36,9 +36,9 @@ impl Place {
     /// Returns the open regular file at this place, with its length.
     ///
     /// # Errors
-    /// Fails like [`Folder::file`].
-    pub fn file(&self, most: u64) -> Result<(File, u64), FileError> {
-        self.base().and_then(|folder| folder.file(self.below.as_os_str(), most))
+    /// Fails like [`Folder::open_file`].
+    pub fn open_file(&self, most: u64) -> Result<(File, u64), FileError> {
+        self.base().and_then(|folder| folder.open_file(self.below.as_os_str(), most))
     }
 
     /// Reads the contents of the regular file at this place.
@@ -91,7 +91,7 @@ impl Place {
     /// Fails if it cannot be removed.
     pub fn remove(&self) -> io::Result<()> {
         let above = self.below.parent().unwrap_or(Path::new(""));
-        match self.base().and_then(|folder| folder.beneath(above)) {
+        match self.base().and_then(|folder| folder.open_path(above)) {
             Ok(folder) => folder.remove(self.below.file_name().unwrap_or_default()),
             Err(FileError::Missing { .. }) => Ok(()),
             Err(error) => Err(io::Error::other(error)),
@@ -103,7 +103,7 @@ impl Place {
     /// # Errors
     /// Fails if it cannot be read, or is reached by a link.
     pub fn names(&self) -> io::Result<Vec<std::ffi::OsString>> {
-        match self.folder() {
+        match self.open_folder() {
             Ok(folder) => folder.names(),
             Err(FileError::Missing { .. }) => Ok(Vec::new()),
             Err(error) => Err(io::Error::other(error)),
@@ -114,8 +114,8 @@ impl Place {
     ///
     /// # Errors
     /// Fails if it does not exist, or is reached by a link.
-    pub fn folder(&self) -> Result<Folder, FileError> {
-        self.base().and_then(|folder| folder.beneath(&self.below))
+    pub fn open_folder(&self) -> Result<Folder, FileError> {
+        self.base().and_then(|folder| folder.open_path(&self.below))
     }
 
     fn start(&self) -> &Path {

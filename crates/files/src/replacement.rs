@@ -16,10 +16,10 @@ use std::{
 };
 
 /// The prefix of unfinished files' names.
-pub const UNFINISHED: &str = ".fosssim-oracle-";
+pub const UNFINISHED_PREFIX: &str = ".fosssim-oracle-";
 
 /// The number of names that are tried for an unfinished file.
-const TRIES: u32 = 100;
+const MAX_TRIES: u32 = 100;
 
 /// A file that is being written. [`Replacement::finish`] gives the file its name; if it is not called, the file is
 /// removed.
@@ -34,13 +34,13 @@ pub struct Replacement {
 
 impl Replacement {
     pub(crate) fn new(folder: Folder, name: &OsStr, mode: Option<u32>) -> io::Result<Self> {
-        static COUNT: AtomicU64 = AtomicU64::new(0);
+        static FILE_COUNT: AtomicU64 = AtomicU64::new(0);
         let flags = OFlags::RDWR | OFlags::CREATE | OFlags::EXCL | OFlags::NOFOLLOW | OFlags::CLOEXEC;
         let mut problem = Errno::EXIST;
-        for _ in 0..TRIES {
-            let count = COUNT.fetch_add(1, Ordering::Relaxed);
+        for _ in 0..MAX_TRIES {
+            let count = FILE_COUNT.fetch_add(1, Ordering::Relaxed);
             let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.subsec_nanos());
-            let unfinished = OsString::from(format!("{UNFINISHED}{:x}-{count:x}-{now:x}", process::id()));
+            let unfinished = OsString::from(format!("{UNFINISHED_PREFIX}{:x}-{count:x}-{now:x}", process::id()));
             match openat(&folder, &unfinished, flags, Mode::from_raw_mode(mode.unwrap_or(0o666))) {
                 Ok(fd) => {
                     let made = Self { folder, file: fd.into(), unfinished, name: name.to_owned(), finished: false };

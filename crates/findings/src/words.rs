@@ -9,7 +9,7 @@ use fosssim_model::{
     trace::LoggedImpulse,
 };
 use fosssim_num::{
-    printed::exact,
+    printed::format_exact,
     vector::{self, Vec2},
 };
 use std::fmt::{self, Display, Formatter};
@@ -190,7 +190,7 @@ struct ExactNumber(f64);
 impl Display for ExactNumber {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         // Write zero without its sign.
-        if self.0.is_finite() { f.write_str(&exact(self.0 + 0.0)) } else { write!(f, "{}", self.0) }
+        if self.0.is_finite() { f.write_str(&format_exact(self.0 + 0.0)) } else { write!(f, "{}", self.0) }
     }
 }
 
@@ -267,11 +267,11 @@ pub struct PairWords(pub Pair);
 impl Display for PairWords {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Pair { kind, first, second } = self.0;
-        two(f, kind, &first, &second)
+        write_pair(f, kind, &first, &second)
     }
 }
 
-fn two(f: &mut Formatter<'_>, kind: PairKind, first: &dyn Display, second: &dyn Display) -> fmt::Result {
+fn write_pair(f: &mut Formatter<'_>, kind: PairKind, first: &dyn Display, second: &dyn Display) -> fmt::Result {
     match kind {
         PairKind::ParticleParticle => write!(f, "particles {first} and {second}"),
         kind => write!(f, "particle {first} and {} {second}", kind.second()),
@@ -285,7 +285,7 @@ impl Display for LoggedPair<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let LoggedImpulse { kind, first, second, .. } = self.0;
         match self.0.kind() {
-            Some(known) => two(f, known, first, second),
+            Some(known) => write_pair(f, known, first, second),
             None => write!(f, "a pair of unknown kind {kind} ({first}, {second})"),
         }
     }

@@ -78,7 +78,7 @@ impl Cards<'_> {
     }
 
     /// Returns whether a card of an earlier result is missing; `students` are the hints for students.
-    pub(super) fn lack(&self, result: &SceneResult, students: Hints) -> bool {
+    pub(super) fn lacks_card(&self, result: &SceneResult, students: Hints) -> bool {
         let is_missing = |name: &String| !file(self.folder, name).is_file();
         let shows_students = self.for_students && students > Hints::None;
         result.card.as_ref().is_some_and(|card| {
@@ -106,7 +106,7 @@ pub fn store(folder: &Place, card: &str) -> io::Result<String> {
 #[must_use]
 pub fn read(folder: &Place, name: &str) -> Option<String> {
     let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let (packed, _) = is_name.then(|| file(folder, name).file(MAX_CARD_BYTES).ok()).flatten()?;
+    let (packed, _) = is_name.then(|| file(folder, name).open_file(MAX_CARD_BYTES).ok()).flatten()?;
     let mut text = String::new();
     io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, MAX_CARD_BYTES), &mut text).ok()?;
     // A file whose digest does not match its name was changed, and is ignored.
@@ -168,7 +168,7 @@ mod tests {
         assert_eq!((read(&cards, &one).as_deref(), read(&cards, &other).as_deref()), (Some("one"), Some("other")));
         let lacks = |card: &str| {
             let result = SceneResult { card: Some(card.to_owned()), ..result.clone() };
-            Cards { folder: &cards, draw: &|_| None, for_students: false }.lack(&result, Hints::What)
+            Cards { folder: &cards, draw: &|_| None, for_students: false }.lacks_card(&result, Hints::What)
         };
         assert!(!lacks(&one));
         file(&cards, &one).write(&zstd::encode_all(&b"another"[..], 1).expect("packed")).expect("written");
@@ -197,13 +197,13 @@ mod tests {
             assert_eq!(text(card.as_ref()).as_deref(), Some("Full"));
             assert_eq!(text(own.as_ref()).as_deref(), expected, "{for_students} {students:?}");
             let mut told = SceneResult { card, card_for_students: own.clone(), ..result.clone() };
-            assert!(!cards.lack(&told, students));
+            assert!(!cards.lacks_card(&told, students));
             cut_result(students, &mut told);
             assert_eq!(told.card, own);
             // A result of a grading that made no page for students is graded again for one.
             let kept = SceneResult { card_for_students: None, ..told };
             let kept = SceneResult { card: cards.keep(&judged, students).expect("written").0, ..kept };
-            assert_eq!(cards.lack(&kept, students), for_students && students > Hints::None);
+            assert_eq!(cards.lacks_card(&kept, students), for_students && students > Hints::None);
         }
     }
 }

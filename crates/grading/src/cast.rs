@@ -57,7 +57,7 @@ pub(super) fn right_trace(job: &Job) -> Vec<u8> {
 struct ZonesMoved(bool);
 
 impl Observer for ZonesMoved {
-    fn failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {
+    fn observe_failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {
         self.0 = true;
     }
 }

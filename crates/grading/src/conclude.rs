@@ -135,7 +135,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanat
         true => (of_program, Reason::Program(find_progress(&program.ended, judged, run.limits))),
         false => (of_trace, trace_says),
     };
-    let differs = fair::cause(judged);
+    let differs = fair::find_cause(judged);
     let has_fault = rules == Rules::Fair || differs.is_none();
     let look = if hints.explains() { SearchDepth::Mistakes } else { SearchDepth::NotFinite };
     let is_explained = hints > Hints::None && has_fault && verdict.is_wrong_trace();
@@ -270,7 +270,7 @@ mod tests {
     #[test]
     fn what_is_not_told_is_not_explained() {
         let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;
-        let trace = student::trace(&scene, Student::new(Some(Mistake::ParticleEdgeEmpty))).expect("a trace");
+        let trace = student::record_trace(&scene, Student::new(Some(Mistake::ParticleEdgeEmpty))).expect("a trace");
         let options = replay::Options { fair: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
         let task = &SceneTask { name: "a/b".to_owned(), xml: Vec::new(), scene, recording: None };

@@ -172,7 +172,7 @@ impl<'a> SharedGrading<'a> {
     fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<FoundResult> {
         let result = self.results?.find(key)?;
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
-        let lacks_card = cards.is_some_and(|cards| cards.lack(&result, students));
+        let lacks_card = cards.is_some_and(|cards| cards.lacks_card(&result, students));
         let cached = !lock(&self.kept).contains(key);
         (!lacks_trace && !lacks_card).then_some(FinishedScene { result, cached, claim: None })
     }
@@ -446,8 +446,8 @@ impl<'a> SubmissionGrading<'a> {
         let recipe = Recipe { program: name, build, backend, cancellation: self.shared.cancellation };
         match program {
             Some(program) => recipe.file_in(path, program, file.as_ref()),
-            None if self.builds() => recipe.folder(path),
-            None => recipe.file(path),
+            None if self.builds() => recipe.stage_folder(path),
+            None => recipe.stage_file(path),
         }
     }
 }

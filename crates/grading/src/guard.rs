@@ -16,8 +16,8 @@ use std::{
 pub struct Fault(String);
 
 thread_local! {
-    static GUARDED: Cell<bool> = const { Cell::new(false) };
-    static CAUGHT: RefCell<Option<String>> = const { RefCell::new(None) };
+    static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
+    static LAST_PANIC: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
 /// Calls `work`, and returns a panic in it as a fault, which is not printed.
@@ -29,23 +29,23 @@ thread_local! {
 /// Fails if `work` panics.
 pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
     install_hook();
-    let outer = GUARDED.replace(true);
+    let outer = IS_GUARDED.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(work));
-    GUARDED.set(outer);
-    result.map_err(|payload| Fault(CAUGHT.take().unwrap_or_else(|| panic_message(&*payload))))
+    IS_GUARDED.set(outer);
+    result.map_err(|payload| Fault(LAST_PANIC.take().unwrap_or_else(|| panic_message(&*payload))))
 }
 
 /// Installs a panic hook that captures panics of guarded work, with their place, and forwards all others.
 fn install_hook() {
-    static ONCE: Once = Once::new();
-    ONCE.call_once(|| {
+    static HOOK_INSTALLED: Once = Once::new();
+    HOOK_INSTALLED.call_once(|| {
         let others = panic::take_hook();
         panic::set_hook(Box::new(move |panic| {
-            if !GUARDED.get() {
+            if !IS_GUARDED.get() {
                 return others(panic);
             }
             let place = panic.location().map(|place| format!(" at {}:{}", place.file(), place.line()));
-            CAUGHT.set(Some(panic_message(panic.payload()) + &place.unwrap_or_default()));
+            LAST_PANIC.set(Some(panic_message(panic.payload()) + &place.unwrap_or_default()));
         }));
     });
 }

@@ -38,8 +38,8 @@ impl Key {
 /// long as judging ten small scenes.
 #[must_use]
 pub fn this_build() -> &'static str {
-    static BUILD: OnceLock<String> = OnceLock::new();
-    BUILD.get_or_init(|| {
+    static BUILD_ID: OnceLock<String> = OnceLock::new();
+    BUILD_ID.get_or_init(|| {
         let digest = |mut file: File| -> io::Result<blake3::Hash> {
             if let Some(id) = build_id(&mut file) {
                 return Ok(blake3::hash(&id));
@@ -57,10 +57,10 @@ pub fn this_build() -> &'static str {
 /// Returns the build ID of a 64-bit ELF file, if its first bytes contain one with the length of a digest, as linkers
 /// write it.
 fn build_id(file: &mut File) -> Option<Vec<u8>> {
-    const NOTES: u32 = 4;
+    const MAX_NOTES: u32 = 4;
     const BUILD_ID: u32 = 3;
     const SCANNED_BYTES: u64 = 1 << 14;
-    const OWNER: &[u8] = b"GNU\0";
+    const NOTE_OWNER: &[u8] = b"GNU\0";
     const MIN_BUILD_ID_BYTES: usize = 16;
     let mut start = Vec::new();
     file.take(SCANNED_BYTES).read_to_end(&mut start).ok()?;
@@ -73,14 +73,14 @@ fn build_id(file: &mut File) -> Option<Vec<u8>> {
     }
     let headers = start.get(long(&start, 32)?..)?;
     let count = usize::from(u16::from_le_bytes(start.get(56..58)?.try_into().ok()?));
-    for header in headers.chunks_exact(56).take(count).filter(|header| word(header, 0) == Some(NOTES)) {
+    for header in headers.chunks_exact(56).take(count).filter(|header| word(header, 0) == Some(MAX_NOTES)) {
         let (from, length) = (long(header, 8)?, long(header, 32)?);
         let mut notes = start.get(from..from.checked_add(length)?)?;
         while let (Some(owner), Some(length), Some(kind)) = (word(notes, 0), word(notes, 4), word(notes, 8)) {
             let (owner, length) = (usize::try_from(owner).ok()?, usize::try_from(length).ok()?);
             let body = 12 + owner.next_multiple_of(4);
             let id = notes.get(body..body.checked_add(length)?)?;
-            if kind == BUILD_ID && notes.get(12..12 + owner) == Some(OWNER) && length >= MIN_BUILD_ID_BYTES {
+            if kind == BUILD_ID && notes.get(12..12 + owner) == Some(NOTE_OWNER) && length >= MIN_BUILD_ID_BYTES {
                 return Some(id.to_vec());
             }
             notes = notes.get(body + length.next_multiple_of(4)..)?;

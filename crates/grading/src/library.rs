@@ -2,7 +2,7 @@
 //!
 //! They are in a folder per assignment. A scene's name is `Group/name`, and is unique; the full form `t2m2/Group/name`
 //! is understood as well. Recordings are zstd files; `steps` are the digests of a recording's steps.
-use super::assignments::{MadeScene, TIMING, version};
+use super::assignments::{MadeScene, TIMING_SCENES, version};
 use fosssim_model::assignments::Assignment;
 use glob::Pattern;
 use include_dir::{Dir, File, include_dir};
@@ -30,7 +30,7 @@ pub fn names() -> impl Iterator<Item = &'static str> {
 
 /// Returns the names of all built-in scenes: embedded ones, and generated ones, which have no recordings.
 pub fn all_names() -> impl Iterator<Item = &'static str> {
-    names().chain(TIMING.iter().map(|made| made.name))
+    names().chain(TIMING_SCENES.iter().map(|made| made.name))
 }
 
 /// Returns the XML of a scene.
@@ -42,7 +42,7 @@ pub fn scene(name: &str) -> Option<&'static [u8]> {
 /// Returns the generated scene with this name or full name.
 fn find_made(name: &str) -> Option<&'static MadeScene> {
     let short = name.strip_prefix(GENERATED_ASSIGNMENT.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
-    TIMING.iter().find(|made| made.name == short)
+    TIMING_SCENES.iter().find(|made| made.name == short)
 }
 
 /// Returns the recording of a scene, compressed with zstd.
@@ -85,7 +85,7 @@ pub fn assignment(name: &str) -> Option<Assignment> {
 /// Returns whether a pattern matches a scene's name. A pattern that begins with an assignment's folder, such as
 /// `t2m2/*`, matches scenes of that folder; with a version, such as `t2m2@1/*`, it matches scenes of that version.
 #[must_use]
-pub fn takes(pattern: &Pattern, name: &str) -> bool {
+pub fn matches_pattern(pattern: &Pattern, name: &str) -> bool {
     let Some((folder, rest)) = pattern.as_str().split_once('/') else { return pattern.matches(name) };
     match version(folder) {
         Some((of, version)) => {
@@ -170,7 +170,7 @@ mod tests {
     fn patterns_take_names_or_an_assignments_folder() {
         let taken = |pattern: &str| {
             let pattern = Pattern::new(pattern).expect("a pattern");
-            names().filter(|name| takes(&pattern, name)).collect::<Vec<_>>()
+            names().filter(|name| matches_pattern(&pattern, name)).collect::<Vec<_>>()
         };
         let of = |key: &str| names().filter(|name| assignment(name) == Assignment::from_key(key)).collect::<Vec<_>>();
         assert_eq!(taken("t2m2/*"), taken("t2m2@2/*"), "the newest version is meant");

@@ -93,7 +93,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         .map(|content| tried.iter().map(|one| one.contents.contains(content)).collect())
         .collect();
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
-    let by_chance = chance(failed.len(), with, tried.len()) * looked_at.len() as f64;
+    let by_chance = chance_probability(failed.len(), with, tried.len()) * looked_at.len() as f64;
     if by_chance >= MAX_CHANCE || 2 * failed.len() < with {
         return None;
     }
@@ -118,7 +118,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
 }
 
 /// Returns the probability that `failed` scenes, drawn at random from `all`, are all among `with` given ones.
-fn chance(failed: usize, with: usize, all: usize) -> f64 {
+fn chance_probability(failed: usize, with: usize, all: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let share = |one: usize| (with - one) as f64 / (all - one) as f64;
     (0..failed).map(share).product()

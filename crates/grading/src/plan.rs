@@ -29,7 +29,7 @@ impl Plan {
     /// Returns the part of the plan with the scenes that `takes` selects by name. Each scene keeps its points, empty
     /// groups are removed, and the plan's name says that it is a part.
     #[must_use]
-    pub fn part(mut self, takes: impl Fn(&str) -> bool) -> Self {
+    pub fn filter_scenes(mut self, takes: impl Fn(&str) -> bool) -> Self {
         let all = self.scenes().count();
         for group in &mut self.groups {
             let before = group.scenes.len();
@@ -175,7 +175,7 @@ pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<MatchingScenes,
 fn find_embedded(pattern: &str) -> Result<MatchingScenes, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern asset:{pattern}: {error}"))?;
     let found: MatchingScenes = library::all_names()
-        .filter(|name| library::takes(&glob, name))
+        .filter(|name| library::matches_pattern(&glob, name))
         .filter_map(|name| Some((name.to_owned(), library::scene(name)?.to_vec())))
         .collect();
     if found.is_empty() {
@@ -211,7 +211,7 @@ mod tests {
     fn a_part_of_a_suite_keeps_each_scenes_worth_and_says_that_it_is_a_part() {
         let plan = || load(built_in("t2m2").expect("its text"), Path::new("nowhere")).expect("sound");
         let (whole, name) = (plan(), plan().scenes().nth(3).expect("a scene").name.clone());
-        let part = plan().part(|scene| scene == name);
+        let part = plan().filter_scenes(|scene| scene == name);
         let all = whole.scenes().count();
         assert_eq!((part.groups.len(), part.scenes().count()), (1, 1));
         let group = whole.groups.iter().find(|group| group.name == part.groups[0].name).expect("its group");
@@ -219,7 +219,7 @@ mod tests {
         let worth = group.marking.points / group.scenes.len() as f64;
         assert!((part.max_points() - worth).abs() < 1e-12);
         assert_eq!(part.name, format!("{} (1 of {all} scenes)", whole.name));
-        assert_eq!(plan().part(|_| true).name, whole.name);
+        assert_eq!(plan().filter_scenes(|_| true).name, whole.name);
     }
 
     #[test]

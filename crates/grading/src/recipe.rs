@@ -5,7 +5,9 @@ use super::{
     config::BuildStep,
     one_file::{FILE_OF_ANOTHER, OneFile, is_anothers},
     result::UnusableReason,
-    staging::{CopyError, MAX_FOLDER_BYTES, StagedProgram, at, build, classify_error, copy_program, open_in},
+    staging::{
+        CopyError, MAX_FOLDER_BYTES, StagedProgram, build, classify_error, copy_program, describe_error_at, open_in,
+    },
     temporary::TemporaryFolder,
     upload,
 };
@@ -41,7 +43,7 @@ impl Recipe<'_> {
     ///
     /// # Errors
     /// Fails if the file can't be read for a fault of the machine, or the copy can't be written.
-    pub fn file(&self, path: &Path) -> Result<StagedProgram, String> {
+    pub fn stage_file(&self, path: &Path) -> Result<StagedProgram, String> {
         let why = match collect::open_file(path, true) {
             Ok((file, _)) => return self.stage_opened(file, path),
             Err(CollectError::NotRegular { what: "a folder", .. }) => {
@@ -58,16 +60,16 @@ impl Recipe<'_> {
         Ok(StagedProgram::unusable(path, why))
     }
 
-    /// Stages as [`Recipe::file`] does, for a file at `name` in a folder whose contents are not trusted. A link that
-    /// leads elsewhere is rejected, and so is a file that is `noted` as another's. Without such a file, an archive in
-    /// the folder is the submission.
+    /// Stages as [`Recipe::stage_file`] does, for a file at `name` in a folder whose contents are not trusted. A link
+    /// that leads elsewhere is rejected, and so is a file that is `noted` as another's. Without such a file, an archive
+    /// in the folder is the submission.
     ///
     /// # Errors
-    /// Fails like [`Recipe::file`].
+    /// Fails like [`Recipe::stage_file`].
     pub fn file_in(&self, folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<StagedProgram, String> {
         let path = folder.join(name);
         let why = match open_in(folder, name) {
-            Ok(file) if is_anothers(&file, noted).map_err(at(&path))? => {
+            Ok(file) if is_anothers(&file, noted).map_err(describe_error_at(&path))? => {
                 UnusableReason::Unreadable(FILE_OF_ANOTHER.to_owned())
             }
             Ok(file) => return self.stage_opened(file, &path),
@@ -78,7 +80,7 @@ impl Recipe<'_> {
             Err(CollectError::System { source, .. })
                 if matches!(classify_error(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
             {
-                return Err(at(&path)(source));
+                return Err(describe_error_at(&path)(source));
             }
             Err(error) => UnusableReason::Unreadable(error.to_string()),
         };
@@ -88,9 +90,9 @@ impl Recipe<'_> {
     /// Stages the build of the sources in a folder, or in the only archive in it.
     ///
     /// # Errors An error of the grader or the machine.
-    pub fn folder(&self, path: &Path) -> Result<StagedProgram, String> {
+    pub fn stage_folder(&self, path: &Path) -> Result<StagedProgram, String> {
         match (self.build, only_archive(path, true)?) {
-            (None, _) => self.file(path),
+            (None, _) => self.stage_file(path),
             (_, Some(archive)) => self.stage_unpacked(archive, path),
             (Some(step), None) => build(path, step, self.backend, self.cancellation),
         }
@@ -107,10 +109,10 @@ impl Recipe<'_> {
 
     /// Unpacks an archive, and stages its contents: sources for a build, otherwise the program.
     fn stage_unpacked(&self, archive: File, path: &Path) -> Result<StagedProgram, String> {
-        let folder = TemporaryFolder::make("upload").map_err(at(&std::env::temp_dir()))?;
+        let folder = TemporaryFolder::make("upload").map_err(describe_error_at(&std::env::temp_dir()))?;
         let inside = folder.path().join("submission");
-        fs::DirBuilder::new().mode(0o700).create(&inside).map_err(at(&inside))?;
-        let files = match fosssim_intake::unpack(archive, &inside, ArchiveLimits::USUAL) {
+        fs::DirBuilder::new().mode(0o700).create(&inside).map_err(describe_error_at(&inside))?;
+        let files = match fosssim_intake::unpack(archive, &inside, ArchiveLimits::DEFAULT) {
             Ok(files) => files,
             Err(error @ (ArchiveError::Read(_) | ArchiveError::Folder(_))) => {
                 return Err(format!("{}: {error}", path.display()));
@@ -131,7 +133,7 @@ impl Recipe<'_> {
 /// Returns the kind of an open file by its first bytes, and rewinds the file.
 fn kind_of(file: &mut File) -> io::Result<FileKind> {
     let mut start = Vec::new();
-    file.take(fosssim_intake::START as u64).read_to_end(&mut start)?;
+    file.take(fosssim_intake::START_BYTES as u64).read_to_end(&mut start)?;
     file.rewind()?;
     Ok(FileKind::from_start(&start))
 }
@@ -142,7 +144,7 @@ fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
     /// The maximum number of entries of a learning platform's folder.
     const MAX_PLATFORM_ENTRIES: usize = 100;
     let Ok(opened) = OpenFolder::open(folder) else { return Ok(None) };
-    let mut names = opened.names().map_err(at(folder))?;
+    let mut names = opened.names().map_err(describe_error_at(folder))?;
     names.retain(|name| !fosssim_intake::is_litter(name));
     if names.len() > MAX_PLATFORM_ENTRIES || is_alone && names.len() > 1 {
         return Ok(None);
@@ -172,7 +174,7 @@ mod tests {
     }
 
     fn program(path: &Path) -> StagedProgram {
-        staged(|recipe| recipe.file(path))
+        staged(|recipe| recipe.stage_file(path))
     }
 
     #[test]

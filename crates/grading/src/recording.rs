@@ -75,7 +75,7 @@ impl Recording {
 
     /// Returns a text that describes the difference from the recorded files; `None` if there is none.
     #[must_use]
-    pub fn difference(&self, packed: Option<&[u8]>, steps: Option<&[u8]>) -> Option<String> {
+    pub fn describe_difference(&self, packed: Option<&[u8]>, steps: Option<&[u8]>) -> Option<String> {
         let Some(packed) = packed else { return Some(format!("{}: there is no recording\n", self.name)) };
         let mut text = String::new();
         match unpack(packed, self.trace.len()) {
@@ -87,21 +87,21 @@ impl Recording {
             Ok(_) => {}
         }
         let steps = String::from_utf8_lossy(steps.unwrap_or_default());
-        text += &diff(&format!("{}.steps", self.name), &steps, &self.digests);
+        text += &render_diff(&format!("{}.steps", self.name), &steps, &self.digests);
         (!text.is_empty()).then_some(text)
     }
 }
 
 /// Returns the manifest of recordings, in the given order.
 #[must_use]
-pub fn manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> String {
+pub fn render_manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> String {
     recordings.into_iter().map(Recording::line).collect()
 }
 
 /// Returns a unified diff from the recording to the present simulation; empty if they are equal. Line ends are ignored,
 /// because Git may have changed them in the recorded text.
 #[must_use]
-pub fn diff(name: &str, recorded: &str, now: &str) -> String {
+pub fn render_diff(name: &str, recorded: &str, now: &str) -> String {
     let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));
     let recorded = recorded.replace("\r\n", "\n");
     TextDiff::from_lines(recorded.as_str(), now).unified_diff().context_radius(1).header(&old, &new).to_string()
@@ -136,10 +136,10 @@ mod tests {
         let recording = Recording::for_scene("Group/name", SCENE).unwrap();
         assert_eq!((recording.steps, recording.trace.len()), (4, 5 * 32));
         let packed = recording.pack().unwrap();
-        assert_eq!(recording.difference(Some(&packed), Some(recording.digests.as_bytes())), None);
+        assert_eq!(recording.describe_difference(Some(&packed), Some(recording.digests.as_bytes())), None);
         let crlf = recording.digests.replace('\n', "\r\n");
-        assert_eq!(recording.difference(recording.pack().ok().as_deref(), Some(crlf.as_bytes())), None);
-        assert!(manifest(&[recording]).starts_with("Group/name 4 steps 160 bytes sha256 "));
+        assert_eq!(recording.describe_difference(recording.pack().ok().as_deref(), Some(crlf.as_bytes())), None);
+        assert!(render_manifest(&[recording]).starts_with("Group/name 4 steps 160 bytes sha256 "));
     }
 
     #[test]
@@ -149,7 +149,8 @@ mod tests {
         other.trace[32 * 3 + 1] ^= 1;
         let layout = Layout { particles: 1, has_impulses: false, has_polynomials: false, steps: 4 };
         other.digests = Digests::from_stream(&other.trace[..], layout).to_string();
-        let shown = recording.difference(Some(&other.pack().unwrap()), Some(other.digests.as_bytes())).unwrap();
+        let shown =
+            recording.describe_difference(Some(&other.pack().unwrap()), Some(other.digests.as_bytes())).unwrap();
         assert!(shown.contains("differ, beginning at byte 97\n"), "{shown}");
         assert!(shown.contains("\n-3 ") && shown.contains("\n+3 ") && !shown.contains("\n-2 "), "{shown}");
     }
@@ -157,9 +158,9 @@ mod tests {
     #[test]
     fn a_missing_or_damaged_recording_is_said() {
         let recording = Recording::for_scene("Group/name", SCENE).unwrap();
-        assert!(recording.difference(None, None).unwrap().contains("there is no recording"));
+        assert!(recording.describe_difference(None, None).unwrap().contains("there is no recording"));
         let packed = recording.pack().unwrap();
-        let shown = recording.difference(Some(&packed[..packed.len() - 3]), None).unwrap();
+        let shown = recording.describe_difference(Some(&packed[..packed.len() - 3]), None).unwrap();
         assert!(shown.contains("can't be unpacked"), "{shown}");
     }
 }

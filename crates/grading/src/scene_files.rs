@@ -23,9 +23,9 @@ pub struct SceneFile {
 /// Fails if a folder can't be read.
 pub fn list(folder: &Path, extension: &str) -> io::Result<Vec<SceneFile>> {
     let mut files = Vec::new();
-    for first in folders(folder)? {
+    for first in list_folders(folder)? {
         gather(folder, &first, extension, &mut files)?;
-        for second in folders(&first)? {
+        for second in list_folders(&first)? {
             gather(folder, &second, extension, &mut files)?;
         }
     }
@@ -33,16 +33,16 @@ pub fn list(folder: &Path, extension: &str) -> io::Result<Vec<SceneFile>> {
     Ok(files)
 }
 
-fn entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
+fn list_entries(folder: &Path) -> io::Result<Vec<PathBuf>> {
     fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect()
 }
 
-fn folders(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    Ok(entries(folder)?.into_iter().filter(|path| path.is_dir()).collect())
+fn list_folders(folder: &Path) -> io::Result<Vec<PathBuf>> {
+    Ok(list_entries(folder)?.into_iter().filter(|path| path.is_dir()).collect())
 }
 
 fn gather(root: &Path, group: &Path, extension: &str, files: &mut Vec<SceneFile>) -> io::Result<()> {
-    for path in entries(group)? {
+    for path in list_entries(group)? {
         let stem = |above: Option<&Path>| path.strip_prefix(above?).ok()?.to_str()?.strip_suffix(extension);
         if let (Some(name), Some(stem), true) = (stem(group.parent()), stem(Some(root)), path.is_file()) {
             files.push(SceneFile { name: name.to_owned(), stem: stem.to_owned(), path: path.clone() });

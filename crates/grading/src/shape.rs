@@ -48,10 +48,10 @@ enum ValueKind {
 /// A key: its name, its kind of value, and whether it is required.
 struct Key(&'static str, ValueKind, bool);
 
-const HINTS: &[&str] = &["none", "where", "what", "full"];
+const HINT_NAMES: &[&str] = &["none", "where", "what", "full"];
 
 /// The names of the milestones, in the order of the course.
-const MILESTONES: [&str; Assignment::ALL.len()] = {
+const MILESTONE_NAMES: [&str; Assignment::ALL.len()] = {
     let mut keys = [""; Assignment::ALL.len()];
     let mut index = 0;
     while index < keys.len() {
@@ -99,7 +99,7 @@ tables! {
         extra: bool = ValueKind::Flag, false;
         credit: Credit = ValueKind::Choice(&["scenes", "steps", "all"]), false;
         visibility: Visibility = ValueKind::Choice(&["visible", "hidden", "after_due_date", "after_published"]), false;
-        hints: Hints = ValueKind::Choice(HINTS), false;
+        hints: Hints = ValueKind::Choice(HINT_NAMES), false;
         text: String = ValueKind::Text, false;
         link: Spanned<String> = ValueKind::Text, false;
         speed: Spanned<RawSpeed> = ValueKind::Table(SPEED), false;
@@ -120,9 +120,9 @@ tables! {
     RawSuite SUITE {
         schema: Spanned<u32> = ValueKind::Whole, true;
         name: Spanned<String> = ValueKind::Text, true;
-        milestone: String = ValueKind::Choice(&MILESTONES), false;
+        milestone: String = ValueKind::Choice(&MILESTONE_NAMES), false;
         rules: Rules = ValueKind::Choice(&["parity", "fair", "both"]), false;
-        hints: Hints = ValueKind::Choice(HINTS), false;
+        hints: Hints = ValueKind::Choice(HINT_NAMES), false;
         show_output: bool = ValueKind::Flag, false;
         run: Spanned<Vec<String>> = ValueKind::Texts, false;
         build: Spanned<RawBuild> = ValueKind::Table(BUILD), false;
@@ -133,7 +133,7 @@ tables! {
 }
 
 /// The tables in which a misplaced key may belong.
-const PLACES: [(&str, &[Key]); 6] = [
+const TABLE_KEYS: [(&str, &[Key]); 6] = [
     ("[limits]", LIMITS),
     ("[build]", BUILD),
     ("a [[group]]", GROUP),
@@ -276,7 +276,7 @@ fn describe_unknown(key: &str, keys: &[Key], place: &str) -> String {
     let here = keys.iter().map(|Key(name, ..)| *name);
     let hint = match closest(key, here.clone()) {
         Some(name) => format!("did you mean `{name}`?"),
-        None => match PLACES.iter().find(|(_, other)| names(other).any(|name| name == key)) {
+        None => match TABLE_KEYS.iter().find(|(_, other)| names(other).any(|name| name == key)) {
             Some((other, _)) => format!("it belongs in {other}"),
             None => format!("there are {}", here.collect::<Vec<_>>().join(", ")),
         },

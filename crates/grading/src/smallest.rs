@@ -10,7 +10,7 @@ use fosssim_model::{
     scene::{self, Scene},
 };
 use fosssim_sandbox::{RunEnd, TimeOf, processor_time};
-use fosssim_shrink::{Observation, SmallScene, WrongReason, beginnings, reduce};
+use fosssim_shrink::{Observation, SmallScene, WrongReason, reduce, step_starts};
 use std::{path::Path, time::Duration};
 
 /// The maximum number of scenes that are tried for one cause, the smallest first.
@@ -78,7 +78,7 @@ pub struct WrongScene<'a> {
 
 /// Returns the causes of wrong scenes: the likely mistakes, the kinds of failing ends, and a few unexplained scenes.
 #[must_use]
-pub fn causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
+pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
     let likely =
         likely.iter().filter(|one| one.is_vote() || one.is_not_finite()).map(|one| match one.is_not_finite() {
             true => WrongReason::NotFinite,
@@ -118,7 +118,7 @@ impl Shrinker<'_> {
     ///
     /// # Errors
     /// Fails if the grader or the machine fails, with the reason as text.
-    pub fn smallest(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
+    pub fn shrink_cause(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
         tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let mut spent = Duration::ZERO;
@@ -130,7 +130,7 @@ impl Shrinker<'_> {
         };
         for task in tasks.into_iter().take(MAX_SCENES) {
             let seen = self.observe(&task.scene, &mut spent)?;
-            let Some(reason) = reason.clone().or_else(|| WrongReason::first(&task.scene, &seen)) else {
+            let Some(reason) = reason.clone().or_else(|| WrongReason::first_reason(&task.scene, &seen)) else {
                 continue;
             };
             let steps = self.limits.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
@@ -146,7 +146,7 @@ impl Shrinker<'_> {
                 held = if holds { Some(seen) } else { held.take() };
                 Some(holds)
             };
-            let small = reduce(&beginnings(&task.scene, &seen.trace, &steps), self.assignment, &mut holds);
+            let small = reduce(&step_starts(&task.scene, &seen.trace, &steps), self.assignment, &mut holds);
             fault?;
             if let Some((small, seen)) = small.zip(held) {
                 return Ok(Some(ShrunkScene { reason, origin: task.name.clone(), small, seen, runs }));

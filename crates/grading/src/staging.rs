@@ -56,7 +56,7 @@ pub struct StagedProgram {
 }
 
 /// Creates a message with a path and the error of the operating system.
-pub(super) fn at(path: &Path) -> impl FnOnce(io::Error) -> String {
+pub(super) fn describe_error_at(path: &Path) -> impl FnOnce(io::Error) -> String {
     move |error| format!("{}: {error}", path.display())
 }
 
@@ -82,7 +82,7 @@ pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
     match closed || error.kind() == io::ErrorKind::InvalidFilename {
         true => CopyError::Submission(format!("{} can't be read: {error}", name.to_string_lossy().escape_debug())),
-        false => CopyError::Ours(at(name)(error)),
+        false => CopyError::Ours(describe_error_at(name)(error)),
     }
 }
 
@@ -93,19 +93,19 @@ pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
 ///
 /// Fails if the program can't be read or copied.
 pub fn reference(path: &Path) -> Result<StagedProgram, String> {
-    let (file, _) = collect::open_file(path, true).map_err(|error| at(path)(io::Error::other(error)))?;
+    let (file, _) = collect::open_file(path, true).map_err(|error| describe_error_at(path)(io::Error::other(error)))?;
     copy_as(OsStr::new("FOSSSimOracle"), file, path, &mut { MAX_FOLDER_BYTES }).map_err(|error| match error {
-        CopyError::Submission(why) => at(path)(io::Error::other(why)),
+        CopyError::Submission(why) => describe_error_at(path)(io::Error::other(why)),
         CopyError::Ours(why) => why,
     })
 }
 
 pub(super) fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
     let opened = OpenFolder::open(folder).map_err(|source| CollectError::System { name: name.to_owned(), source })?;
-    opened.file(OsStr::new(name), MAX_FOLDER_BYTES).map(|(file, _)| file)
+    opened.open_file(OsStr::new(name), MAX_FOLDER_BYTES).map(|(file, _)| file)
 }
 
-/// Returns the digest of a file without copying it; `None` for files that [`Recipe::file`] rejects, and for links.
+/// Returns the digest of a file without copying it; `None` for files that [`Recipe::open_file`] rejects, and for links.
 #[must_use]
 pub fn digest(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
@@ -144,7 +144,7 @@ impl StagedProgram {
 
 /// Copies an open program, unless it is the grader or cannot be started.
 pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result<StagedProgram, String> {
-    let metadata = file.metadata().map_err(at(path))?;
+    let metadata = file.metadata().map_err(describe_error_at(path))?;
     let mut room = MAX_FOLDER_BYTES;
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
     // A modified copy of the grader with this name would also write right traces.
@@ -167,7 +167,7 @@ pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result
 
 /// Copies an open program into a new folder, under the name `name`.
 fn copy_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<StagedProgram, CopyError> {
-    let folder = TemporaryFolder::make("program").map_err(at(&std::env::temp_dir()))?;
+    let folder = TemporaryFolder::make("program").map_err(describe_error_at(&std::env::temp_dir()))?;
     let copy = folder.path().join(name);
     // A program is executable, even if the upload lost the permission.
     let digest = copy_file(file, path, &copy, room, true)?;
@@ -183,7 +183,7 @@ pub(super) fn build(
     backend: &Backend,
     cancellation: &Cancellation,
 ) -> Result<StagedProgram, String> {
-    let folder = TemporaryFolder::make("build").map_err(at(&std::env::temp_dir()))?;
+    let folder = TemporaryFolder::make("build").map_err(describe_error_at(&std::env::temp_dir()))?;
     let copy = folder.path().join("submission");
     let failed = |end: BuildEnd, output: String| {
         let build = Some(Build { end, output });
@@ -251,9 +251,10 @@ fn copy_file(
     is_program: bool,
 ) -> Result<blake3::Hash, CopyError> {
     const EXECUTE_BITS: u32 = 0o111;
-    let mode = source.metadata().map_err(at(from))?.permissions().mode();
+    let mode = source.metadata().map_err(describe_error_at(from))?.permissions().mode();
     let mut executable = is_program || mode & EXECUTE_BITS != 0;
-    let mut target = File::options().write(true).create_new(true).mode(0o600).open(to).map_err(at(to))?;
+    let mut target =
+        File::options().write(true).create_new(true).mode(0o600).open(to).map_err(describe_error_at(to))?;
     let mut hasher = blake3::Hasher::new();
     let mut buffer = vec![0; BLOCK_BYTES];
     let mut length = 0;
@@ -270,14 +271,14 @@ fn copy_file(
         executable |= length == 0 && FileKind::from_start(read) == FileKind::Program;
         length += read.len() as u64;
         if read.iter().all(|byte| *byte == 0) {
-            target.seek(SeekFrom::Start(length)).map_err(at(to))?;
+            target.seek(SeekFrom::Start(length)).map_err(describe_error_at(to))?;
         } else {
-            target.write_all(read).map_err(at(to))?;
+            target.write_all(read).map_err(describe_error_at(to))?;
         }
     }
-    target.set_len(length).map_err(at(to))?;
+    target.set_len(length).map_err(describe_error_at(to))?;
     let mode = if executable { 0o755 } else { 0o644 };
-    target.set_permissions(Permissions::from_mode(mode)).map_err(at(to))?;
+    target.set_permissions(Permissions::from_mode(mode)).map_err(describe_error_at(to))?;
     Ok(hasher.finalize())
 }
 
@@ -297,8 +298,8 @@ struct CopyBudget {
 fn copy_sources(from: &Path, to: &Path) -> Result<(), CopyError> {
     let mut budget = CopyBudget { bytes: MAX_FOLDER_BYTES, files: MAX_FILES };
     let source = OpenFolder::open(from).map_err(|error| classify_error(from, error))?;
-    fs::DirBuilder::new().mode(0o700).create(to).map_err(at(to))?;
-    let target = OpenFolder::open(to).map_err(at(to))?;
+    fs::DirBuilder::new().mode(0o700).create(to).map_err(describe_error_at(to))?;
+    let target = OpenFolder::open(to).map_err(describe_error_at(to))?;
     copy_folder(&source, Path::new(""), &target, 1, &mut budget)
 }
 
@@ -325,15 +326,15 @@ fn copy_folder(
         let (inner, target) = (name.join(&entry), to.path().join(&entry));
         match from.entry(OsStr::new(&entry)) {
             Ok(FolderEntry::File(file)) => {
-                let length = file.metadata().map_err(at(&inner))?.len();
+                let length = file.metadata().map_err(describe_error_at(&inner))?.len();
                 if length > budget.bytes {
                     return Err(too_large_error());
                 }
                 copy_file(file, &inner, &target, &mut budget.bytes, false)?;
             }
             Ok(FolderEntry::Folder(folder)) => {
-                fs::create_dir(&target).map_err(at(&inner))?;
-                let target = OpenFolder::open(&target).map_err(at(&inner))?;
+                fs::create_dir(&target).map_err(describe_error_at(&inner))?;
+                let target = OpenFolder::open(&target).map_err(describe_error_at(&inner))?;
                 copy_folder(&folder, &inner, &target, depth + 1, budget)?;
             }
             Ok(FolderEntry::Other) => {}

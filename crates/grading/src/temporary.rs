@@ -28,7 +28,7 @@ pub(super) struct TemporaryFolder {
 impl TemporaryFolder {
     /// Creates a folder whose name begins with `purpose`.
     pub(super) fn make(purpose: &str) -> io::Result<Self> {
-        let grader = Grader::this()?;
+        let grader = Grader::current()?;
         let made = make_closed(&format!("{purpose}-"), &grader.path)?;
         let path = made.keep();
         if purpose == "build" && is_root() {
@@ -78,9 +78,9 @@ struct Grader {
 
 impl Grader {
     /// Returns this process's folder, and creates it if it does not exist.
-    fn this() -> io::Result<Arc<Self>> {
-        static THIS: Mutex<Weak<Grader>> = Mutex::new(Weak::new());
-        let mut this = THIS.lock().unwrap_or_else(PoisonError::into_inner);
+    fn current() -> io::Result<Arc<Self>> {
+        static CURRENT_GRADER: Mutex<Weak<Grader>> = Mutex::new(Weak::new());
+        let mut this = CURRENT_GRADER.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(grader) = this.upgrade().filter(|grader| grader.path.is_dir()) {
             return Ok(grader);
         }

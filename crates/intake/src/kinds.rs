@@ -23,13 +23,13 @@ pub enum ArchiveKind {
 }
 
 /// The names of the archives that can be unpacked.
-pub const KNOWN: &str = ".zip, .tar.gz, .tar";
+pub const KNOWN_EXTENSIONS: &str = ".zip, .tar.gz, .tar";
 
 /// The number of first bytes that determine the kind of a file.
-pub const START: usize = 512;
+pub const START_BYTES: usize = 512;
 
 impl FileKind {
-    /// Returns the kind of a file that begins with `start`, which has at most [`START`] bytes.
+    /// Returns the kind of a file that begins with `start`, which has at most [`START_BYTES`] bytes.
     #[must_use]
     pub fn from_start(start: &[u8]) -> Self {
         match start {

@@ -15,7 +15,7 @@
 mod kinds;
 mod meter;
 
-pub use kinds::{ArchiveKind, FileKind, KNOWN, START, describe};
+pub use kinds::{ArchiveKind, FileKind, KNOWN_EXTENSIONS, START_BYTES, describe};
 
 use flate2::read::GzDecoder;
 use meter::Meter;
@@ -47,12 +47,12 @@ const MAX_LIST_BYTES: u64 = 16 << 20;
 const MAX_HEADER_BYTES: u64 = 1 << 20;
 
 /// The number of bytes that may be read for a file in addition to its contents: headers, padding, and read-ahead.
-const BESIDE: u64 = 64 << 10;
+const READ_OVERHEAD_BYTES: u64 = 64 << 10;
 
 impl ArchiveLimits {
     /// The usual limits, which are sufficient for a suite with all its scenes, or for a student's sources with a
     /// library.
-    pub const USUAL: Self = Self { bytes: 1 << 30, entries: 20_000 };
+    pub const DEFAULT: Self = Self { bytes: 1 << 30, entries: 20_000 };
 
     /// Adjusts the limits to an archive of `packed` bytes: an archive that unpacks to 200 times its size is a bomb,
     /// unless it is small.
@@ -65,7 +65,7 @@ impl ArchiveLimits {
 #[derive(Debug, Error)]
 pub enum ArchiveError {
     /// The file is not an archive of a supported kind.
-    #[error("expected an archive ({KNOWN}), but found {0}")]
+    #[error("expected an archive ({KNOWN_EXTENSIONS}), but found {0}")]
     Unknown(String),
     /// The archive cannot be read to its end.
     #[error("the archive is damaged: {0}")]
@@ -188,13 +188,13 @@ fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
 fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();
     file.seek(SeekFrom::Start(0))?;
-    file.take(START as u64).read_to_end(&mut start)?;
+    file.take(START_BYTES as u64).read_to_end(&mut start)?;
     file.seek(SeekFrom::Start(0))?;
     Ok(start)
 }
 
 /// Reads an archive's header of the next file.
-fn header(entry: &mut impl Read) -> Result<Vec<u8>, ArchiveError> {
+fn read_header(entry: &mut impl Read) -> Result<Vec<u8>, ArchiveError> {
     let mut header = Vec::new();
     entry.take(MAX_HEADER_BYTES + 1).read_to_end(&mut header).map_err(describe_damage)?;
     if header.len() as u64 > MAX_HEADER_BYTES { Err(describe_damage("a header is too long")) } else { Ok(header) }
@@ -227,7 +227,7 @@ impl Walk<'_> {
         let meter = Meter::new(MAX_LIST_BYTES);
         let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(describe_damage)?;
         // Entries may overlap in the archive, and compress to almost nothing, so their sizes prove nothing.
-        meter.set(packed.saturating_mul(2).saturating_add(BESIDE * archive.len() as u64));
+        meter.set(packed.saturating_mul(2).saturating_add(READ_OVERHEAD_BYTES * archive.len() as u64));
         // The library keeps only one of several entries with the same name, which may be the wrong one.
         if announced.is_some_and(|announced| announced > archive.len() as u64) {
             return Err(ArchiveError::Twice("a name".to_owned()));
@@ -250,7 +250,7 @@ impl Walk<'_> {
     }
 
     fn walk_tar(&mut self, input: impl Read) -> Result<(), ArchiveError> {
-        let meter = Meter::new(self.limits.bytes.saturating_add(BESIDE * self.limits.entries as u64));
+        let meter = Meter::new(self.limits.bytes.saturating_add(READ_OVERHEAD_BYTES * self.limits.entries as u64));
         let mut archive = tar::Archive::new(meter.reader(input));
         // The library would read this header, which names the next file, completely.
         let mut long_name = None;
@@ -258,13 +258,13 @@ impl Walk<'_> {
             let mut entry = entry.map_err(describe_damage)?;
             let kind = entry.header().entry_type();
             if kind == tar::EntryType::GNULongName {
-                let mut name = header(&mut entry)?;
+                let mut name = read_header(&mut entry)?;
                 name.truncate(name.iter().position(|byte| *byte == 0).unwrap_or(name.len()));
                 long_name = Some(name);
                 continue;
             }
             if kind == tar::EntryType::XHeader {
-                let header = header(&mut entry)?;
+                let header = read_header(&mut entry)?;
                 for said in tar::PaxExtensions::new(&header) {
                     let said = said.map_err(describe_damage)?;
                     match said.key_bytes() {
@@ -369,9 +369,9 @@ impl Walk<'_> {
     /// Copies a file and returns its kind. The unpacked bytes are counted, because the sizes in an archive may be
     /// wrong.
     fn copy(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<FileKind, ArchiveError> {
-        const AT_ONE_GO: u64 = 64 << 10;
+        const CHUNK_BYTES: u64 = 64 << 10;
         let mut chunk = Vec::new();
-        input.by_ref().take(START as u64).read_to_end(&mut chunk).map_err(describe_damage)?;
+        input.by_ref().take(START_BYTES as u64).read_to_end(&mut chunk).map_err(describe_damage)?;
         let kind = FileKind::from_start(&chunk);
         while !chunk.is_empty() {
             self.bytes += chunk.len() as u64;
@@ -380,7 +380,7 @@ impl Walk<'_> {
             }
             output.write_all(&chunk).map_err(ArchiveError::Folder)?;
             chunk.clear();
-            input.by_ref().take(AT_ONE_GO).read_to_end(&mut chunk).map_err(describe_damage)?;
+            input.by_ref().take(CHUNK_BYTES).read_to_end(&mut chunk).map_err(describe_damage)?;
         }
         Ok(kind)
     }
@@ -416,7 +416,7 @@ mod tests {
             ("__MACOSX/hw/._FOSSSim", None, b"attributes"),
         ]);
         let folder = tempfile::tempdir().unwrap();
-        let files = unpack(archive, folder.path(), ArchiveLimits::USUAL).unwrap();
+        let files = unpack(archive, folder.path(), ArchiveLimits::DEFAULT).unwrap();
         let names: Vec<_> = files.iter().map(|file| file.to_str().unwrap()).collect();
         assert_eq!(names, ["hw/FOSSSim", "hw/run.sh", "hw/tool", "hw/main.cpp"]);
         assert_eq!(top_folder(folder.path(), &files), folder.path().join("hw"));
@@ -438,10 +438,10 @@ mod tests {
     #[test]
     fn a_bomb_is_told_by_its_ratio() {
         let bomb = || zip(&[("zeros", None, &vec![0; (50 << 20) + 1])]);
-        let told = look_through(bomb(), ArchiveLimits::USUAL).unwrap_err().to_string();
+        let told = look_through(bomb(), ArchiveLimits::DEFAULT).unwrap_err().to_string();
         assert!(told.contains("more than 52428800 bytes"), "{told}");
         let deep = zip(&[(&"d/".repeat(MAX_DEPTH + 1), None, b"")]);
-        assert!(matches!(look_through(deep, ArchiveLimits::USUAL), Err(ArchiveError::Depth(_))));
+        assert!(matches!(look_through(deep, ArchiveLimits::DEFAULT), Err(ArchiveError::Depth(_))));
     }
 
     /// Returns an archive with an entry of the given kind and size, followed by a file.
@@ -463,7 +463,7 @@ mod tests {
     #[test]
     fn headers_of_tar_archives_name_files_and_are_limited() {
         let long = format!("{}FOSSSim", "folder/".repeat(40));
-        let look = |kind, size, path: &str| look_through(tar(kind, size, path), ArchiveLimits::USUAL);
+        let look = |kind, size, path: &str| look_through(tar(kind, size, path), ArchiveLimits::DEFAULT);
         let files = look(tar::EntryType::Regular, 7, &long).unwrap();
         assert_eq!(files, [Path::new("entry"), Path::new(&long)]);
         for kind in [tar::EntryType::GNULongName, tar::EntryType::XHeader] {
@@ -498,7 +498,7 @@ mod tests {
         bytes.extend([b"PK\x05\x06", &end[..]].concat());
         let mut file = tempfile::tempfile().unwrap();
         file.write_all(&bytes).unwrap();
-        let told = look_through(file, ArchiveLimits::USUAL).unwrap_err().to_string();
+        let told = look_through(file, ArchiveLimits::DEFAULT).unwrap_err().to_string();
         assert!(told.contains("possible archive bomb"), "{told}");
     }
 }

@@ -12,13 +12,13 @@ use fosssim_model::{
 };
 
 /// The work that is allowed for every trace, even if its scene is simple. It takes about a tenth of a second.
-pub(crate) const FLOOR: u64 = 1_000_000;
+pub(crate) const MIN_WORK: u64 = 1_000_000;
 
 /// The multiple of the scene's own run that is allowed for the original's rules, in addition to the floor.
-const PARITY: u64 = 10;
+const PARITY_WORK_FACTOR: u64 = 10;
 /// The multiple that is allowed for the fair rules, which may repeat steps. They repeat a step at most 26 times; the
 /// trace of a wrong program needs 11.
-const FAIR: u64 = 40;
+const FAIR_WORK_FACTOR: u64 = 40;
 
 /// The work that is left for one trace.
 #[derive(Debug)]
@@ -36,9 +36,9 @@ impl<'a> Budget<'a> {
     /// rule book has a separate budget. Explaining and showing a trace have the same limit as the original's rules.
     #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
-        let factor = if fair { FAIR } else { PARITY };
+        let factor = if fair { FAIR_WORK_FACTOR } else { PARITY_WORK_FACTOR };
         let at_least = least_of_scene(scene).saturating_mul(factor);
-        Self { scene, factor, rest: FLOOR.saturating_add(at_least), at_least, is_wide: false }
+        Self { scene, factor, rest: MIN_WORK.saturating_add(at_least), at_least, is_wide: false }
     }
 
     /// Sets the floor, which is the work that is allowed for every trace.
@@ -67,7 +67,7 @@ impl<'a> Budget<'a> {
     /// # Errors
     /// Fails with a [`StepError`] of kind `Work` if no work remains.
     pub fn step(&mut self, simulation: &mut Simulation, observer: &mut dyn Observer) -> Result<(), StepError> {
-        if self.rest < (FLOOR.saturating_add(self.at_least)) / 2 {
+        if self.rest < (MIN_WORK.saturating_add(self.at_least)) / 2 {
             self.widen();
         }
         let begin = simulation.work();
@@ -161,7 +161,7 @@ mod tests {
     fn is_given_up_in_the_second_step(fair: bool) {
         let scene = posts(100.0, 2_000_000_000);
         let trace = squeezed(&scene);
-        let outcome = judged(FLOOR, &scene, &trace, fair, 1);
+        let outcome = judged(MIN_WORK, &scene, &trace, fair, 1);
         assert_eq!((given_up(&outcome), outcome.parity.overall), (Some(2), Overall::None), "{:?}", outcome.stop);
         assert_eq!(outcome.steps_judged, 1);
     }
@@ -219,7 +219,7 @@ mod tests {
             r#"<scene><duration time="20"/><integrator type="implicit-euler" dt="0.1"/>{bodies}</scene>"#
         ));
         let own = work_for_scene(&scene);
-        assert!(own > FLOOR, "{own}");
+        assert!(own > MIN_WORK, "{own}");
         let mut budget = Budget::new(&scene, false);
         assert!(budget.spend(own));
         assert!(!budget.is_wide);

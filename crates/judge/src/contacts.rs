@@ -27,7 +27,7 @@ impl Contacts {
     }
 
     /// Returns the indices of a pair's impulses, in the order of the record.
-    pub fn about(&self, key: PairKey) -> impl Iterator<Item = usize> {
+    pub fn indices_of(&self, key: PairKey) -> impl Iterator<Item = usize> {
         let begin = self.0.partition_point(|(other, _)| *other < key);
         self.0[begin..].iter().take_while(move |(other, _)| *other == key).map(|(_, index)| *index)
     }

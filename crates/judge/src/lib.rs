@@ -48,4 +48,4 @@ pub use fosssim_findings::{
 };
 use fosssim_findings::{counts, finding, outcome, rules};
 pub use fosssim_model::trace::Unreadable;
-pub use wrong_coefficients::{differing, factor};
+pub use wrong_coefficients::{differing_powers, find_factor};

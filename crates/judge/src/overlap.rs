@@ -7,7 +7,7 @@ use fosssim_model::{
     scene::Scene,
     sim::{Detection, Observer, Pair, PairMotion, PointMotion, RootSearch, Simulation, State, StepError},
 };
-use fosssim_num::vector::{Vec2, at, length};
+use fosssim_num::vector::{Vec2, length, vector_at};
 
 /// A pair at the end of a step.
 #[derive(Debug, Clone, PartialEq)]
@@ -72,7 +72,7 @@ struct PairWatch<'a> {
 }
 
 impl Observer for PairWatch<'_> {
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let &Detection { pair, q_start, q_end, velocities, decision, .. } = detection;
         if pair != self.pair {
             return;
@@ -82,14 +82,14 @@ impl Observer for PairWatch<'_> {
         let end = |point: PointMotion| point.start + point.shift;
         let (alpha, normal, reach, other) = match motion {
             PairMotion::Particles { centers, radii } => {
-                (None, end(centers[1]) - end(centers[0]), radii[0] + radii[1], at(velocities, second))
+                (None, end(centers[1]) - end(centers[0]), radii[0] + radii[1], vector_at(velocities, second))
             }
             PairMotion::Edge { center, ends, radii } => {
                 let [x1, x2, x3] = [center, ends[0], ends[1]].map(end);
                 let along = x3 - x2;
                 let alpha = ((x1 - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
                 let edge = &self.scene.edges[second];
-                let [v2, v3] = [edge.first, edge.second].map(|particle| at(velocities, particle));
+                let [v2, v3] = [edge.first, edge.second].map(|particle| vector_at(velocities, particle));
                 (Some(alpha), x2 + alpha * along - x1, radii[0] + radii[1], v2 + alpha * (v3 - v2))
             }
             PairMotion::HalfPlane { center, radius, point, normal } => {
@@ -97,7 +97,7 @@ impl Observer for PairWatch<'_> {
                 (None, (point - end(center)).dot(&out) * out, radius, Vec2::zeros())
             }
         };
-        let velocities = [at(velocities, first), other];
+        let velocities = [vector_at(velocities, first), other];
         let collides = decision.collides();
         self.found = Some(OverlapStudy { motion, velocities, alpha, normal, reach, collides, is_certain: true });
     }

@@ -78,9 +78,9 @@ fn compare(
         let damaged = outcome.damage.is_some();
         outcome.damaged_steps += u32::from(damaged && is_end);
         let mut tally = Tally::new((step, frame), &actual, None, true, &mut buffers, &mut result);
-        expected.impulses.iter().filter_map(impulse).for_each(|impulse| tally.impulse(&impulse));
+        expected.impulses.iter().filter_map(impulse).for_each(|impulse| tally.observe_impulse(&impulse));
         for index in 0..expected.polynomials.len() {
-            tally.compare_polynomial(expected.polynomials.get(index), || places.at(index));
+            tally.compare_polynomial(expected.polynomials.get(index), || places.place_at(index));
         }
         tally.finish(&expected.state, layout.has_impulses, layout.has_polynomials);
         tally::accumulate(&mut outcome.parity.residuals, &result.residuals);
@@ -123,7 +123,7 @@ impl RecordPlaces {
 
     /// Returns the place of polynomial `index` of a frame. In `hybrid` the recording does not show where the impulse
     /// rounds end, so passes are counted as rounds.
-    fn at(&self, index: usize) -> PolynomialPlace {
+    fn place_at(&self, index: usize) -> PolynomialPlace {
         // A scene without pairs has no recording with polynomials, so this place is never shown.
         let nobody = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);
         let (number, pair, which) = self.pairs.polynomial(index).unwrap_or(nobody);

@@ -7,14 +7,14 @@ use fosssim_model::{
 };
 
 /// A ball that falls on a half-plane: `continuous-time`.
-pub(crate) const BOUNCE: &str = r#"<scene>
+pub(crate) const BOUNCE_SCENE: &str = r#"<scene>
   <duration time="1"/><integrator type="explicit-euler" dt="0.5"/><collision type="continuous-time" COR="1"/>
   <particle m="1" px="0" py="0.5" vx="0" vy="-1" fixed="0" radius="0.25"/>
   <halfplane px="0" py="0" nx="0" ny="1"/>
 </scene>"#;
 
 /// A ball that falls through an edge to a half-plane: `hybrid`, with too few impulse rounds for the first step.
-pub(crate) const ZONES: &str = r#"<scene>
+pub(crate) const ZONES_SCENE: &str = r#"<scene>
   <duration time="0.3"/><integrator type="explicit-euler" dt="0.1"/>
   <collision type="hybrid" COR="0.5" maxiters="1" k="1" thickness="0.01"/>
   <particle m="1" px="0" py="0" vx="0" vy="0" fixed="0" radius="0.1"/>

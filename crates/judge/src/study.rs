@@ -88,10 +88,10 @@ impl Answer {
             Some(normal) => Decision::Hit { time, normal },
             None => Decision::Miss { time: Time::Found(time) },
         };
-        let mut both = Intervals::<SETS>::EMPTY;
+        let mut both = Intervals::<MAX_SETS>::EMPTY;
         both.push(Interval::EVERYTHING);
         for curve in curves {
-            let mut set = Intervals::<SETS>::EMPTY;
+            let mut set = Intervals::<MAX_SETS>::EMPTY;
             curve.positive.iter().for_each(|&interval| set.push(interval));
             both = both.intersection(&set);
         }
@@ -101,7 +101,7 @@ impl Answer {
 }
 
 /// The capacity for the common intervals of four polynomials.
-const SETS: usize = 32;
+const MAX_SETS: usize = 32;
 
 /// The mathematically right approach polynomial of a particle and an edge, and the decision that follows from it.
 #[derive(Debug, Clone, PartialEq)]

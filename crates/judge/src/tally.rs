@@ -22,7 +22,7 @@ use fosssim_model::{
 use fosssim_num::{
     polynomial::MAX_COEFFICIENTS,
     tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL, PARITY_ZERO_POLYNOMIAL},
-    vector::{at, length, same_bits},
+    vector::{length, same_bits, vector_at},
 };
 
 /// Below this sum of moduli, identical coefficients always pass the original's comparison, because `(O*s)/s` differs
@@ -194,7 +194,7 @@ impl<'a> Tally<'a> {
         self.identical &= own.len() == theirs.len()
             && own.iter().zip(theirs).all(|(own, logged)| LoggedImpulse::from(*own).is_same(logged));
         let by_pair = Contacts::from_impulses(theirs);
-        let logged = |own: &Impulse| key(own.pair).and_then(|key| by_pair.about(key).next());
+        let logged = |own: &Impulse| key(own.pair).and_then(|key| by_pair.indices_of(key).next());
         let mut own_keys: Vec<_> = own.iter().filter_map(|own| key(own.pair)).collect();
         own_keys.sort_unstable();
         for expected in own.iter().filter(|own| logged(own).is_none()) {
@@ -236,7 +236,8 @@ impl<'a> Tally<'a> {
         let (mut positions, mut velocities) = (0, 0);
         for particle in 0..reference.positions.len() / 2 {
             let theirs = &self.frame.state;
-            let (expected, actual) = (at(&reference.positions, particle), at(&theirs.positions, particle));
+            let (expected, actual) =
+                (vector_at(&reference.positions, particle), vector_at(&theirs.positions, particle));
             let position = length(expected - actual);
             // The comparison is negated so that NaN is a finding: it fails the accumulated residual.
             if !(position < PARITY_MAXIMUM) {
@@ -245,7 +246,8 @@ impl<'a> Tally<'a> {
                 self.result.record(self.finding(detail));
                 positions += 1;
             }
-            let (expected, actual) = (at(&reference.velocities, particle), at(&theirs.velocities, particle));
+            let (expected, actual) =
+                (vector_at(&reference.velocities, particle), vector_at(&theirs.velocities, particle));
             let velocity = length(expected - actual);
             if !(velocity < PARITY_MAXIMUM) {
                 let (expected, actual) = (expected.into(), actual.into());
@@ -321,7 +323,7 @@ impl Observer for Tally<'_> {
         (self.buffers.own, self.buffers.order) = (own, order);
     }
 
-    fn impulse(&mut self, impulse: &Impulse) {
+    fn observe_impulse(&mut self, impulse: &Impulse) {
         if self.logs_impulses {
             self.buffers.impulses.push(*impulse);
         }

@@ -5,17 +5,19 @@
 //! moves all the others. That comparison is kept in [`RescaledCoefficient`](super::finding::RescaledCoefficient).
 
 /// The relative difference below which coefficients agree.
-const ALIKE: f64 = 1e-9;
+const RATIO_TOLERANCE: f64 = 1e-9;
 
 /// The share of the sum of moduli to which a value is known if its terms cancel.
-const FLOOR: f64 = 1e-13;
+const CANCELLATION_FLOOR: f64 = 1e-13;
 
 /// Returns the positive factor of the trace's polynomial on which most coefficients agree, or 1 if no factor is better.
 /// Both lists have the highest power first and are aligned at the constant term.
 #[must_use]
-pub fn factor(expected: &[f64], actual: &[f64]) -> f64 {
+pub fn find_factor(expected: &[f64], actual: &[f64]) -> f64 {
     let agreeing = |factor: f64| {
-        let holds = |power: &usize| coefficient(expected, *power) != 0.0 && agrees(expected, actual, *power, factor);
+        let holds = |power: &usize| {
+            coefficient(expected, *power) != 0.0 && coefficient_agrees(expected, actual, *power, factor)
+        };
         (0..expected.len()).filter(holds).count()
     };
     // The coefficient from which a factor was computed always agrees with it, which proves nothing.
@@ -34,15 +36,15 @@ pub fn factor(expected: &[f64], actual: &[f64]) -> f64 {
 
 /// Returns the powers of t whose coefficients differ with `factor`, the highest first.
 #[must_use]
-pub fn differing(expected: &[f64], actual: &[f64], factor: f64) -> Vec<usize> {
+pub fn differing_powers(expected: &[f64], actual: &[f64], factor: f64) -> Vec<usize> {
     let powers = (0..expected.len().max(actual.len())).rev();
-    powers.filter(|&power| !agrees(expected, actual, power, factor)).collect()
+    powers.filter(|&power| !coefficient_agrees(expected, actual, power, factor)).collect()
 }
 
-fn agrees(expected: &[f64], actual: &[f64], power: usize, factor: f64) -> bool {
+fn coefficient_agrees(expected: &[f64], actual: &[f64], power: usize, factor: f64) -> bool {
     let sum: f64 = expected.iter().map(|coefficient| coefficient.abs()).sum();
     let right = factor * coefficient(expected, power);
-    (coefficient(actual, power) - right).abs() <= ALIKE * right.abs() + FLOOR * factor * sum
+    (coefficient(actual, power) - right).abs() <= RATIO_TOLERANCE * right.abs() + CANCELLATION_FLOOR * factor * sum
 }
 
 /// Returns the coefficient of a power, or 0 if the list is too short.
@@ -60,17 +62,17 @@ mod tests {
         for (scale, power) in [(1.0, 1), (1.0, 0), (3.0, 4), (0.125, 2)] {
             let mut actual = expected.map(|value| scale * value);
             actual[4 - power] *= 3.0;
-            assert_eq!(factor(&expected, &actual), scale);
-            assert_eq!(differing(&expected, &actual, scale), [power]);
+            assert_eq!(find_factor(&expected, &actual), scale);
+            assert_eq!(differing_powers(&expected, &actual, scale), [power]);
         }
     }
 
     #[test]
     fn where_nothing_agrees_the_factor_is_one() {
-        assert_eq!(factor(&[1.0, 2.0], &[-1.0, -2.0]), 1.0);
-        assert_eq!(factor(&[1.0, 2.0], &[3.0, 5.0]), 1.0);
-        assert_eq!(differing(&[1.0, 2.0], &[3.0, 5.0], 1.0), [1, 0]);
-        assert_eq!(differing(&[1.0, 2.0], &[f64::NAN, 2.0], 1.0), [1]);
-        assert_eq!(differing(&[1.0, 2.0], &[2.0], 1.0), [1]);
+        assert_eq!(find_factor(&[1.0, 2.0], &[-1.0, -2.0]), 1.0);
+        assert_eq!(find_factor(&[1.0, 2.0], &[3.0, 5.0]), 1.0);
+        assert_eq!(differing_powers(&[1.0, 2.0], &[3.0, 5.0], 1.0), [1, 0]);
+        assert_eq!(differing_powers(&[1.0, 2.0], &[f64::NAN, 2.0], 1.0), [1]);
+        assert_eq!(differing_powers(&[1.0, 2.0], &[2.0], 1.0), [1]);
     }
 }

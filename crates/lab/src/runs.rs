@@ -15,8 +15,8 @@ use std::path::Path;
 
 /// Returns the trace that a program writes; if the program does not end, the part written until then.
 #[must_use]
-pub fn trace(scene: &Scene, student: Student) -> Vec<u8> {
-    student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
+pub fn record_trace(scene: &Scene, student: Student) -> Vec<u8> {
+    student::record_trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
 /// Returns the outcome by both rule books, on one thread, because the tools try many programs at one time.
@@ -53,7 +53,7 @@ impl WatchedScene {
         ensure!(!files.is_empty(), "{}: no group of this folder holds a scene", folder.display());
         let watched = |SceneFile { name, path, .. }: SceneFile| -> anyhow::Result<Self> {
             let scene = original::read(&std::fs::read(&path)?).with_context(|| path.display().to_string())?.scene;
-            let right = trace(&scene, Student::default());
+            let right = record_trace(&scene, Student::default());
             Ok(Self { name, scene, right })
         };
         files.into_par_iter().map(watched).collect()

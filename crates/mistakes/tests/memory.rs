@@ -60,7 +60,7 @@ fn row(balls: u32, collision: Collision) -> Scene {
 
 /// How much more memory explaining takes than there was before, of a trace that is wrong in every step.
 fn peak_of(scene: &Scene) -> usize {
-    let mut trace = student::trace(scene, Student::default()).unwrap_or_else(|(bytes, _)| bytes);
+    let mut trace = student::record_trace(scene, Student::default()).unwrap_or_else(|(bytes, _)| bytes);
     // The first particle is elsewhere in each record but the first.
     let record = 32 * scene.particles.len();
     for start in (record..trace.len()).step_by(record) {

@@ -40,9 +40,9 @@ pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result
     let lists = polynomials.iter().map(Polynomial::coefficients);
     // Two polynomials, of degree five at most, have at most five common intervals; four of them nine.
     match polynomials.len() {
-        0..=2 => intersected::<5>(lists, steps),
-        3..=4 => intersected::<9>(lists, steps),
-        _ => intersected::<32>(lists, steps),
+        0..=2 => intersect_sets::<5>(lists, steps),
+        3..=4 => intersect_sets::<9>(lists, steps),
+        _ => intersect_sets::<32>(lists, steps),
     }
 }
 
@@ -55,22 +55,22 @@ pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result
 /// # Panics
 /// Panics if more than ten lists have sets with the maximum number of intervals.
 pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
-    intersected::<32>(lists.into_iter(), &mut 0)
+    intersect_sets::<32>(lists.into_iter(), &mut 0)
 }
 
 /// Returns the intersection of the positive sets and its first time, with room for `CAPACITY` intervals.
 #[inline]
-fn intersected<'a, const CAPACITY: usize>(
+fn intersect_sets<'a, const CAPACITY: usize>(
     mut lists: impl Iterator<Item = &'a [f64]>,
     steps: &mut u64,
 ) -> Result<f64, DoesNotTerminate> {
     let Some(first) = lists.next() else { return Ok(f64::INFINITY) };
     let mut set = Intervals::<CAPACITY>::EMPTY;
-    for &interval in counted(first, steps)?.as_slice() {
+    for &interval in solve_counted(first, steps)?.as_slice() {
         set.push(interval);
     }
     for list in lists {
-        set = set.intersection(&counted(list, steps)?);
+        set = set.intersection(&solve_counted(list, steps)?);
     }
     Ok(set.next_time(0.0))
 }
@@ -87,10 +87,10 @@ pub type PositiveSet = Intervals<{ MAX_DEGREE + 1 }>;
 /// # Panics
 /// Panics if there are more than [`MAX_DEGREE`]` + 1` coefficients.
 pub fn positive_set(coefficients: &[f64]) -> Result<PositiveSet, DoesNotTerminate> {
-    counted(coefficients, &mut 0)
+    solve_counted(coefficients, &mut 0)
 }
 
-fn counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNotTerminate> {
+fn solve_counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNotTerminate> {
     let mut set = PositiveSet::EMPTY;
     let zeros = match coefficients.len() {
         0 => return Ok(set),

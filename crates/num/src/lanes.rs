@@ -147,14 +147,14 @@ impl<S: Simd> Lanes<S> {
 
     /// Returns one number in all lanes.
     #[inline(always)]
-    pub fn all(simd: S, value: f64) -> Self {
+    pub fn splat(simd: S, value: f64) -> Self {
         Self { simd, values: simd.splat_f64s(value) }
     }
 
     /// Returns one number in as many lanes as `self` has.
     #[inline(always)]
     pub fn splat_like(self, value: f64) -> Self {
-        Self::all(self.simd, value)
+        Self::splat(self.simd, value)
     }
 
     /// Reads the first numbers of a slice.
@@ -279,7 +279,7 @@ impl<S: Simd> Mul<Lanes<S>> for f64 {
     type Output = Lanes<S>;
     #[inline(always)]
     fn mul(self, other: Lanes<S>) -> Lanes<S> {
-        Lanes::all(other.simd, self) * other
+        Lanes::splat(other.simd, self) * other
     }
 }
 

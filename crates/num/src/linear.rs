@@ -6,10 +6,10 @@
 use super::lanes::{Instructions, Lanes, Simd, Work};
 
 /// The columns that a triangular solve treats as one panel.
-const PANEL: usize = 8;
+const PANEL_COLUMNS: usize = 8;
 
 /// The columns of a panel whose products are added to the other rows in one go.
-const GROUP: usize = 4;
+const GROUP_COLUMNS: usize = 4;
 
 /// Scratch space of [`solve`], kept between calls so that none allocates after the first of its size.
 #[derive(Debug, Clone, Default)]
@@ -157,7 +157,7 @@ impl Decomposition<'_> {
             if may_skip && *top == 0.0 {
                 continue;
             }
-            let (tops, mut moduli) = (Lanes::all(simd, *top), Lanes::all(simd, 0.0));
+            let (tops, mut moduli) = (Lanes::splat(simd, *top), Lanes::splat(simd, 0.0));
             let (in_lanes, alone) = below.split_at_mut(whole.len());
             for (entries, multipliers) in in_lanes.chunks_exact_mut(width).zip(whole.chunks_exact(width)) {
                 let difference = Lanes::load(simd, entries) - Lanes::load(simd, multipliers) * tops;
@@ -167,7 +167,7 @@ impl Decomposition<'_> {
             *largest = find_largest(moduli, in_lanes);
             for (entry, multiplier) in alone.iter_mut().zip(single) {
                 *entry -= *multiplier * *top;
-                *largest = larger(*largest, *entry);
+                *largest = max_modulus(*largest, *entry);
             }
         }
     }
@@ -184,31 +184,31 @@ struct Pivot {
 #[inline(always)]
 fn largest<S: Simd>(simd: S, entries: &[f64]) -> f64 {
     let (in_lanes, alone) = entries.split_at(entries.len() / Lanes::<S>::COUNT * Lanes::<S>::COUNT);
-    let mut moduli = Lanes::all(simd, 0.0);
+    let mut moduli = Lanes::splat(simd, 0.0);
     for entries in in_lanes.chunks_exact(Lanes::<S>::COUNT) {
         moduli = Lanes::load(simd, entries).abs().max(moduli);
     }
-    alone.iter().fold(find_largest(moduli, in_lanes), |largest, entry| larger(largest, *entry))
+    alone.iter().fold(find_largest(moduli, in_lanes), |largest, entry| max_modulus(largest, *entry))
 }
 
 /// Returns the largest of the moduli of entries. With some instructions the larger of a number and NaN is NaN.
 #[inline(always)]
 fn find_largest<S: Simd>(moduli: Lanes<S>, entries: &[f64]) -> f64 {
     let largest = moduli.largest();
-    if largest.is_nan() { entries.iter().fold(0.0, |largest, entry| larger(largest, *entry)) } else { largest }
+    if largest.is_nan() { entries.iter().fold(0.0, |largest, entry| max_modulus(largest, *entry)) } else { largest }
 }
 
 /// Returns the larger of a modulus and that of an entry, unless this is NaN.
 #[inline(always)]
-fn larger(modulus: f64, entry: f64) -> f64 {
+fn max_modulus(modulus: f64, entry: f64) -> f64 {
     if entry.abs() > modulus { entry.abs() } else { modulus }
 }
 
 /// Solves with the unit lower triangle, panel by panel.
 fn forward_substitution(matrix: &[f64], c: &mut [f64]) {
     let n = c.len();
-    for start in (0..n).step_by(PANEL) {
-        let end = n.min(start + PANEL);
+    for start in (0..n).step_by(PANEL_COLUMNS) {
+        let end = n.min(start + PANEL_COLUMNS);
         for i in start..end {
             let value = c[i];
             let column = &matrix[i * n..(i + 1) * n];
@@ -217,7 +217,7 @@ fn forward_substitution(matrix: &[f64], c: &mut [f64]) {
             }
         }
         if end < n {
-            let (panel, below) = c[start..].split_at_mut(PANEL);
+            let (panel, below) = c[start..].split_at_mut(PANEL_COLUMNS);
             subtract_panel(&matrix[start * n..end * n], n, end, panel, below);
         }
     }
@@ -228,7 +228,7 @@ fn substitute_back(matrix: &[f64], c: &mut [f64], rank: usize) {
     let n = c.len();
     let mut end = rank;
     while end > 0 {
-        let start = end.saturating_sub(PANEL);
+        let start = end.saturating_sub(PANEL_COLUMNS);
         for i in (start..end).rev() {
             let column = &matrix[i * n..(i + 1) * n];
             c[i] /= column[i];
@@ -248,9 +248,9 @@ fn substitute_back(matrix: &[f64], c: &mut [f64], rank: usize) {
 /// Subtracts a full panel's products from other rows, the first of which is `row`: four columns at a time, in two
 /// pairs. A panel that is not full is the last one, with no rows left.
 fn subtract_panel(columns: &[f64], n: usize, row: usize, panel: &[f64], rows: &mut [f64]) {
-    for (values, columns) in panel.chunks_exact(GROUP).zip(columns.chunks_exact(GROUP * n)) {
-        let negative: [f64; GROUP] = std::array::from_fn(|i| -values[i]);
-        let [a, b, c, d]: [&[f64]; GROUP] = std::array::from_fn(|i| &columns[i * n + row..][..rows.len()]);
+    for (values, columns) in panel.chunks_exact(GROUP_COLUMNS).zip(columns.chunks_exact(GROUP_COLUMNS * n)) {
+        let negative: [f64; GROUP_COLUMNS] = std::array::from_fn(|i| -values[i]);
+        let [a, b, c, d]: [&[f64]; GROUP_COLUMNS] = std::array::from_fn(|i| &columns[i * n + row..][..rows.len()]);
         for (s, entry) in rows.iter_mut().enumerate() {
             let first = a[s] * negative[0] + b[s] * negative[1];
             let second = c[s] * negative[2] + d[s] * negative[3];

@@ -2,7 +2,7 @@
 //! the shortest exact form.
 
 /// The number of significant digits of C++ streams.
-const DIGITS: i32 = 6;
+const SIGNIFICANT_DIGITS: i32 = 6;
 
 /// Returns the number in the format `%g` with six significant digits, as printed by glibc: `0`, `-0`, `1e-05`,
 /// `0.00282843`, `1e+06`, `inf`, `-inf`, `nan` or, with the sign bit set, `-nan`. Rounds to nearest, exact ties to
@@ -25,8 +25,8 @@ pub fn format_g(value: f64) -> String {
     let exponent: i32 = exponent.parse().unwrap_or(0);
     let digits: String = mantissa.chars().filter(char::is_ascii_digit).collect();
     let digits = digits.trim_end_matches('0');
-    if (-4..DIGITS).contains(&exponent) {
-        format!("{sign}{}", positional(digits, exponent))
+    if (-4..SIGNIFICANT_DIGITS).contains(&exponent) {
+        format!("{sign}{}", format_positional(digits, exponent))
     } else {
         let (first, rest) = digits.split_at(1);
         let point = if rest.is_empty() { "" } else { "." };
@@ -38,7 +38,7 @@ pub fn format_g(value: f64) -> String {
 /// Returns the shortest text that reads back as the same bits, with an exponent if it would be long otherwise:
 /// `-0.1875`, `1e-12`, `nan`, `-nan`, `inf`.
 #[must_use]
-pub fn exact(value: f64) -> String {
+pub fn format_exact(value: f64) -> String {
     let magnitude = value.abs();
     if value.is_finite() && (magnitude == 0.0 || (1e-5..1e9).contains(&magnitude)) {
         format!("{value}")
@@ -50,7 +50,7 @@ pub fn exact(value: f64) -> String {
 }
 
 /// Returns the digits `d.ddd` times ten to the power of `exponent`, written without an exponent.
-fn positional(digits: &str, exponent: i32) -> String {
+fn format_positional(digits: &str, exponent: i32) -> String {
     if exponent < 0 {
         let zeros = "0".repeat(exponent.unsigned_abs() as usize - 1);
         return format!("0.{zeros}{digits}");
@@ -70,12 +70,12 @@ mod tests {
     #[test]
     fn exact_reads_back_as_the_same_bits() {
         for value in [0.1 + 0.2, -0.1875, 1e-12, 123_456_789.125, 1e22, -5e-324, 0.0, -0.0] {
-            let text = exact(value);
+            let text = format_exact(value);
             assert_eq!(text.parse::<f64>().unwrap().to_bits(), value.to_bits(), "{text}");
         }
-        assert_eq!(exact(1e-12), "1e-12");
-        assert_eq!(exact(-0.1875), "-0.1875");
-        assert_eq!(exact(f64::NAN.copysign(-1.0)), "-nan");
+        assert_eq!(format_exact(1e-12), "1e-12");
+        assert_eq!(format_exact(-0.1875), "-0.1875");
+        assert_eq!(format_exact(f64::NAN.copysign(-1.0)), "-nan");
     }
 
     #[test]

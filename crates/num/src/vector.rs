@@ -49,13 +49,13 @@ pub fn same_bits(one: &[f64], other: &[f64]) -> bool {
 /// Reads the vector of element `index` from an array in trace order (`x0, y0, x1, y1, ...`).
 #[inline]
 #[must_use]
-pub fn at(array: &[f64], index: usize) -> Vec2 {
+pub fn vector_at(array: &[f64], index: usize) -> Vec2 {
     Vec2::new(array[2 * index], array[2 * index + 1])
 }
 
 /// Writes the vector of element `index` into an array in trace order.
 #[inline]
-pub fn put(array: &mut [f64], index: usize, v: Vec2) {
+pub fn set_vector(array: &mut [f64], index: usize, v: Vec2) {
     array[2 * index] = v.x;
     array[2 * index + 1] = v.y;
 }
@@ -87,8 +87,8 @@ mod tests {
     #[test]
     fn a_vector_that_is_put_into_an_array_is_there() {
         let mut array = [0.0; 6];
-        put(&mut array, 1, Vec2::new(2.0, 3.0));
-        assert_eq!((array, at(&array, 1)), ([0.0, 0.0, 2.0, 3.0, 0.0, 0.0], Vec2::new(2.0, 3.0)));
+        set_vector(&mut array, 1, Vec2::new(2.0, 3.0));
+        assert_eq!((array, vector_at(&array, 1)), ([0.0, 0.0, 2.0, 3.0, 0.0, 0.0], Vec2::new(2.0, 3.0)));
     }
 
     proptest! {

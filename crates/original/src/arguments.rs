@@ -38,8 +38,8 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Endi
     while let Some(word) = words.next() {
         match word {
             b"--" | b"--ignore_rest" => break,
-            b"-h" | b"--help" => return Err(Ending { stdout: usage::help(program), ..Ending::default() }),
-            b"--version" => return Err(Ending { stdout: usage::version(program), ..Ending::default() }),
+            b"-h" | b"--help" => return Err(Ending { stdout: usage::help_text(program), ..Ending::default() }),
+            b"--version" => return Err(Ending { stdout: usage::version_text(program), ..Ending::default() }),
             // The library treats these words as bundles of flags that are used up.
             b"" | b"-" => continue,
             _ => {}
@@ -56,7 +56,7 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Endi
             return Err(wrong_argument(program, title.as_bytes(), b"Missing a value for this argument!"));
         };
         if flag.boolean
-            && let Err(text) = boolean(value)
+            && let Err(text) = parse_boolean(value)
         {
             return Err(wrong_argument(program, title.as_bytes(), &text));
         }
@@ -65,7 +65,7 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Endi
     let value = |letter: &str| FLAGS.iter().position(|flag| flag.letter == letter).and_then(|place| values[place]);
     let text = |letter: &str| value(letter).map(|bytes| OsString::from_vec(bytes.to_vec()));
     let switch = |letter: &str, default: Option<bool>| {
-        value(letter).and_then(|bytes| boolean(bytes).ok().flatten()).or(default).unwrap_or(false)
+        value(letter).and_then(|bytes| parse_boolean(bytes).ok().flatten()).or(default).unwrap_or(false)
     };
     let Some(scene) = text("s") else {
         return Err(failure(program, b" ", b"Required argument missing: scene"));
@@ -88,7 +88,7 @@ fn is(flag: &Flag, word: &[u8]) -> bool {
 }
 
 /// Returns a boolean like a C++ stream reads it: one integer that is 0 or 1. An empty value keeps the default.
-fn boolean(value: &[u8]) -> Result<Option<bool>, Vec<u8>> {
+fn parse_boolean(value: &[u8]) -> Result<Option<bool>, Vec<u8>> {
     let is_space = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0x0b;
     let mut rest = value;
     let mut found = None;
@@ -104,10 +104,10 @@ fn boolean(value: &[u8]) -> Result<Option<bool>, Vec<u8>> {
         let one = match significant[..] {
             [] => false,
             [b'1'] if !negative => true,
-            _ => return Err(unreadable(value)),
+            _ => return Err(describe_unreadable(value)),
         };
         if length == 0 {
-            return Err(unreadable(value));
+            return Err(describe_unreadable(value));
         }
         if found.is_some() {
             return Err([b"More than one valid value parsed from string '", value, b"'"].concat());
@@ -118,7 +118,7 @@ fn boolean(value: &[u8]) -> Result<Option<bool>, Vec<u8>> {
     Ok(found)
 }
 
-fn unreadable(value: &[u8]) -> Vec<u8> {
+fn describe_unreadable(value: &[u8]) -> Vec<u8> {
     [b"Couldn't read argument value from string '", value, b"'"].concat()
 }
 

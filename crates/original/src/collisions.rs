@@ -25,12 +25,12 @@ pub(crate) fn line(remark: &Remark) -> Option<String> {
 fn describe(impulse: &LoggedImpulse) -> String {
     let Some(kind) = impulse.kind() else { return String::new() };
     let second = kind.second_of_original();
-    let normal = direction(impulse.normal);
+    let normal = format_direction(impulse.normal);
     format!("Particle {} - {second} {} with normal = {normal}", impulse.first, impulse.second)
 }
 
 /// Returns both components; the first is padded to the length of the second, never the reverse.
-fn direction(normal: Vec2) -> String {
+fn format_direction(normal: Vec2) -> String {
     let (x, y) = (format_g(normal.x), format_g(normal.y));
     format!("{x:>width$} {y}", width = y.len())
 }

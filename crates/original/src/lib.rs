@@ -57,7 +57,7 @@ use std::{
 };
 
 /// The prefix of the program's names that make it behave like the original.
-const NAME: &[u8] = b"FOSSSimOracle";
+const PROGRAM_PREFIX: &[u8] = b"FOSSSimOracle";
 
 /// Returns the name for messages, and the arguments, if the original is to be replaced: by the program's name
 /// `FOSSSimOracle...`, or by the first word, `original`.
@@ -65,7 +65,7 @@ fn parse_call(words: &[OsString]) -> Option<(Vec<u8>, &[OsString])> {
     let (program, rest) = words.split_first()?;
     let program = program.as_bytes();
     let file = program.rsplit(|&byte| byte == b'/').next().unwrap_or_default();
-    if file.starts_with(NAME) {
+    if file.starts_with(PROGRAM_PREFIX) {
         return Some((program.to_vec(), rest));
     }
     let (first, rest) = rest.split_first()?;
@@ -119,7 +119,7 @@ pub fn main(program: &[u8], words: &[OsString], outside: &dyn Services) -> ExitC
             // A closed output or a full disk does not change the exit code, because the original ignores both.
             let mut stdout = io::stdout().lock();
             drop(stdout.write_all(&ending.stdout).and_then(|()| stdout.flush()));
-            complain(&ending.stderr);
+            print_error(&ending.stderr);
             ending.exit_code
         }
     };
@@ -127,7 +127,7 @@ pub fn main(program: &[u8], words: &[OsString], outside: &dyn Services) -> ExitC
 }
 
 /// Prints to standard error; a failure cannot be reported any more.
-fn complain(text: &[u8]) {
+fn print_error(text: &[u8]) {
     drop(io::stderr().lock().write_all(text));
 }
 

@@ -11,7 +11,7 @@ use fosssim_judge::{Stop, Unreadable, WithoutResult, replay, replay::Progress};
 use fosssim_model::{
     scene::{
         MAX_IMPLICIT, MAX_SCENE_BYTES, Scene,
-        original::{self, OriginalScene, Refusal, RefusalKind},
+        original::{self, OriginalScene, RefusalKind, Rejection},
     },
     sim::{RootSearch, Simulation, State, StepError},
     trace::{Frame, Layout, Reader, Recorder},
@@ -24,19 +24,19 @@ use std::{
 };
 
 /// The exit code of every failure.
-const FAILED: u8 = 1;
+const FAILURE_CODE: u8 = 1;
 
 /// Runs with parsed arguments; `words` are the raw arguments. Returns the exit code.
 pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Services) -> u8 {
     if arguments.input.is_some() && arguments.output.is_some() {
-        return complain(INPUT_AND_OUTPUT);
+        return print_error(INPUT_AND_OUTPUT);
     }
     let (scene, identity) = match load(arguments) {
         Ok(loaded) => loaded,
         Err(refusal) => return refuse_scene(arguments, &refusal),
     };
     if let Some(message) = find_unsupported(arguments, &scene.scene) {
-        return complain(message);
+        return print_error(message);
     }
     let wanted = arguments.generate || arguments.movie.is_some();
     let pictures =
@@ -54,28 +54,28 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
         Err(message) if message == NO_PICTURE_FOLDER => {
             return without_folder(arguments, identity, &scene.scene, transcript);
         }
-        Err(message) => return complain(message),
+        Err(message) => return print_error(message),
     };
     match (&arguments.output, &arguments.input) {
         (Some(file), _) => match create(Path::new(file), identity) {
             Ok(file) => simulate(&scene.scene, file, transcript, pictures),
-            Err(message) => complain(message),
+            Err(message) => print_error(message),
         },
         (None, Some(file)) => {
             if let Ok(trace) = open(Path::new(file)) {
                 if let Some(pictures) = pictures
                     && let Err(message) = draw(&scene.scene, Path::new(file), pictures)
                 {
-                    return complain(message);
+                    return print_error(message);
                 }
                 return grade(&scene.scene, trace, transcript);
             }
             // The original prints the third word of the command line instead of the file's name.
             let third_word = words.get(2).map(Vec::as_slice).unwrap_or_default();
-            crate::complain(&not_opened("input", third_word));
+            crate::print_error(&not_opened("input", third_word));
             transcript.print_not_opened();
             drop(transcript.finish());
-            FAILED
+            FAILURE_CODE
         }
         (None, None) => simulate(&scene.scene, io::sink(), transcript, pictures),
     }
@@ -91,45 +91,45 @@ fn without_folder(
     if let Some(file) = &arguments.output {
         match create(Path::new(file), identity) {
             Ok(file) => drop(Recorder::start(file, Layout::for_scene(scene), &State::for_scene(scene)).finish()),
-            Err(message) => return complain(message),
+            Err(message) => return print_error(message),
         }
     }
     transcript.observe_begin();
-    transcript.closes();
+    transcript.print_exit_line();
     drop(transcript.finish());
-    complain(NO_PICTURE_FOLDER)
+    print_error(NO_PICTURE_FOLDER)
 }
 
-fn complain(text: impl AsRef<[u8]>) -> u8 {
-    crate::complain(text.as_ref());
-    FAILED
+fn print_error(text: impl AsRef<[u8]>) -> u8 {
+    crate::print_error(text.as_ref());
+    FAILURE_CODE
 }
 
 /// Reads the scene like the original. A directory can be opened and reads as empty text.
-fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Refusal> {
+fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Rejection> {
     let name = Path::new(&arguments.scene);
-    let unreadable = || Refusal::unreadable(arguments.scene.as_bytes());
+    let unreadable = || Rejection::unreadable(arguments.scene.as_bytes());
     let (file, metadata) = open_for_reading(name).map_err(|_| unreadable())?;
     let bytes = if metadata.is_dir() {
         Vec::new()
     } else {
-        read_limited(file, &metadata, MAX_SCENE_BYTES as u64).map_err(|error| Refusal {
+        read_limited(file, &metadata, MAX_SCENE_BYTES as u64).map_err(|error| Rejection {
             kind: RefusalKind::Undefined,
             stderr: format!("cannot read the scene {}: {error}\n", name.display()).into_bytes(),
-            exit_code: FAILED,
+            exit_code: FAILURE_CODE,
             explanation: error.to_string(),
         })?
     };
     Ok((original::read(&bytes)?, Identity::from_metadata(&metadata)))
 }
 
-fn refuse_scene(arguments: &Arguments, refusal: &Refusal) -> u8 {
+fn refuse_scene(arguments: &Arguments, refusal: &Rejection) -> u8 {
     if refusal.kind == RefusalKind::Crash {
         // The original crashes with an uncaught exception in this case.
         let name = arguments.scene.display();
-        return complain(format!("{name}: {}; `fosssim-oracle simulate {name}` says where\n", refusal.explanation));
+        return print_error(format!("{name}: {}; `fosssim-oracle simulate {name}` says where\n", refusal.explanation));
     }
-    crate::complain(&refusal.stderr);
+    crate::print_error(&refusal.stderr);
     refusal.exit_code
 }
 
@@ -186,19 +186,19 @@ fn simulate<W: Write>(
             && let Err(error) = pictures.step(step, &simulation.state().positions)
         {
             drop(transcript.finish());
-            return complain(error);
+            return print_error(error);
         }
     }
     let written = recorder.finish();
     if stopped.is_none() && written.is_ok() {
-        transcript.completes();
+        transcript.print_completion();
     }
-    transcript.closes();
+    transcript.print_exit_line();
     drop(transcript.finish());
     match (stopped, written) {
         (Some(error), _) => step_failed(&error),
         // The original would continue and claim that the trace was saved.
-        (None, Err(error)) => complain(format!("the trace could not be written: {error}\n")),
+        (None, Err(error)) => print_error(format!("the trace could not be written: {error}\n")),
         (None, Ok(_)) => 0,
     }
 }
@@ -239,23 +239,23 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
     match &outcome.stop {
         None => 0,
         Some(Stop::Step(error)) => step_failed(error),
-        Some(Stop::Trace { cause: Unreadable::State | Unreadable::Impulses, .. }) => FAILED,
+        Some(Stop::Trace { cause: Unreadable::State | Unreadable::Impulses, .. }) => FAILURE_CODE,
         Some(Stop::Trace {
             cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io,
             frame,
             step,
             offset,
             what,
-        }) => complain(format!("the trace can't be read at byte {offset} (record {frame}, step {step}): {what}\n")),
+        }) => print_error(format!("the trace can't be read at byte {offset} (record {frame}, step {step}): {what}\n")),
     }
 }
 
 /// Ends a run in which the original computes endlessly or fails.
 fn step_failed(error: &StepError) -> u8 {
     match error {
-        StepError::VortexHessian { .. } => complain(NO_VORTEX_HESSIAN),
+        StepError::VortexHessian { .. } => print_error(NO_VORTEX_HESSIAN),
         StepError::RootSearch { .. } | StepError::Newton { .. } | StepError::Work { .. } => {
-            complain(format!("step {} has no result: {}\n", error.step(), WithoutResult(*error)))
+            print_error(format!("step {} has no result: {}\n", error.step(), WithoutResult(*error)))
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The original's standard output, as a state machine over events (oracle-behavior.md 3, 5, 6).
 use crate::{
     collisions, verdict,
-    words::{BLUE, GREEN, PINK, PLAIN, RED},
+    words::{BLUE, GREEN, PINK, RED, RESET},
 };
 use fosssim_judge::{
     Book, Outcome, Residuals, Stop, Unreadable,
@@ -41,8 +41,9 @@ pub(crate) enum Task<'a> {
 /// Writes the original's standard output to a stream, event by event.
 ///
 /// For grading, pass it to `judge` as its [`Progress`], then call [`Transcript::graded`]. For recording and plain runs,
-/// call `begins`, `step_begins` and [`Transcript::step_ends`] per step, then [`Transcript::completes`] and
-/// [`Transcript::closes`]. The first error of the stream is kept until [`Transcript::finish`]; later text is dropped.
+/// call `begins`, `step_begins` and [`Transcript::step_ends`] per step, then [`Transcript::print_completion`] and
+/// [`Transcript::print_exit_line`]. The first error of the stream is kept until [`Transcript::finish`]; later text is
+/// dropped.
 #[derive(Debug)]
 pub(crate) struct Transcript<'a, W: Write> {
     stream: W,
@@ -62,7 +63,7 @@ struct Clock {
 }
 
 /// The share of the steps after which the next dot is printed.
-const DOT: f64 = 0.02;
+const DOT_INTERVAL: f64 = 0.02;
 
 const BANNER: [&str; 7] = [
     "------------------------------------------    ",
@@ -77,18 +78,18 @@ const BANNER: [&str; 7] = [
 impl<'a, W: Write> Transcript<'a, W> {
     /// Creates an empty transcript.
     pub(crate) fn new(stream: W, heading: Heading<'a>) -> Self {
-        Self { stream, heading, steps: heading.scene.steps(), threshold: DOT, clock: None, error: None }
+        Self { stream, heading, steps: heading.scene.steps(), threshold: DOT_INTERVAL, clock: None, error: None }
     }
 
     /// Notes that all steps are completed.
-    pub(crate) fn completes(&mut self) {
+    pub(crate) fn print_completion(&mut self) {
         self.print_dot(self.steps);
         let time = f64::from(self.steps) * self.heading.scene.time_step;
         self.print_message(&format!("Simulation complete at time {}. Exiting.", format_g(time)));
     }
 
     /// Prints the exit handler's line of a run without a verdict, after the file is closed.
-    pub(crate) fn closes(&mut self) {
+    pub(crate) fn print_exit_line(&mut self) {
         match self.heading.task {
             Task::Run => {}
             Task::Record(file) => self.print_message_about("Saved simulation to file '", file, "'."),
@@ -102,9 +103,9 @@ impl<'a, W: Write> Transcript<'a, W> {
     /// Ends grading: prints the completion message or the reason for stopping, then the exit handler's lines.
     pub(crate) fn print_end(&mut self, outcome: &Outcome) {
         match &outcome.stop_of(Book::Parity) {
-            None => self.completes(),
+            None => self.print_completion(),
             Some(Stop::Trace { cause: Unreadable::State, .. }) => {
-                let text = format!("{RED}Error in TwoDSceneSerialized: {PLAIN}Failed to load timestep. Exiting.\n");
+                let text = format!("{RED}Error in TwoDSceneSerialized: {RESET}Failed to load timestep. Exiting.\n");
                 self.write(text.as_bytes());
             }
             Some(Stop::Trace { cause: Unreadable::Impulses, .. }) => {
@@ -126,7 +127,7 @@ impl<'a, W: Write> Transcript<'a, W> {
 
     /// Prints the exit handler's lines if the trace could not be opened, in which case there is no banner.
     pub(crate) fn print_not_opened(&mut self) {
-        self.write(verdict::incomplete(&Residuals::default()).as_bytes());
+        self.write(verdict::describe_incomplete(&Residuals::default()).as_bytes());
     }
 
     /// Flushes and returns the stream.
@@ -142,7 +143,7 @@ impl<'a, W: Write> Transcript<'a, W> {
     }
 
     fn banner(&mut self) {
-        self.write(format!("{GREEN}{}{PLAIN}\n\n", BANNER.join("\n")).as_bytes());
+        self.write(format!("{GREEN}{}{RESET}\n\n", BANNER.join("\n")).as_bytes());
         let scene = self.heading.scene;
         self.print_entry("FOSSSim Version", scene.assignment().definition().version.as_bytes());
         self.print_entry("Build type", b"Release");
@@ -161,7 +162,7 @@ impl<'a, W: Write> Transcript<'a, W> {
             self.clock = Some(Clock { start: now, frame: now });
             self.write(b"T: 0\nFrame run time: 0s. Total run time: 0s. \n");
         }
-        self.write(format!("{PINK}Progress: {PLAIN}{}\n{}", "-".repeat(50), " ".repeat(10)).as_bytes());
+        self.write(format!("{PINK}Progress: {RESET}{}\n{}", "-".repeat(50), " ".repeat(10)).as_bytes());
     }
 
     /// Ends a step, and prints the time that it took if the original does.
@@ -178,13 +179,13 @@ impl<'a, W: Write> Transcript<'a, W> {
     /// there is no dot.
     fn print_dot(&mut self, steps_done: u32) {
         if f64::from(steps_done) / f64::from(self.steps) >= self.threshold {
-            self.threshold += DOT;
+            self.threshold += DOT_INTERVAL;
             self.write(b".");
         }
     }
 
     fn print_entry(&mut self, name: &str, value: &[u8]) {
-        self.write(format!("{BLUE}{name}: {PLAIN}").as_bytes());
+        self.write(format!("{BLUE}{name}: {RESET}").as_bytes());
         self.write(value);
         self.write(b"\n");
     }
@@ -194,7 +195,7 @@ impl<'a, W: Write> Transcript<'a, W> {
     }
 
     fn print_message_about(&mut self, before: &str, file: &[u8], after: &str) {
-        self.write(format!("{PINK}FOSSSim message: {PLAIN}{before}").as_bytes());
+        self.write(format!("{PINK}FOSSSim message: {RESET}{before}").as_bytes());
         self.write(file);
         self.write(after.as_bytes());
         self.write(b"\n");
@@ -340,8 +341,8 @@ mod tests {
             let text = after_heading(&scene, Task::Run, |transcript| {
                 transcript.observe_begin();
                 steps(transcript, 1..=count);
-                transcript.completes();
-                transcript.closes();
+                transcript.print_completion();
+                transcript.print_exit_line();
             });
             let line = text.lines().nth(1).unwrap();
             let shown = line.trim_start().bytes().take_while(|&byte| byte == b'.').count();
@@ -394,8 +395,8 @@ mod tests {
         scene.time_step = -0.01;
         let text = after_heading(&scene, Task::Record(b"o"), |transcript| {
             transcript.observe_begin();
-            transcript.completes();
-            transcript.closes();
+            transcript.print_completion();
+            transcript.print_exit_line();
         });
         assert!(text.ends_with(
             "Simulation complete at time -0. Exiting.\n\x1b[35;1mFOSSSim message: \x1b[mSaved simulation to file 'o'.\n"

@@ -5,14 +5,14 @@ const WIDTH: usize = 75;
 const TITLE: &str = "Forty One Sixty Seven Sim";
 
 /// Returns the output of `--version`.
-pub(crate) fn version(program: &[u8]) -> Vec<u8> {
+pub(crate) fn version_text(program: &[u8]) -> Vec<u8> {
     [b"\n", program, b"  version: none\n\n"].concat()
 }
 
 /// Returns the output of `--help`.
-pub(crate) fn help(program: &[u8]) -> Vec<u8> {
+pub(crate) fn help_text(program: &[u8]) -> Vec<u8> {
     let mut text = b"\nUSAGE: \n\n".to_vec();
-    text.extend(brief(program));
+    text.extend(brief_usage(program));
     text.extend(b"\n\nWhere: \n\n");
     let mut entry = |names: &str, help: &str| {
         text.extend(wrap(names.as_bytes(), 3, 3));
@@ -36,13 +36,13 @@ pub(crate) fn help(program: &[u8]) -> Vec<u8> {
 /// Returns the output of a parse error; `argument` is a space if the error does not belong to an argument.
 pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8> {
     let mut text = [b"PARSE ERROR: ", argument, b"\n             ", message, b"\n\nBrief USAGE: \n"].concat();
-    text.extend(brief(program));
+    text.extend(brief_usage(program));
     text.extend([b"\nFor complete USAGE and HELP type: \n   ", program, b" --help\n\n"].concat());
     text
 }
 
 /// Returns the flags in one wrapped paragraph.
-fn brief(program: &[u8]) -> Vec<u8> {
+fn brief_usage(program: &[u8]) -> Vec<u8> {
     let mut line = [program, b" "].concat();
     for flag in list_flags(program) {
         let entry = format!("-{} <{}>", flag.letter, kind(flag));
@@ -112,16 +112,17 @@ mod tests {
         let expected = "   ./FOSSSimOracle  [-m <string>] [-i <string>] [-o <string>] [-d\n\
             \x20                   <boolean>] [-g <boolean>] [-p <boolean>] -s <string>\n\
             \x20                   [--] [--version] [-h]\n";
-        assert_eq!(text(&brief(b"./FOSSSimOracle")), expected);
+        assert_eq!(text(&brief_usage(b"./FOSSSimOracle")), expected);
         assert!(
-            text(&brief(b"./FOSSSimOracleT1M2")).starts_with("   ./FOSSSimOracleT1M2  [-g <boolean>] [-m <string>]")
+            text(&brief_usage(b"./FOSSSimOracleT1M2"))
+                .starts_with("   ./FOSSSimOracleT1M2  [-g <boolean>] [-m <string>]")
         );
     }
 
     #[test]
     fn a_long_program_name_takes_half_the_width_at_most() {
         let program = b"/opt/course/with/a/long/path/to/the/program/FOSSSimOracleT2M2-linux-x86_64-release";
-        let usage = brief(program);
+        let usage = brief_usage(program);
         let mut lines = text(&usage).lines();
         assert_eq!(lines.next().unwrap().len(), WIDTH);
         for line in lines {
@@ -131,7 +132,7 @@ mod tests {
 
     #[test]
     fn help_names_every_flag_and_closes_with_the_title() {
-        let help = help(b"p");
+        let help = help_text(b"p");
         let help = text(&help);
         assert!(help.starts_with("\nUSAGE: \n\n   p  [-m <string>]"));
         assert!(help.contains("\n   -s <string>,  --scene <string>\n     (required)  XML scene file to simulate\n\n"));

@@ -1,11 +1,11 @@
 //! The original's closing text about residuals, and the text of `residual.txt` (oracle-behavior.md 6).
-use crate::words::{PINK, PLAIN};
+use crate::words::{PINK, RESET};
 use fosssim_judge::{Outcome, Overall, Residuals};
 use fosssim_model::assignments::Definition;
 use fosssim_num::printed::format_g;
 
 /// The original's names of the residuals, in its order.
-const NAMES: [&str; 4] = [
+const RESIDUAL_NAMES: [&str; 4] = [
     "Accumulated Position Residual",
     "Accumulated Velocity Residual",
     "Maximum Position Residual",
@@ -16,27 +16,27 @@ const NAMES: [&str; 4] = [
 /// `collisions` is the assignment's name for the verdict on collisions.
 pub(crate) fn lines(outcome: &Outcome, collisions: &str) -> String {
     if outcome.parity.overall == Overall::None {
-        return incomplete(&outcome.parity.residuals);
+        return describe_incomplete(&outcome.parity.residuals);
     }
     let mut text = String::new();
-    for (name, (value, bound)) in NAMES.into_iter().zip(outcome.parity.residuals.with_bounds()) {
+    for (name, (value, bound)) in RESIDUAL_NAMES.into_iter().zip(outcome.parity.residuals.with_bounds()) {
         text += &format!("{name}: {}   {}\n", format_g(value), describe_passed(value < bound));
     }
     let passed_collisions = if outcome.parity.collisions_passed == Some(true) { "Yes." } else { "No." };
     text += &format!("{collisions}: {passed_collisions}\n");
     text += &format!("Overall success: {}\n", describe_passed(outcome.parity.overall == Overall::Passed));
-    text += &format!("{PINK}FOSSSim message: {PLAIN}Saved residual to residual.txt.\n");
+    text += &format!("{PINK}FOSSSim message: {RESET}Saved residual to residual.txt.\n");
     text
 }
 
 /// Returns the lines of a run that ended early.
-pub(crate) fn incomplete(residuals: &Residuals) -> String {
+pub(crate) fn describe_incomplete(residuals: &Residuals) -> String {
     let mut text = String::new();
-    for (name, (value, _)) in NAMES.into_iter().zip(residuals.with_bounds()) {
+    for (name, (value, _)) in RESIDUAL_NAMES.into_iter().zip(residuals.with_bounds()) {
         text += &format!("{name}: {}\n", format_g(value));
     }
     text += &format!(
-        "{PINK}FOSSSim message: {PLAIN}Simulation did not run to completion. No pass/fail status will be reported.\n"
+        "{PINK}FOSSSim message: {RESET}Simulation did not run to completion. No pass/fail status will be reported.\n"
     );
     text
 }

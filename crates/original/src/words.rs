@@ -1,7 +1,7 @@
 //! The original's messages on standard error, and its colors, which are part of the text even in files and pipes.
 
 /// The escape sequence that ends every color.
-pub(crate) const PLAIN: &str = "\x1b[m";
+pub(crate) const RESET: &str = "\x1b[m";
 pub(crate) const RED: &str = "\x1b[31;1m";
 pub(crate) const GREEN: &str = "\x1b[32;1m";
 pub(crate) const BLUE: &str = "\x1b[34;1m";
@@ -10,7 +10,7 @@ pub(crate) const PINK: &str = "\x1b[35;1m";
 /// Returns the line on standard error for a file, the `input` or the `output`, that cannot be opened
 /// (oracle-behavior.md 2).
 pub(crate) fn not_opened(which: &str, name: &[u8]) -> Vec<u8> {
-    let start = format!("{RED}ERROR IN INITIALIZATION: {PLAIN}Failed to open binary {which} file:  `");
+    let start = format!("{RED}ERROR IN INITIALIZATION: {RESET}Failed to open binary {which} file:  `");
     [start.as_bytes(), name, b"`   Exiting.\n"].concat()
 }
 

@@ -17,7 +17,7 @@ impl Rgb {
 
     /// Returns a mixture of this color and `other`, with `share` of 8 parts of `other`.
     #[must_use]
-    pub fn towards(self, other: Self, share: u8) -> Self {
+    pub fn mix(self, other: Self, share: u8) -> Self {
         let part = |own: u8, other: u8| {
             let sum = u32::from(own) * u32::from(8 - share.min(8)) + u32::from(other) * u32::from(share.min(8));
             u8::try_from((sum + 4) / 8).unwrap_or(u8::MAX)
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn parts_of_the_way_begin_and_end_at_the_colors() {
         let (one, two) = (Rgb([0, 10, 255]), Rgb([255, 10, 0]));
-        assert_eq!((one.towards(two, 0), one.towards(two, 8), one.towards(two, 4)), (one, two, Rgb([128, 10, 128])));
+        assert_eq!((one.mix(two, 0), one.mix(two, 8), one.mix(two, 4)), (one, two, Rgb([128, 10, 128])));
         assert_eq!(Rgb::PARTICLE.hex(), "#a64b00");
     }
 }

@@ -6,7 +6,7 @@ use fosssim_judge::study::Study;
 /// time of impact. A different mathematically right approach polynomial is not shown, because the decision does not
 /// depend on it.
 #[must_use]
-pub fn picture(study: &Study, title: &str, embedding: PlotTarget) -> String {
+pub fn render_picture(study: &Study, title: &str, embedding: PlotTarget) -> String {
     let curves = study.curves.iter().map(|curve| PlottedPolynomial {
         name: curve.role.to_string(),
         coefficients: curve.logged.coefficients(),

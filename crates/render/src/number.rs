@@ -3,7 +3,7 @@
 /// Formats a number with at most six significant digits, without trailing zeros: `0.14`, `-1.5`, `1e-9`, `2.5e12`,
 /// `nan`.
 #[must_use]
-pub fn short(value: f64) -> String {
+pub fn format_short(value: f64) -> String {
     if !value.is_finite() {
         return if value.is_nan() { "nan".to_owned() } else { format!("{value}") };
     }
@@ -28,7 +28,7 @@ fn trim_zeros(text: &str) -> &str {
 
 /// Formats a coordinate in pixels, with at most two decimals, never `-0`.
 #[must_use]
-pub fn pixel(value: f64) -> String {
+pub fn format_pixel(value: f64) -> String {
     let text = format!("{value:.2}");
     let text = trim_zeros(&text);
     if text == "-0" { "0".to_owned() } else { text.to_owned() }
@@ -36,7 +36,7 @@ pub fn pixel(value: f64) -> String {
 
 /// Returns the decades from the one at or below `least` to the one at or above `most`, as powers of ten.
 #[must_use]
-pub fn decades(least: f64, most: f64) -> (i32, i32) {
+pub fn decade_range(least: f64, most: f64) -> (i32, i32) {
     #[expect(clippy::cast_possible_truncation, reason = "a logarithm of a finite double is below 400")]
     let power = |value: f64, round: fn(f64) -> f64| round(value.log10()).clamp(-400.0, 400.0) as i32;
     let low = power(least, f64::floor);
@@ -64,14 +64,17 @@ mod tests {
             (f64::NAN, "nan"),
             (f64::NEG_INFINITY, "-inf"),
         ] {
-            assert_eq!(short(value), text);
+            assert_eq!(format_short(value), text);
         }
-        assert_eq!((pixel(-0.001), pixel(12.345), pixel(3.0)), ("0".into(), "12.35".into(), "3".into()));
+        assert_eq!(
+            (format_pixel(-0.001), format_pixel(12.345), format_pixel(3.0)),
+            ("0".into(), "12.35".into(), "3".into())
+        );
     }
 
     #[test]
     fn decades_enclose() {
-        assert_eq!(decades(3e-12, 2e-3), (-12, -2));
-        assert_eq!(decades(1e-3, 1e-3), (-3, -2));
+        assert_eq!(decade_range(3e-12, 2e-3), (-12, -2));
+        assert_eq!(decade_range(1e-3, 1e-3), (-3, -2));
     }
 }

@@ -2,13 +2,13 @@
 use crate::{
     clip::ClipRectangle,
     color::Rgb,
-    number::short,
+    number::format_short,
     shape::{Paint, Point, Shape},
     size::Size,
     view::{Extent, View},
 };
 use fosssim_model::scene::{Color, Scene};
-use fosssim_num::vector::{Vec2, at};
+use fosssim_num::vector::{Vec2, vector_at};
 use std::collections::VecDeque;
 
 /// The minimum width of discs and lines, in pixels; otherwise they would be invisible.
@@ -140,7 +140,7 @@ impl Painter {
         }
         let (view, frame) = (self.view, self.frame(4.0));
         for trail in &mut self.trails {
-            trail.extend(time, at(positions, trail.particle));
+            trail.extend(time, vector_at(positions, trail.particle));
             trail.draw(&view, &frame, &mut shapes);
         }
         self.draw_bodies(positions, None, &mut shapes);
@@ -156,12 +156,12 @@ impl Painter {
     /// Draws edges and particles: in their own colors, or all of them as an overlay's thin outlines.
     fn draw_bodies(&self, positions: &[f64], overlay: Option<Paint>, shapes: &mut Vec<Shape>) {
         for &(ends, radius, color) in &self.edges {
-            let [first, second] = ends.map(|end| at(positions, end));
+            let [first, second] = ends.map(|end| vector_at(positions, end));
             let radius = if overlay.is_some() { 0.0 } else { radius };
-            self.edge(first, second, radius, overlay.unwrap_or(Paint::Solid(color)), shapes);
+            self.draw_edge(first, second, radius, overlay.unwrap_or(Paint::Solid(color)), shapes);
         }
         for (index, (&radius, &color)) in self.radii.iter().zip(&self.particles).enumerate() {
-            self.draw_disc(at(positions, index), radius, overlay.unwrap_or(Paint::Solid(color)), shapes);
+            self.draw_disc(vector_at(positions, index), radius, overlay.unwrap_or(Paint::Solid(color)), shapes);
         }
     }
 
@@ -205,7 +205,7 @@ impl Painter {
         shapes.push(Shape::Area { points, paint });
     }
 
-    fn edge(&self, first: Vec2, second: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
+    fn draw_edge(&self, first: Vec2, second: Vec2, radius: f64, paint: Paint, shapes: &mut Vec<Shape>) {
         let wide = 2.0 * self.view.length(radius);
         let width = if wide.is_nan() { MIN_WIDTH } else { wide.clamp(MIN_WIDTH, MAX_DISC_RADIUS) };
         let frame = self.frame(width);
@@ -243,7 +243,7 @@ impl Painter {
 
     fn write(&self, step: u32, time: f64, shapes: &mut Vec<Shape>) {
         let place = [8.0, f64::from(self.size().height()) - 8.0];
-        let text = format!("step {step}  t {}", short(time));
+        let text = format!("step {step}  t {}", format_short(time));
         shapes.push(Shape::Text { place, text, color: self.background.ink() });
     }
 }

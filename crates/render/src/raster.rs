@@ -9,7 +9,7 @@ use crate::{
 use tiny_skia::{FillRule, LineCap, LineJoin, PathBuilder, Pixmap, Rect, Stroke, StrokeDash, Transform};
 
 /// The width and height of a letter's dot, in pixels.
-const DOT: u32 = 2;
+const DOT_SIZE: u32 = 2;
 
 /// The lengths of dashes and gaps, in pixels.
 const DASH: [f32; 2] = [6.0, 4.0];
@@ -60,7 +60,7 @@ impl Raster {
 
     fn draw_disc(&mut self, [x, y]: Point, radius: f64, paint: Paint) {
         let mut builder = PathBuilder::new();
-        builder.push_circle(narrow(x), narrow(y), narrow(radius));
+        builder.push_circle(to_f32(x), to_f32(y), to_f32(radius));
         let Some(path) = builder.finish() else { return };
         if matches!(paint, Paint::Dashed(_)) {
             self.stroke(&path, 2.0, paint);
@@ -71,7 +71,7 @@ impl Raster {
 
     fn draw_line(&mut self, points: &[Point], width: f64, paint: Paint) {
         if let Some(path) = path(points, false) {
-            self.stroke(&path, narrow(width), paint);
+            self.stroke(&path, to_f32(width), paint);
         }
     }
 
@@ -95,17 +95,17 @@ impl Raster {
 
     fn draw_text(&mut self, [left, base]: Point, text: &str, color: Rgb) {
         let paint = ink(Paint::Solid(color));
-        let top = base - f64::from(DOT * font::HEIGHT);
+        let top = base - f64::from(DOT_SIZE * font::LETTER_HEIGHT);
         for (place, letter) in text.chars().enumerate() {
             let Some(rows) = font::rows(letter) else { continue };
             #[expect(clippy::cast_precision_loss, reason = "labels are short")]
-            let start = left + place as f64 * f64::from(DOT * font::ADVANCE);
+            let start = left + place as f64 * f64::from(DOT_SIZE * font::LETTER_WIDTH);
             for (row, bits) in (0_u32..).zip(rows) {
                 for column in (0..5_u32).filter(|column| bits & (0b10000 >> column) != 0) {
-                    let x = narrow(start + f64::from(DOT * column));
-                    let y = narrow(top + f64::from(DOT * row));
+                    let x = to_f32(start + f64::from(DOT_SIZE * column));
+                    let y = to_f32(top + f64::from(DOT_SIZE * row));
                     #[expect(clippy::cast_precision_loss, reason = "two pixels")]
-                    if let Some(dot) = Rect::from_xywh(x, y, DOT as f32, DOT as f32) {
+                    if let Some(dot) = Rect::from_xywh(x, y, DOT_SIZE as f32, DOT_SIZE as f32) {
                         self.pixels.fill_rect(dot, &paint, Transform::identity(), None);
                     }
                 }
@@ -116,16 +116,16 @@ impl Raster {
 
 /// Converts a coordinate for the drawing library; shapes are near the picture.
 #[expect(clippy::cast_possible_truncation, reason = "pixels need no more digits")]
-fn narrow(value: f64) -> f32 {
+fn to_f32(value: f64) -> f32 {
     value as f32
 }
 
 fn path(points: &[Point], closed: bool) -> Option<tiny_skia::Path> {
     let (&[x, y], rest) = points.split_first()?;
     let mut builder = PathBuilder::new();
-    builder.move_to(narrow(x), narrow(y));
+    builder.move_to(to_f32(x), to_f32(y));
     for &[x, y] in rest {
-        builder.line_to(narrow(x), narrow(y));
+        builder.line_to(to_f32(x), to_f32(y));
     }
     if closed {
         builder.close();

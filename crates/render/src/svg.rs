@@ -1,7 +1,7 @@
 //! Writes shapes as SVG: plain elements, fixed decimals, no scripts, no styles.
 use crate::{
     color::Rgb,
-    number::pixel,
+    number::format_pixel,
     shape::{Paint, Point, Shape},
     size::Size,
 };
@@ -9,7 +9,7 @@ use std::fmt::Write;
 
 /// Returns a picture as an SVG document; `title` is for screen readers.
 #[must_use]
-pub fn document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> String {
+pub fn render_document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> String {
     let (width, height) = (size.width(), size.height());
     let mut svg = format!(
         "<svg xmlns=\"http://www.w3.org/2000/svg\" width=\"{width}\" height=\"{height}\" viewBox=\"0 0 {width} \
@@ -51,7 +51,7 @@ fn write_element(shape: &Shape, svg: &mut String) {
     // Writing to a string never fails.
     let _ = match shape {
         Shape::Disc { center: [x, y], radius, paint } => {
-            let (x, y, radius) = (pixel(*x), pixel(*y), pixel(*radius));
+            let (x, y, radius) = (format_pixel(*x), format_pixel(*y), format_pixel(*radius));
             writeln!(svg, "<circle cx=\"{x}\" cy=\"{y}\" r=\"{radius}\" {}/>", area(*paint))
         }
         Shape::Line { points, width, paint } => {
@@ -63,16 +63,16 @@ fn write_element(shape: &Shape, svg: &mut String) {
                  stroke-linejoin=\"round\"{dash}/>",
                 list(points),
                 paint.color().hex(),
-                opacity("stroke", *paint),
-                pixel(*width)
+                render_opacity("stroke", *paint),
+                format_pixel(*width)
             )
         }
         Shape::Area { points, paint } => writeln!(svg, "<polygon points=\"{}\" {}/>", list(points), area(*paint)),
         Shape::Text { place: [x, y], text, color } => writeln!(
             svg,
             "<text x=\"{}\" y=\"{}\" fill=\"{}\" font-family=\"monospace\" font-size=\"14\">{}</text>",
-            pixel(*x),
-            pixel(*y),
+            format_pixel(*x),
+            format_pixel(*y),
             color.hex(),
             escape(text)
         ),
@@ -84,20 +84,20 @@ const DASH: &str = " stroke-dasharray=\"6 4\"";
 fn area(paint: Paint) -> String {
     match paint {
         Paint::Solid(color) => format!("fill=\"{}\"", color.hex()),
-        Paint::Faint(color, _) => format!("fill=\"{}\"{}", color.hex(), opacity("fill", paint)),
+        Paint::Faint(color, _) => format!("fill=\"{}\"{}", color.hex(), render_opacity("fill", paint)),
         Paint::Dashed(color) => format!("fill=\"none\" stroke=\"{}\" stroke-width=\"2\"{DASH}", color.hex()),
     }
 }
 
-fn opacity(what: &str, paint: Paint) -> String {
+fn render_opacity(what: &str, paint: Paint) -> String {
     match paint {
-        Paint::Faint(_, share) => format!(" {what}-opacity=\"{}\"", pixel(share)),
+        Paint::Faint(_, share) => format!(" {what}-opacity=\"{}\"", format_pixel(share)),
         Paint::Solid(_) | Paint::Dashed(_) => String::new(),
     }
 }
 
 fn list(points: &[Point]) -> String {
-    points.iter().map(|[x, y]| format!("{},{}", pixel(*x), pixel(*y))).collect::<Vec<_>>().join(" ")
+    points.iter().map(|[x, y]| format!("{},{}", format_pixel(*x), format_pixel(*y))).collect::<Vec<_>>().join(" ")
 }
 
 #[cfg(test)]
@@ -108,7 +108,7 @@ mod tests {
     fn hostile_text_stays_text() {
         let shapes = [Shape::Text { place: [0.0; 2], text: "</text><script>".into(), color: Rgb::BLACK }];
         let hostile = "<script>alert('x')</script>\u{0}\u{202e}\"&]]>";
-        let svg = document(Size::new(20, 20).unwrap(), Rgb::WHITE, hostile, &shapes);
+        let svg = render_document(Size::new(20, 20).unwrap(), Rgb::WHITE, hostile, &shapes);
         assert!(!svg.contains("<script") && !svg.contains(['\u{0}', '\u{202e}']), "{svg}");
         let mut reader = quick_xml::Reader::from_str(&svg);
         let mut elements = Vec::new();

@@ -2,7 +2,7 @@
 use crate::foreign::one_line;
 
 /// Returns one annotation: the level `error` or `warning`, its title and its text.
-pub(crate) fn annotation(level: &str, title: &str, words: &str) -> String {
+pub(crate) fn render_annotation(level: &str, title: &str, words: &str) -> String {
     join_annotation(level, title, [words])
 }
 

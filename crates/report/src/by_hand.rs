@@ -5,7 +5,7 @@ mod collisions;
 mod tests;
 
 use crate::{
-    number::short,
+    number::format_short,
     style::Style,
     table::{Align, Table},
 };
@@ -17,12 +17,12 @@ use fosssim_model::{
 };
 use fosssim_num::{
     linear,
-    vector::{Vec2, at, length},
+    vector::{Vec2, length, vector_at},
 };
 use std::collections::BTreeSet;
 
 /// Matrices with more rows are not printed.
-const MOST_ROWS: usize = 8;
+const MAX_ROWS: usize = 8;
 
 /// Renders a scene's first step, which has the number `step` in the original run: forces and integrator if there are
 /// forces, then passes and responses. If a pair is named, its detection is shown completely. `None` if the step has no
@@ -31,22 +31,22 @@ const MOST_ROWS: usize = 8;
 pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
     let mut walk = CollisionWalk::new(scene, pair);
     Simulation::new(scene, RootSearch::WhereNeeded).step(&mut walk).ok()?;
-    let parts: Vec<String> = [integration(scene, step), walk.finish()].into_iter().flatten().collect();
-    let before = (step > 1).then(|| format!("Before step {step}\n{}\n", states(&State::for_scene(scene))));
+    let parts: Vec<String> = [render_integration(scene, step), walk.finish()].into_iter().flatten().collect();
+    let before = (step > 1).then(|| format!("Before step {step}\n{}\n", render_states(&State::for_scene(scene))));
     Some(before.unwrap_or_default() + &parts.join("\n"))
 }
 
 /// Renders the velocity and the position of each particle.
-fn states(state: &State) -> String {
+fn render_states(state: &State) -> String {
     let rows = (0..state.positions.len() / 2).map(|particle| {
-        let [v, x] = [&state.velocities, &state.positions].map(|values| vector(at(values, particle)));
+        let [v, x] = [&state.velocities, &state.positions].map(|values| format_vector(vector_at(values, particle)));
         [particle.to_string(), v, x]
     });
-    table(["particle", "v", "x"], rows)
+    render_table(["particle", "v", "x"], rows)
 }
 
 /// Renders the forces at the beginning of a scene, and the integrator's step.
-fn integration(scene: &Scene, step: u32) -> Option<String> {
+fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     let has_handling = !matches!(scene.collision, Collision::None | Collision::Penalty { .. });
     let collision = match scene.collision {
         Collision::Hybrid { stiffness, thickness, .. } => {
@@ -78,14 +78,15 @@ fn integration(scene: &Scene, step: u32) -> Option<String> {
         parts.push(("together", &sum));
     }
     let rows = parts.iter().flat_map(|(name, gradient)| {
-        let row = |particle: usize| [(*name).to_owned(), particle.to_string(), vector(at(gradient, particle))];
+        let row =
+            |particle: usize| [(*name).to_owned(), particle.to_string(), format_vector(vector_at(gradient, particle))];
         particles.clone().map(row)
     });
     let mut text = format!("Forces at {at_which}\n");
-    text += &if parts.is_empty() { "  none\n".to_owned() } else { table(["", "particle", "gradient"], rows) };
+    text += &if parts.is_empty() { "  none\n".to_owned() } else { render_table(["", "particle", "gradient"], rows) };
     let formulas: BTreeSet<&str> = scene.forces.iter().map(formula).collect();
     text.extend(formulas.iter().map(|formula| format!("  {formula}\n")));
-    text.extend(penalty(scene, &place));
+    text.extend(render_penalty(scene, &place));
     let words = match scene.integrator {
         Integrator::ExplicitEuler => "x becomes x + h v, v becomes v + h a",
         Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler => "v becomes v + h a, then x becomes x + h v",
@@ -95,25 +96,26 @@ fn integration(scene: &Scene, step: u32) -> Option<String> {
              b = -M d - h gradient and A at x + h (v + d) and v + d; this is the first"
         }
     };
-    text += &format!("\nStep {step}, h = {}: {words}\n", short(h));
-    text.extend(systems.0.0.map(|matrix| system(scene, matrix, &sum)));
+    text += &format!("\nStep {step}, h = {}: {words}\n", format_short(h));
+    text.extend(systems.0.0.map(|matrix| render_system(scene, matrix, &sum)));
     let rows = particles.map(|particle| {
-        let [v, x] = [&end.velocities, &end.positions].map(|values| vector(at(values, particle)));
+        let [v, x] = [&end.velocities, &end.positions].map(|values| format_vector(vector_at(values, particle)));
         let body = &scene.particles[particle];
-        let a = if body.fixed { Vec2::zeros() } else { (-1.0 / body.mass) * at(&sum, particle) };
-        [particle.to_string(), v, x, if is_implicit { String::new() } else { vector(a) }]
+        let a = if body.fixed { Vec2::zeros() } else { (-1.0 / body.mass) * vector_at(&sum, particle) };
+        [particle.to_string(), v, x, if is_implicit { String::new() } else { format_vector(a) }]
     });
     let a = if is_implicit { "" } else { "with a = -gradient / m" };
-    Some(text + &table(["particle", "v", "x", a], rows))
+    Some(text + &render_table(["particle", "v", "x", a], rows))
 }
 
 /// Renders the first system that an implicit integrator solves, and its solution.
-fn system(scene: &Scene, mut matrix: Vec<f64>, gradient: &[f64]) -> String {
+fn render_system(scene: &Scene, mut matrix: Vec<f64>, gradient: &[f64]) -> String {
     let (size, mut text) = (gradient.len(), "  A d = b with A = M + h Hv + h^2 Hx and b = -h gradient\n".to_owned());
-    if size <= MOST_ROWS {
-        let width = matrix.iter().map(|entry| short(*entry).len()).max().unwrap_or_default();
+    if size <= MAX_ROWS {
+        let width = matrix.iter().map(|entry| format_short(*entry).len()).max().unwrap_or_default();
         for row in 0..size {
-            let entries = matrix.iter().skip(row).step_by(size).map(|entry| format!("  {:>width$}", short(*entry)));
+            let entries =
+                matrix.iter().skip(row).step_by(size).map(|entry| format!("  {:>width$}", format_short(*entry)));
             text += &format!("  {}\n", entries.collect::<String>());
         }
     }
@@ -122,21 +124,22 @@ fn system(scene: &Scene, mut matrix: Vec<f64>, gradient: &[f64]) -> String {
     let b: Vec<f64> = b.collect();
     let mut d = b.clone();
     linear::solve(&mut matrix, &mut d, &mut linear::Workspace::default());
-    let rows = (0..size / 2).map(|index| [index.to_string(), vector(at(&b, index)), vector(at(&d, index))]);
-    text + &table(["particle", "b", "d"], rows)
+    let rows = (0..size / 2)
+        .map(|index| [index.to_string(), format_vector(vector_at(&b, index)), format_vector(vector_at(&d, index))]);
+    text + &render_table(["particle", "b", "d"], rows)
 }
 
 /// The system matrix of the first solve of a step, column by column.
 struct FirstSystem(Option<Vec<f64>>);
 
 impl Steer for FirstSystem {
-    fn system(&mut self, matrix: &mut [f64]) {
+    fn observe_system(&mut self, matrix: &mut [f64]) {
         self.0.get_or_insert_with(|| matrix.to_vec());
     }
 }
 
 /// Renders the penalty force between each pair, if there is one.
-fn penalty(scene: &Scene, x: &[f64]) -> Option<String> {
+fn render_penalty(scene: &Scene, x: &[f64]) -> Option<String> {
     let Collision::Penalty { stiffness, thickness, .. } = scene.collision else { return None };
     let mut rows = Vec::new();
     PenaltyTerms::for_scene(scene)?.visit(x, |pair, terms| {
@@ -147,14 +150,14 @@ fn penalty(scene: &Scene, x: &[f64]) -> Option<String> {
             PairKind::ParticleHalfPlane => 0.0,
         };
         let (reach, force) = (scene.particles[first].radius + other + thickness, length(terms[0].1));
-        let [distance, reach, force] = [reach - force / stiffness, reach, -force].map(short);
-        let added = terms.iter().map(|(particle, force)| format!("{particle}: {}", vector(-1.0 * force)));
+        let [distance, reach, force] = [reach - force / stiffness, reach, -force].map(format_short);
+        let added = terms.iter().map(|(particle, force)| format!("{particle}: {}", format_vector(-1.0 * force)));
         rows.push([PairWords(pair).to_string(), distance, reach, force, added.collect::<Vec<_>>().join(", ")]);
     });
     let rule = "n is from the first particle to the other object; -k (|n| - r) n / |n| is added for the first, and the \
                 opposite for the other; an edge's ends share it by 1 - alpha and alpha";
     let heading = ["penalty", "|n|", "r = radii and thickness", "k (|n| - r)", "added"];
-    (!rows.is_empty()).then(|| format!("{}  {rule}\n", table(heading, rows)))
+    (!rows.is_empty()).then(|| format!("{}  {rule}\n", render_table(heading, rows)))
 }
 
 /// Returns what a force adds to the gradient.
@@ -176,13 +179,16 @@ const fn formula(force: &Force) -> &'static str {
 }
 
 /// Renders rows below a heading.
-fn table<const COLUMNS: usize>(heading: [&str; COLUMNS], rows: impl IntoIterator<Item = [String; COLUMNS]>) -> String {
+fn render_table<const COLUMNS: usize>(
+    heading: [&str; COLUMNS],
+    rows: impl IntoIterator<Item = [String; COLUMNS]>,
+) -> String {
     let mut table = Table::new([Align::Left; COLUMNS]);
     table.heading(heading);
     rows.into_iter().for_each(|row| table.row(row.map(Into::into)));
     table.render(Style::Plain)
 }
 
-fn vector(value: Vec2) -> String {
-    format!("({}, {})", short(value.x), short(value.y))
+fn format_vector(value: Vec2) -> String {
+    format!("({}, {})", format_short(value.x), format_short(value.y))
 }

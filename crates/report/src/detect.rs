@@ -5,15 +5,15 @@ mod overlap;
 pub use overlap::Overlap;
 
 use super::{
-    number::{exact, format_tidy},
+    number::{format_exact, format_tidy},
     style::{Look, Style},
     table::{Align, Cell, Table},
-    view::{Number, document, numbers, view},
+    view::{Number, numbers, to_document, view},
 };
 use fosssim_evidence::CallLog;
 use fosssim_findings::Role;
 use fosssim_judge::{
-    PairWords, PassWords, differing, factor,
+    PairWords, PassWords, differing_powers, find_factor,
     study::{Answer, Curve, Study},
 };
 use fosssim_model::sim::{Decision, Pair, PairKind, PairMotion, Pass, PointMotion};
@@ -101,7 +101,7 @@ impl Detect<'_> {
                 }
             };
         }
-        text + &motion(&study.motion, exact, style) + &self.computation(exact, style)
+        text + &render_motion(&study.motion, format_exact, style) + &self.computation(format_exact, style)
     }
 
     /// Renders the reference's and the trace's polynomials and the decision; `number` formats numbers.
@@ -136,7 +136,7 @@ impl Detect<'_> {
                                 "  {}: {}\n    {}\n",
                                 curve.role,
                                 style.paint(Look::Good, mark),
-                                polynomial(own, exact)
+                                format_polynomial(own, format_exact)
                             )
                         } else {
                             compare_polynomials(&curve.role.to_string(), expected, own, style)
@@ -185,7 +185,7 @@ impl Detect<'_> {
                 .map(|right| RightApproachView { polynomial: (&right.curve).into(), answer: (&right.answer).into() }),
             overlap: None,
         };
-        document(&view)
+        to_document(&view)
     }
 }
 
@@ -202,16 +202,16 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
     if own.is_empty() && !expected.is_empty() {
         return format!("  {role}: {}\n", style.paint(Look::Bad, "missing"));
     }
-    let factor = factor(expected, own);
-    let wrong = differing(expected, own, factor);
+    let factor = find_factor(expected, own);
+    let wrong = differing_powers(expected, own, factor);
     let same = expected == own;
     let (look, mark) = match wrong.is_empty() {
         true if same => (Look::Good, "the same".to_owned()),
         true if factor == 1.0 => (Look::Good, "the same except for rounding".to_owned()),
-        true => (Look::Good, format!("the same except for the factor {}, which is right", exact(factor))),
+        true => (Look::Good, format!("the same except for the factor {}, which is right", format_exact(factor))),
         false => (Look::Bad, "differs".to_owned()),
     };
-    let mut text = format!("  {role}: {}\n    {}\n", style.paint(look, &mark), polynomial(own, exact));
+    let mut text = format!("  {role}: {}\n    {}\n", style.paint(look, &mark), format_polynomial(own, format_exact));
     if wrong.is_empty() {
         return text;
     }
@@ -219,7 +219,9 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
     table.heading(["", "expected", "logged", ""]);
     for power in (0..expected.len().max(own.len())).rev() {
         let at = |list: &[f64], factor: f64| {
-            list.len().checked_sub(power + 1).map_or_else(|| "none".to_owned(), |place| exact(list[place] * factor))
+            list.len()
+                .checked_sub(power + 1)
+                .map_or_else(|| "none".to_owned(), |place| format_exact(list[place] * factor))
         };
         let mark = if wrong.contains(&power) { Cell::with_look(Look::Bad, "<- differs") } else { "".into() };
         table.row([format!("t^{power}").into(), at(expected, factor).into(), at(own, 1.0).into(), mark]);
@@ -228,7 +230,7 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
     if factor != 1.0 {
         text += &format!(
             "    expected values are multiplied by the trace's factor {}; any positive factor is right\n",
-            exact(factor)
+            format_exact(factor)
         );
     }
     text
@@ -248,7 +250,7 @@ fn compare_approach(course: &Answer, right: &Answer, number: ShownNumber) -> Str
 }
 
 /// Returns the objects and their motion.
-pub(crate) fn motion(motion: &PairMotion, number: ShownNumber, style: Style) -> String {
+pub(crate) fn render_motion(motion: &PairMotion, number: ShownNumber, style: Style) -> String {
     let vector = |x: f64, y: f64| format!("({}, {})", number(x), number(y));
     let mut table = Table::new([Align::Left, Align::Left, Align::Left, Align::Left]);
     table.heading(["", "start", "displacement", "radius"]);
@@ -278,11 +280,12 @@ pub(crate) fn motion(motion: &PairMotion, number: ShownNumber, style: Style) -> 
 
 /// Returns a polynomial with its zeros and the intervals in which it is positive.
 fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style) -> String {
-    let mut text = format!("  {name}\n    {}\n", polynomial(curve.logged.coefficients(), number));
+    let mut text = format!("  {name}\n    {}\n", format_polynomial(curve.logged.coefficients(), number));
     let all = curve.untrimmed.coefficients();
     let dropped = &all[..all.len() - curve.logged.coefficients().len()];
     if dropped.iter().any(|&coefficient| coefficient != 0.0) {
-        let words = format!("logged without leading coefficients below 1e-12; with them: {}", polynomial(all, number));
+        let words =
+            format!("logged without leading coefficients below 1e-12; with them: {}", format_polynomial(all, number));
         text += &format!("    {}\n", style.paint(Look::Faint, &words));
     }
     let real = curve.real_zeros();
@@ -315,7 +318,7 @@ fn format_intervals(list: &[Interval], number: ShownNumber) -> String {
 
 /// Returns a polynomial as text, such as `-0.25 t^2 + t - 0.1875`; an empty list is the zero polynomial. A zero
 /// coefficient is written only if it is the leading one, which a log should not have.
-pub(crate) fn polynomial(coefficients: &[f64], number: ShownNumber) -> String {
+pub(crate) fn format_polynomial(coefficients: &[f64], number: ShownNumber) -> String {
     if coefficients.is_empty() {
         return "0 (no coefficient)".to_owned();
     }
@@ -498,21 +501,21 @@ mod tests {
 
     #[test]
     fn polynomials_are_written_as_in_books() {
-        assert_eq!(polynomial(&[-0.25, 0.5, -0.1875], exact), "-0.25 t^2 + 0.5 t - 0.1875");
-        assert_eq!(polynomial(&[1.0, 0.0, -1.0, 0.0], exact), "t^3 - t");
-        assert_eq!(polynomial(&[-1.0, 1.0], exact), "-t + 1");
-        assert_eq!(polynomial(&[0.0, 2.0, 0.0], exact), "0 t^2 + 2 t");
-        assert_eq!(polynomial(&[f64::NAN, -0.0], exact), "nan t");
-        assert_eq!(polynomial(&[], exact), "0 (no coefficient)");
+        assert_eq!(format_polynomial(&[-0.25, 0.5, -0.1875], format_exact), "-0.25 t^2 + 0.5 t - 0.1875");
+        assert_eq!(format_polynomial(&[1.0, 0.0, -1.0, 0.0], format_exact), "t^3 - t");
+        assert_eq!(format_polynomial(&[-1.0, 1.0], format_exact), "-t + 1");
+        assert_eq!(format_polynomial(&[0.0, 2.0, 0.0], format_exact), "0 t^2 + 2 t");
+        assert_eq!(format_polynomial(&[f64::NAN, -0.0], format_exact), "nan t");
+        assert_eq!(format_polynomial(&[], format_exact), "0 (no coefficient)");
     }
 
     #[test]
     fn sets_of_times_are_written_as_in_books() {
         let set = |lo, hi| Interval { lo, hi };
-        assert_eq!(format_intervals(&[], exact), "nowhere");
-        assert_eq!(format_intervals(&[Interval::EVERYTHING], exact), "always");
+        assert_eq!(format_intervals(&[], format_exact), "nowhere");
+        assert_eq!(format_intervals(&[Interval::EVERYTHING], format_exact), "always");
         assert_eq!(
-            format_intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)], exact),
+            format_intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)], format_exact),
             "(-inf, 0.25) and at 0.5 (intervals touch)"
         );
     }

@@ -5,7 +5,7 @@ use super::{
     number::format_count,
     smallest::{self, SmallestView},
     style::{Look, Style},
-    view::{FindingView, document, view},
+    view::{FindingView, to_document, view},
     words::{describe_first, describe_located},
 };
 use crate::foreign::one_line;
@@ -93,7 +93,7 @@ impl Diagnosis {
     /// Renders the report for programs.
     #[must_use]
     pub fn json(&self) -> String {
-        document(&DiagnosisView::from(self))
+        to_document(&DiagnosisView::from(self))
     }
 }
 

@@ -3,11 +3,11 @@
 //! These show everything in an explanation; `mistakes::together::told` removes the parts that the reader may not see.
 //! Data of a submission appear only as numbers.
 use super::{
-    detect::polynomial,
-    number::{exact, format_count, format_tidy},
+    detect::format_polynomial,
+    number::{format_count, format_exact, format_tidy},
     style::Style,
-    view::{key, view},
-    words::explanation::{details, known_sentence, place, what},
+    view::{to_key, view},
+    words::explanation::{describe, describe_place, known_sentence, list_details},
 };
 use fosssim_mistakes::diagnose::{About, Example, ExamplePlace, ExampleValue, Explanation};
 
@@ -23,18 +23,18 @@ pub fn lines(explanations: &[Explanation], style: Style) -> Vec<String> {
 /// Returns the sentence about the likeliest mistake, or about several mistakes that together explain everything, for
 /// formats with one line.
 #[must_use]
-pub fn sentence(explanations: &[Explanation]) -> Option<String> {
+pub fn render_sentence(explanations: &[Explanation]) -> Option<String> {
     if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
-        return Some(what(first));
+        return Some(describe(first));
     }
     let together: Vec<String> =
-        explanations.iter().filter(|one| one.is_complete() && one.about == About::Mistake).map(what).collect();
+        explanations.iter().filter(|one| one.is_complete() && one.about == About::Mistake).map(describe).collect();
     if together.len() > 1 {
         return Some(format!("likely mistakes: {}", together.join(" ")));
     }
     explanations.first().map(|explanation| match explanation.reproduced {
-        0 => what(explanation),
-        _ => format!("likely mistake: {}", what(explanation)),
+        0 => describe(explanation),
+        _ => format!("likely mistake: {}", describe(explanation)),
     })
 }
 
@@ -64,12 +64,12 @@ impl ExplanationParts {
             (About::Mistake, _) => (true, Some(describe_evidence(*reproduced, *samples))),
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials"))),
         };
-        let mut details: Vec<String> = details(explanation).iter().map(|line| style.set(line)).collect();
+        let mut details: Vec<String> = list_details(explanation).iter().map(|line| style.set(line)).collect();
         if !explanation.is_unfinished() {
             details.extend(describe_others(&explanation.same_as));
         }
         let example = explanation.example.as_ref().map(|example| example_lines(example, style)).unwrap_or_default();
-        Self { is_likely, what: what(explanation), evidence, details, example }
+        Self { is_likely, what: describe(explanation), evidence, details, example }
     }
 }
 
@@ -117,8 +117,8 @@ fn list_sentences(sentences: &[String]) -> String {
 fn example_lines(example: &Example, style: Style) -> Vec<String> {
     let given = example.given.iter();
     let given: Vec<String> =
-        given.map(|given| format!("{} = {}", style.set(&key(&given.input)), format_vector(&given.value))).collect();
-    let mut lines = vec![format!("example: step {}, {}", example.step, place(&example.place))];
+        given.map(|given| format!("{} = {}", style.set(&to_key(&given.input)), format_vector(&given.value))).collect();
+    let mut lines = vec![format!("example: step {}, {}", example.step, describe_place(&example.place))];
     if !given.is_empty() {
         lines.push(format!("  given     {}", given.join(", ")));
     }
@@ -127,13 +127,13 @@ fn example_lines(example: &Example, style: Style) -> Vec<String> {
         ExamplePlace::Given { .. } | ExamplePlace::Polynomial { .. } | ExamplePlace::NumberedPolynomial(_)
     );
     let [expected, actual] = [&example.expected, &example.actual]
-        .map(|values| if is_polynomial { polynomial(values, exact) } else { format_list(values) });
+        .map(|values| if is_polynomial { format_polynomial(values, format_exact) } else { format_list(values) });
     lines.extend([format!("  expected  {expected}"), format!("  actual    {actual}")]);
     lines
 }
 
 fn format_vector(values: &[f64]) -> String {
-    let number = |value: &f64| format_tidy(*value, exact);
+    let number = |value: &f64| format_tidy(*value, format_exact);
     match values {
         [value] => number(value),
         values => format!("({})", values.iter().map(number).collect::<Vec<_>>().join(", ")),
@@ -144,7 +144,7 @@ fn format_list(values: &[f64]) -> String {
     if values.is_empty() {
         return "nothing".to_owned();
     }
-    values.iter().map(|value| exact(*value)).collect::<Vec<_>>().join(", ")
+    values.iter().map(|value| format_exact(*value)).collect::<Vec<_>>().join(", ")
 }
 
 view! {
@@ -154,9 +154,9 @@ view! {
         /// A stable key for machines.
         pub key: String = explanation.key.clone(),
         /// The mistake as a sentence.
-        pub text: String = what(explanation),
+        pub text: String = describe(explanation),
         /// The exact form, one line each.
-        pub details: Vec<String> = details(explanation),
+        pub details: Vec<String> = list_details(explanation),
         /// The number of `samples` that the mistake reproduces.
         pub reproduced: u64 = explanation.reproduced,
         /// The number of polynomials or steps that were checked.
@@ -175,7 +175,7 @@ view! {
         /// The step, from 1.
         pub step: u32 = example.step,
         /// The place in the step, as text.
-        pub place: String = place(&example.place),
+        pub place: String = describe_place(&example.place),
         /// The inputs of the computation.
         pub given: Vec<ExampleValue> = example.given.clone(),
         /// The expected result.
@@ -259,21 +259,21 @@ pub(crate) mod tests {
         No simple mistake explains the polynomial: particle-edge overlap. (9 checked)
         ");
         assert_eq!(
-            sentence(&explanations()).as_deref(),
+            render_sentence(&explanations()).as_deref(),
             Some("likely mistake: Particle-edge: The sum of the radii is not squared.")
         );
         assert_eq!(
-            sentence(&explanations()[1..]).as_deref(),
+            render_sentence(&explanations()[1..]).as_deref(),
             Some("No simple mistake explains the polynomial: particle-edge overlap.")
         );
-        assert_eq!((lines(&[], Style::Plain), sentence(&[])), (Vec::new(), None));
+        assert_eq!((lines(&[], Style::Plain), render_sentence(&[])), (Vec::new(), None));
         let known = |key: &str| {
             let key = key.to_owned();
             Explanation { key, reproduced: 5, samples: 5, ..explanations().swap_remove(0) }
         };
         let sentences = ["pp-no-two", "response-sign"].map(|key| find(key).expect("a row").sentence());
         assert_eq!(
-            sentence(&["pp-no-two", "response-sign"].map(known)),
+            render_sentence(&["pp-no-two", "response-sign"].map(known)),
             Some(format!("likely mistakes: {}", sentences.join(" ")))
         );
     }
@@ -289,10 +289,10 @@ pub(crate) mod tests {
         let mut one = explanations().swap_remove(0);
         let other = Detail::Polynomial(PolynomialDetail::Alternative(weights(one.clone())));
         one.details.push(other);
-        assert!(details(&one)[1].starts_with("Cannot be distinguished"));
+        assert!(list_details(&one)[1].starts_with("Cannot be distinguished"));
         one.details.insert(0, Detail::Term("pe-radius-not-squared".into()));
         let row = find("pe-radius-not-squared").expect("a row");
-        assert_eq!(details(&one), [row.term, "t^2: i R^2 has weight 0, expected 1 (i = d32.d32)"]);
+        assert_eq!(list_details(&one), [row.term, "t^2: i R^2 has weight 0, expected 1 (i = d32.d32)"]);
     }
 
     #[test]
@@ -319,10 +319,11 @@ pub(crate) mod tests {
         let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;
         let mut told = 0;
         for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong) {
-            let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+            let trace =
+                student::record_trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
             for one in cut(Hints::What, explain(&scene, &trace)) {
                 let others = one.same_as.iter().map(|key| find(key).expect("a known mistake").sentence());
-                for sentence in others.chain([what(&one)]) {
+                for sentence in others.chain([describe(&one)]) {
                     assert_eq!(formula_in(&sentence), None, "{}: {one:?}", row.id);
                 }
                 assert!(one.details.is_empty() && one.example.is_none(), "{one:?}");

@@ -64,14 +64,16 @@ formats! {
     Prairielearn "prairielearn" false |grades, _| render_first(grades, prairielearn::render);
     /// A Markdown summary, for GitHub's job summary.
     Github "github" true
-        |grades, passed_over| github::annotations(grades) + &github::passed_over(class_entries(grades, passed_over));
+        |grades, passed_over| {
+            github::render_annotations(grades) + &github::passed_over(class_entries(grades, passed_over))
+        };
     /// A table for spreadsheets with one row per scene.
     Markdown "markdown" true
         |grades, passed_over| {
-            github::summary(grades) + &github::list_of_passed_over(class_entries(grades, passed_over))
+            github::render_summary(grades) + &github::list_of_passed_over(class_entries(grades, passed_over))
         };
     /// One row per scene, for spreadsheets.
-    Csv "csv" true csv_table::scenes;
+    Csv "csv" true csv_table::render_scenes;
     /// A self-contained page ([`page::GradePage`](crate::page::GradePage)); without cards, because cards are stored on
     /// disk.
     Html "html" false

@@ -6,12 +6,12 @@ pub use fosssim_num::printed::format_g;
 
 /// Returns the shortest text that reads back as the same number, without the sign of a zero.
 #[must_use]
-pub fn exact(value: f64) -> String {
-    fosssim_num::printed::exact(value + 0.0)
+pub fn format_exact(value: f64) -> String {
+    fosssim_num::printed::format_exact(value + 0.0)
 }
 
 /// Returns a short fraction such as `1/3`, if the number equals one up to a few roundings and has many digits.
-fn fraction(value: f64) -> Option<String> {
+fn format_fraction(value: f64) -> Option<String> {
     let is_near = |denominator: &f64| {
         let (scaled, whole) = (value * denominator, (value * denominator).round());
         (1.0..1000.0).contains(&whole.abs()) && (scaled - whole).abs() <= 4.0 * f64::EPSILON * whole.abs()
@@ -24,7 +24,7 @@ fn fraction(value: f64) -> Option<String> {
 const ZERO_BOUND: f64 = 1e-13;
 
 /// Formats a number as in a calculation by hand: short decimals, a short fraction, or six digits.
-pub(crate) fn short(value: f64) -> String {
+pub(crate) fn format_short(value: f64) -> String {
     format_tidy(if value.abs() < ZERO_BOUND { 0.0 } else { value }, format_g)
 }
 
@@ -33,7 +33,7 @@ pub(crate) fn short(value: f64) -> String {
 pub(crate) fn format_tidy(value: f64, other: fn(f64) -> String) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     let is_near = value.abs() < 1e9 && (rounded - value).abs() <= ZERO_BOUND * value.abs();
-    if is_near { exact(rounded) } else { fraction(value).unwrap_or_else(|| other(value)) }
+    if is_near { format_exact(rounded) } else { format_fraction(value).unwrap_or_else(|| other(value)) }
 }
 
 /// Returns a count with separated thousands, such as `1 234 567`; four digits stay together.
@@ -124,7 +124,8 @@ mod tests {
 
     #[test]
     fn fractions_are_short_and_near() {
-        let texts = [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(|value| format_tidy(value, exact));
+        let texts =
+            [1.0 / 3.0, -7.0 / 11.0, 0.1 + 0.2, 0.25, 0.333_333_3].map(|value| format_tidy(value, format_exact));
         assert_eq!(texts, ["1/3", "-7/11", "0.3", "0.25", "0.3333333"]);
     }
 

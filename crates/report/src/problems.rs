@@ -12,12 +12,12 @@ const MAX_SHOWN_BYTES: usize = 4 * MAX_SHOWN_CHARS + 8;
 ///
 /// `name` is the scene's name in messages, `source` its bytes.
 #[must_use]
-pub fn errors(name: &str, source: &[u8], refused: &Problems) -> String {
+pub fn render_errors(name: &str, source: &[u8], refused: &Problems) -> String {
     let count = refused.list.iter().filter(|problem| problem.severity == Severity::Error).count();
     let plural = if count == 1 { "error" } else { "errors" };
     let mut text = format!("the scene {name} has {count} {plural}\n");
     for problem in &refused.list {
-        text += &format!("\n{}", block(name, source, problem));
+        text += &format!("\n{}", render_problem(name, source, problem));
     }
     if refused.omitted > 0 {
         text += &format!("\nand {} more\n", refused.omitted);
@@ -27,8 +27,8 @@ pub fn errors(name: &str, source: &[u8], refused: &Problems) -> String {
 
 /// Returns the warnings about an accepted scene; empty if there are none.
 #[must_use]
-pub fn warnings(name: &str, source: &[u8], list: &[Problem]) -> String {
-    list.iter().map(|problem| block(name, source, problem) + "\n").collect()
+pub fn render_warnings(name: &str, source: &[u8], list: &[Problem]) -> String {
+    list.iter().map(|problem| render_problem(name, source, problem) + "\n").collect()
 }
 
 /// Renders one problem:
@@ -38,7 +38,7 @@ pub fn warnings(name: &str, source: &[u8], list: &[Problem]) -> String {
 ///   3 | <particle m="x"/>
 ///     |              ^ a number such as 0.5
 /// ```
-fn block(name: &str, source: &[u8], problem: &Problem) -> String {
+fn render_problem(name: &str, source: &[u8], problem: &Problem) -> String {
     let Problem { line, column, span, message, help, .. } = problem;
     let warning = if problem.severity == Severity::Warning { "warning: " } else { "" };
     let mut text = format!("{name}:{line}:{column}: {warning}{message}\n");
@@ -114,14 +114,14 @@ mod tests {
     #[test]
     fn carets_stand_under_the_place_in_characters() {
         let source = "<a>\n\t<ü b=\"x\"/>\r\n</a>";
-        let text = block("s.xml", source.as_bytes(), &problem(source, "x", 2, 8));
+        let text = render_problem("s.xml", source.as_bytes(), &problem(source, "x", 2, 8));
         assert_eq!(text, "s.xml:2:8: it is wrong\n  2 |  <ü b=\"x\"/>\n    |        ^ do better\n");
     }
 
     #[test]
     fn long_lines_are_cut_around_the_place() {
         let source = format!("{}HERE{}", "a".repeat(500), "b".repeat(500));
-        let text = block("s", source.as_bytes(), &problem(&source, "HERE", 1, 501));
+        let text = render_problem("s", source.as_bytes(), &problem(&source, "HERE", 1, 501));
         let lines: Vec<_> = text.lines().collect();
         assert!(lines[1].len() < MAX_SHOWN_CHARS + 15, "{text}");
         assert_eq!(lines[1].find("HERE"), lines[2].find("^^^^"), "{text}");
@@ -131,24 +131,27 @@ mod tests {
     fn a_very_long_line_is_cut_like_a_long_one() {
         let around = |count: usize| {
             let source = format!("{}HERE{}", "\u{1f600}".repeat(count), "\u{1f600}".repeat(count));
-            block("s", source.as_bytes(), &problem(&source, "HERE", 1, 9))
+            render_problem("s", source.as_bytes(), &problem(&source, "HERE", 1, 9))
         };
         assert!(around(200).contains("...") && around(200).lines().nth(1).unwrap().ends_with("..."));
         assert_eq!(around(100_001), around(200));
         let marked = "x".repeat(100_000);
-        assert_eq!(block("s", marked.as_bytes(), &problem(&marked, &marked, 1, 1)).lines().nth(1).unwrap().len(), 109);
+        assert_eq!(
+            render_problem("s", marked.as_bytes(), &problem(&marked, &marked, 1, 1)).lines().nth(1).unwrap().len(),
+            109
+        );
     }
 
     #[test]
     fn an_empty_source_has_no_line_to_show() {
         let mut empty = problem("x", "x", 1, 1);
         empty.span = 0..0;
-        assert_eq!(block("s", b"", &empty), "s:1:1: it is wrong\n    = do better\n");
+        assert_eq!(render_problem("s", b"", &empty), "s:1:1: it is wrong\n    = do better\n");
     }
 
     #[test]
     fn control_characters_do_not_reach_the_terminal() {
         let source = "a\u{1b}[31mb";
-        assert!(!block("s", source.as_bytes(), &problem(source, "b", 1, 7)).contains('\u{1b}'));
+        assert!(!render_problem("s", source.as_bytes(), &problem(source, "b", 1, 7)).contains('\u{1b}'));
     }
 }

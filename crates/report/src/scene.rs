@@ -10,9 +10,9 @@ use fosssim_model::scene::Scene;
 /// Returns one line per scene: its name with `asset:`, its size, and the first sentence of its description.
 #[must_use]
 pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
-    let width = scenes.iter().map(|(name, _)| wrap::columns(name)).max().unwrap_or(0);
+    let width = scenes.iter().map(|(name, _)| wrap::count_columns(name)).max().unwrap_or(0);
     let line = |(name, scene): &(&str, Scene)| {
-        let blanks = " ".repeat(width - wrap::columns(name));
+        let blanks = " ".repeat(width - wrap::count_columns(name));
         let size = style.paint(Look::Faint, &format!("({})", describe_size(scene)));
         let words = scene.description.as_deref().map(|text| one_line(first_sentence(text)) + " ").unwrap_or_default();
         format!("asset:{name}{blanks}  {words}{size}\n")

@@ -1,7 +1,7 @@
 //! Text in aligned columns.
 use super::{
     style::{Look, Style},
-    wrap::columns,
+    wrap::count_columns,
 };
 
 /// A cell: its text and its style.
@@ -61,14 +61,15 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
     /// of lines.
     #[must_use]
     pub fn render(&self, style: Style) -> String {
-        let width = |column: usize| self.rows.iter().map(|row| columns(&row[column].text)).max().unwrap_or_default();
+        let width =
+            |column: usize| self.rows.iter().map(|row| count_columns(&row[column].text)).max().unwrap_or_default();
         let widths: [usize; COLUMNS] = std::array::from_fn(width);
         let mut text = String::new();
         for row in &self.rows {
             let mut line = String::from(" ");
             let mut gap = 1;
             for ((cell, align), width) in row.iter().zip(self.columns).zip(widths) {
-                let blanks = width - columns(&cell.text);
+                let blanks = width - count_columns(&cell.text);
                 let (before, after) = if align == Align::Right { (blanks, 0) } else { (0, blanks) };
                 if !cell.text.is_empty() {
                     line += &" ".repeat(gap + before);

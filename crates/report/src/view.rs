@@ -43,13 +43,13 @@ pub const CHECK_SCHEMA: u32 = 2;
 
 /// Returns the name of a value in JSON, for other formats; empty for a value with fields.
 #[must_use]
-pub fn key(value: &impl Serialize) -> String {
+pub fn to_key(value: &impl Serialize) -> String {
     let written = serde_json::to_value(value).unwrap_or_default();
     written.as_str().unwrap_or_default().to_owned()
 }
 
 /// Renders a value as one JSON document, indented, with a line feed at its end.
-pub(crate) fn document(value: &impl Serialize) -> String {
+pub(crate) fn to_document(value: &impl Serialize) -> String {
     // A struct of plain values can always be serialized.
     serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }

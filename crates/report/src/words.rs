@@ -27,9 +27,9 @@ const NOT_FOUND_CODE: i32 = 127;
 
 /// Returns a sentence about the result of a scene.
 #[must_use]
-pub fn summary(result: &SceneResult) -> String {
+pub fn summarize(result: &SceneResult) -> String {
     match &result.reason {
-        Reason::Right => share::describe_right(result.steps, number),
+        Reason::Right => share::describe_right(result.steps, spell_number),
         Reason::Wrong(wrong) => describe_wrong(wrong, result.steps),
         Reason::Trace(bad) => describe_bad_trace(bad),
         Reason::NoTrace => "the program wrote no trace; it must write the file that -o names".to_owned(),
@@ -46,7 +46,7 @@ pub fn summary(result: &SceneResult) -> String {
 /// Returns the end of the program, with its limit but without its progress, so that the text is the same in many
 /// scenes.
 pub(crate) fn describe_ending(result: &SceneResult) -> String {
-    let Reason::Program(reached) = result.reason else { return summary(result) };
+    let Reason::Program(reached) = result.reason else { return summarize(result) };
     let ended = result.ended.as_ref().map(RunEnd::to_string).unwrap_or_default();
     let limit = match reached.limit {
         Some(Limit::Time(time)) => format!(" ({} s)", time.as_secs_f64()),
@@ -58,7 +58,7 @@ pub(crate) fn describe_ending(result: &SceneResult) -> String {
 
 /// Returns further lines about a scene: the first difference, counts, damage, and the file of the trace.
 #[must_use]
-pub fn details(result: &SceneResult) -> Vec<String> {
+pub fn list_details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
     if result.ended == Some(RunEnd::Exited(NOT_FOUND_CODE)) {
         lines.push(
@@ -97,7 +97,7 @@ pub fn describe_unfit(grade: &Grade) -> Option<String> {
         SubmissionFault::Build(end) => build(end),
         SubmissionFault::Milestone(other) => describe_milestone(other),
         SubmissionFault::Scene(result) if result.verdict == Verdict::Unwritten => describe_unwritten(grade),
-        SubmissionFault::Scene(result) => summary(result),
+        SubmissionFault::Scene(result) => summarize(result),
     })
 }
 
@@ -110,7 +110,7 @@ fn describe_milestone(other: Assignment) -> String {
 fn describe_unwritten(grade: &Grade) -> String {
     let scenes = format_count(grade.scenes().count() as u64, "scene");
     let missing = match likely_mistakes(grade).first() {
-        Some((likely, _)) if likely.is_unfinished() => explanation::what(likely),
+        Some((likely, _)) if likely.is_unfinished() => explanation::describe(likely),
         _ => "Not written yet: the detection.".to_owned(),
     };
     format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
@@ -118,7 +118,7 @@ fn describe_unwritten(grade: &Grade) -> String {
 
 /// Returns a sentence about why a grade is not fully accepted; `None` if it is.
 #[must_use]
-pub fn reason(grade: &Grade) -> Option<String> {
+pub fn describe_reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = describe_unfit(grade) {
         return Some(unfit);
     }
@@ -126,7 +126,7 @@ pub fn reason(grade: &Grade) -> Option<String> {
         return grade.is_incomplete().then(|| format!("{} scenes were not run", grade.count(Verdict::NotRun)));
     };
     let (all, accepted) = (grade.scenes().count(), grade.count(Verdict::Accepted));
-    Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, summary(first)))
+    Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, summarize(first)))
 }
 
 /// Returns the end of a build, as text.
@@ -142,7 +142,7 @@ pub fn build(end: &BuildEnd) -> String {
     }
 }
 
-fn number(count: u64) -> String {
+fn spell_number(count: u64) -> String {
     count.to_string()
 }
 
@@ -152,7 +152,7 @@ fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
         WrongTrace::Nothing => "the trace holds no polynomials and no collisions, so no pair is tested".to_owned(),
         WrongTrace::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
         WrongTrace::Steps { wrong, first, kind } => {
-            format!("{}, first step {first}: {kind}", share::describe_wrong(*wrong, steps, number))
+            format!("{}, first step {first}: {kind}", share::describe_wrong(*wrong, steps, spell_number))
         }
         WrongTrace::Damaged => "the trace is damaged".to_owned(),
         WrongTrace::SmallErrors => "small errors add up beyond the tolerance".to_owned(),

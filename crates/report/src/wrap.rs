@@ -23,7 +23,7 @@ pub fn wrap(text: &str, width: usize) -> String {
 
 /// Returns the width of a text in columns; color codes have none.
 #[must_use]
-pub fn columns(text: &str) -> usize {
+pub fn count_columns(text: &str) -> usize {
     let mut inside_code = false;
     text.chars()
         .map(|c| match c {
@@ -43,17 +43,17 @@ pub fn columns(text: &str) -> usize {
 
 fn push_broken(result: &mut String, line: &str, width: usize) {
     let body = line.trim_start_matches(' ');
-    if columns(line) <= width || body.starts_with("$ ") {
+    if count_columns(line) <= width || body.starts_with("$ ") {
         *result += line;
         return;
     }
-    let (indent, mark) = continuation(line, body, width);
+    let (indent, mark) = find_continuation(line, body, width);
     let mut at = 0;
     let mut fresh = true;
     for piece in line.split_inclusive(' ') {
-        let (word, wide) = (piece.trim_end_matches(' '), columns(piece));
+        let (word, wide) = (piece.trim_end_matches(' '), count_columns(piece));
         // Blanks at the end of a line take no space.
-        if !fresh && !word.is_empty() && at + columns(word) > width {
+        if !fresh && !word.is_empty() && at + count_columns(word) > width {
             result.truncate(result.trim_end_matches(' ').len());
             result.push('\n');
             *result += &" ".repeat(indent);
@@ -67,7 +67,7 @@ fn push_broken(result: &mut String, line: &str, width: usize) {
 }
 
 /// Returns the prefix of each continued line: a number of blanks, and the mark of a program's output.
-fn continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
+fn find_continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
     let lead = line.len() - body.len();
     if body.starts_with("| ") {
         return (lead, "| ");
@@ -79,7 +79,7 @@ fn continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
     let gaps = line.match_indices("  ").map(|(at, _)| at).filter(|at| *at > lead);
     let columns_at = gaps.filter_map(|at| {
         let rest = line[at..].trim_start_matches(' ');
-        (!rest.is_empty()).then(|| columns(&line[..line.len() - rest.len()]))
+        (!rest.is_empty()).then(|| count_columns(&line[..line.len() - rest.len()]))
     });
     let last = columns_at.take_while(|at| *at < width).last().filter(|at| at + MIN_LAST_COLUMN <= width);
     (last.unwrap_or(lead + 4), "")
@@ -117,7 +117,7 @@ mod tests {
         let painted = "\x1b[1;31mone two\x1b[0m three";
         assert_eq!(wrap(painted, 13), painted);
         assert_eq!(wrap(painted, 12), "\x1b[1;31mone two\x1b[0m\n    three");
-        assert_eq!(columns("学生"), 4);
+        assert_eq!(count_columns("学生"), 4);
         assert_eq!(wrap("学生 学生 学生", 9), "学生 学生\n    学生");
     }
 

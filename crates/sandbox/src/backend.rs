@@ -87,7 +87,7 @@ impl Supervisor {
         pool: &Arc<KeeperPool>,
     ) -> Result<(SpawnedSupervisor, bool), SandboxError> {
         if let Some(keeper) = pool.take(&kind)
-            && let Ok((control, answers)) = keeper.ask(order, files)
+            && let Ok((control, answers)) = keeper.request_run(order, files)
         {
             return Ok((
                 SpawnedSupervisor { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers },
@@ -99,7 +99,7 @@ impl Supervisor {
             command.stdout(Stdio::null());
             let (child, socket) = spawn_connected(command)?;
             let keeper = Keeper::new(kind, child, socket);
-            let (control, answers) = keeper.ask(order, files)?;
+            let (control, answers) = keeper.request_run(order, files)?;
             Ok((SpawnedSupervisor { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, false))
         };
         begin().map_err(|source| self.not_started(source))
@@ -137,7 +137,7 @@ struct SpawnedSupervisor {
 
 impl SpawnedSupervisor {
     /// Reads the supervisor's first message.
-    fn first(&mut self) -> io::Result<Event> {
+    fn receive_first(&mut self) -> io::Result<Event> {
         wire::receive(&mut self.answers)
     }
 
@@ -184,7 +184,7 @@ impl Backend {
     /// Fails with [`SandboxError::Missing`] if a required layer is missing: no new privileges, limits, reaper, system
     /// call filter, and file rules (or, for root, a user per program). Then nothing can be run; see
     /// [`Backend::without_sandbox`].
-    pub fn best(supervisor: Supervisor) -> Result<Self, SandboxError> {
+    pub fn with_all_layers(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::select_layers(&reports).map_err(missing_layers)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
@@ -192,7 +192,7 @@ impl Backend {
 
     /// Returns the backend with the layers of other reports, and with the file rules of a kernel with the given
     /// Landlock version.
-    fn with(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
+    fn with_layers(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
         let kind = match &self.kind {
             Kind::Launcher { supervisor, .. } => {
                 let walls = layers::select_layers(&reports).map_err(missing_layers)?;
@@ -209,7 +209,7 @@ impl Backend {
     ///
     /// Fails with [`SandboxError::Missing`] if the layer is required on this host.
     pub fn without(&self, layer: Layer) -> Result<Self, SandboxError> {
-        self.with(layers::without(&self.layers, layer), 0)
+        self.with_layers(layers::without(&self.layers, layer), 0)
     }
 
     /// Returns the backend with the file rules of an older kernel (Landlock's version, from 1 on), to test that they
@@ -219,7 +219,7 @@ impl Backend {
     ///
     /// Fails like [`Backend::without`].
     pub fn with_landlock(&self, version: u8) -> Result<Self, SandboxError> {
-        self.with(layers::with_landlock(&self.layers, version), version)
+        self.with_layers(layers::with_landlock(&self.layers, version), version)
     }
 
     /// Returns the backend with every layer that holds on this host, however few; a missing layer is not an error. Used
@@ -291,7 +291,7 @@ impl Backend {
             Ok(examined) => examined,
             Err(problem) => return FakeRun::could_not_start(problem).into_running(job, self.layers.clone()),
         };
-        let mut order = order(job, walls, examined, &supervisor.program)?;
+        let mut order = build_order(job, walls, examined, &supervisor.program)?;
         if Keeping::exists_for(&order) {
             order.files =
                 job.files.iter().map(|(name, bytes)| (name.clone().into_bytes(), bytes.len() as u64)).collect();
@@ -303,7 +303,7 @@ impl Backend {
                 Some(kind) => supervisor.ask_keeper(&order, &job.files, kind, keepers)?,
                 None => (supervisor.spawn_for(&order)?, false),
             };
-            match asked.first() {
+            match asked.receive_first() {
                 // The keeper has ended because it received no order in time.
                 Err(_) if kept => asked.host.kill(),
                 first => break (asked, first),
@@ -323,7 +323,7 @@ impl Backend {
                 asked.host.rest(None);
                 match failure.errno {
                     // The program itself is larger than its memory limit.
-                    libc::ENOMEM if failure.stage == wire::EXECUTE => {
+                    libc::ENOMEM if failure.stage == wire::EXECUTE_STEP => {
                         FakeRun::with_end(RunEnd::MemoryLimit).into_running(job, self.layers.clone())
                     }
                     _ => Err(from_setup_failure(failure)),
@@ -347,13 +347,18 @@ fn receive_folder(control: &UnixStream) -> io::Result<OwnedFd> {
     let mut byte = [0];
     let (_, descriptors) = sys::receive_descriptors(control, &mut byte)?;
     match (byte[0], descriptors.into_iter().next()) {
-        (wire::FOLDER, Some(folder)) => Ok(folder),
+        (wire::FOLDER_BYTE, Some(folder)) => Ok(folder),
         _ => Err(io::ErrorKind::InvalidData.into()),
     }
 }
 
 /// Returns the order for a job, with absolute paths, to a supervisor of the current program.
-fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path) -> Result<RunOrder, SandboxError> {
+fn build_order(
+    job: &Job,
+    walls: Walls,
+    examined: program::Program,
+    supervisor: &Path,
+) -> Result<RunOrder, SandboxError> {
     let folder = job.folder.canonicalize().and_then(|folder| match folder.is_dir() {
         true => Ok(folder),
         false => Err(io::ErrorKind::NotADirectory.into()),
@@ -364,7 +369,7 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
     for path in &job.readable {
         let found = std::path::absolute(path).and_then(|path| path.metadata().map(|_| path));
         let path = found.map_err(|source| SandboxError::Readable { path: path.display().to_string(), source })?;
-        readable.push(wire::raw(&path));
+        readable.push(wire::to_raw_bytes(&path));
     }
     let bytes = |text: &OsString| text.as_bytes().to_vec();
     let given = job.environment.iter().map(|(name, value)| (bytes(name), bytes(value)));
@@ -373,19 +378,19 @@ fn order(job: &Job, walls: Walls, examined: program::Program, supervisor: &Path)
     let environment = given.chain(set).collect();
     let program = std::path::absolute(&job.program).unwrap_or_else(|_| job.program.clone());
     let mut order = RunOrder {
-        program: wire::raw(&program),
-        folder: wire::raw(&folder),
+        program: wire::to_raw_bytes(&program),
+        folder: wire::to_raw_bytes(&folder),
         arguments: job.arguments.iter().map(bytes).collect(),
         environment,
         readable,
-        executable: examined.executable.iter().map(|path| wire::raw(path)).collect(),
-        named: examined.named.iter().map(|path| wire::raw(path)).collect(),
-        own: own_files::known_files(supervisor).iter().map(|path| wire::raw(path)).collect(),
-        trace: trace.map(wire::raw),
+        executable: examined.executable.iter().map(|path| wire::to_raw_bytes(path)).collect(),
+        named: examined.named.iter().map(|path| wire::to_raw_bytes(path)).collect(),
+        own: own_files::known_files(supervisor).iter().map(|path| wire::to_raw_bytes(path)).collect(),
+        trace: trace.map(wire::to_raw_bytes),
         files: Vec::new(),
         volatile: false,
         tools: job.policy == Policy::Tools,
-        interpreter: examined.script.as_ref().map(|script| wire::raw(&script.interpreter)),
+        interpreter: examined.script.as_ref().map(|script| wire::to_raw_bytes(&script.interpreter)),
         words: examined.script.iter().flat_map(|script| &script.words).map(|word| word.as_bytes().to_vec()).collect(),
         sanitizers: job.sanitizers,
         walls,

@@ -90,19 +90,19 @@ fn missing_library(stderr: &str) -> Option<String> {
 
 /// Returns whether a sanitizer's runtime reports that it was denied its terabytes of address space.
 fn wants_shadow(stderr: &str) -> bool {
-    const COMPLAINTS: [&str; 3] = [
+    const MESSAGES: [&str; 3] = [
         "ReserveShadowMemoryRange failed",
         "Sanitizer: CHECK failed: sanitizer_allocator",
         "Sanitizer: unexpected memory mapping",
     ];
-    COMPLAINTS.iter().any(|complaint| stderr.contains(complaint))
+    MESSAGES.iter().any(|complaint| stderr.contains(complaint))
 }
 
 /// Returns whether the output ends with a runtime's message about a denied request for memory. A single request beyond
 /// the limit of address space fails without memory in use, so no counter shows it.
 fn wants_memory(stderr: &str) -> bool {
     // The messages of C++, Rust, Python, Java, Node and the sanitizers.
-    const COMPLAINTS: [&str; 6] = [
+    const MESSAGES: [&str; 6] = [
         "what():  std::bad_alloc",
         "memory allocation of ",
         "MemoryError",
@@ -112,7 +112,7 @@ fn wants_memory(stderr: &str) -> bool {
     ];
     const LAST_LINES: usize = 4;
     let last = stderr.lines().rev().filter(|line| !line.trim().is_empty()).take(LAST_LINES);
-    { last }.any(|line| COMPLAINTS.iter().any(|complaint| line.contains(complaint)))
+    { last }.any(|line| MESSAGES.iter().any(|complaint| line.contains(complaint)))
 }
 
 fn wants_display(stderr: &str) -> bool {

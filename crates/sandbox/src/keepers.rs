@@ -73,13 +73,13 @@ impl Keeper {
 
     /// Requests the run of an order, whose files have the contents `files`. Returns the connection to the run's
     /// supervisor, and the file from which the supervisor's answers are read.
-    pub(super) fn ask(&self, order: &RunOrder, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
+    pub(super) fn request_run(&self, order: &RunOrder, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
         let folder = File::open(wire::path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
         let (answers, told) = io::pipe()?;
-        let mut packet = wire::packet(order)?;
+        let mut packet = wire::encode_packet(order)?;
         files.iter().for_each(|(_, content)| packet.extend_from_slice(content));
-        sys::send_descriptors(&self.socket, wire::RUN, [theirs.as_fd(), told.as_fd(), folder.as_fd()])?;
+        sys::send_descriptors(&self.socket, wire::RUN_BYTE, [theirs.as_fd(), told.as_fd(), folder.as_fd()])?;
         (&self.socket).write_all(&packet)?;
         Ok((control, OwnedFd::from(answers).into()))
     }
@@ -121,7 +121,7 @@ impl KeeperPool {
         taken.filter(|_| fits.is_some())
     }
 
-    fn put(&self, keeper: Keeper) {
+    fn return_keeper(&self, keeper: Keeper) {
         self.idle.lock().unwrap_or_else(PoisonError::into_inner).push(keeper);
     }
 }
@@ -187,7 +187,7 @@ pub(super) struct RestingKeeper {
 impl Drop for RestingKeeper {
     fn drop(&mut self) {
         if let Some(keeper) = self.keeper.take() {
-            self.pool.put(*keeper);
+            self.pool.return_keeper(*keeper);
         }
     }
 }
@@ -231,7 +231,7 @@ mod tests {
     fn a_program_that_was_exchanged_is_of_another_kind() {
         let folder = tempfile::tempdir().unwrap();
         let program = folder.path().join("program");
-        let kind = || Kind::from_order(&RunOrder { program: wire::raw(&program), ..order() }).unwrap();
+        let kind = || Kind::from_order(&RunOrder { program: wire::to_raw_bytes(&program), ..order() }).unwrap();
         std::fs::write(&program, "one").unwrap();
         let before = kind();
         assert_eq!(kind(), before);

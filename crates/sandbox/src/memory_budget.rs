@@ -11,19 +11,20 @@ use super::machine;
 /// Returns whether a folder of `bytes` bytes may be in memory. The machine and the grader's control groups must have
 /// room for one folder per simultaneous run, and as much again for the programs.
 pub(super) fn is_enough_for(bytes: u64) -> bool {
-    static RUNS: OnceLock<u64> = OnceLock::new();
-    let runs = RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));
+    static SIMULTANEOUS_RUNS: OnceLock<u64> = OnceLock::new();
+    let runs =
+        SIMULTANEOUS_RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));
     memory_left().is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
 }
 
 /// Returns the remaining memory of the machine and the grader's groups. The value may be slightly outdated, because the
 /// kernel needs longer to compute it than to start a small program.
 fn memory_left() -> Option<u64> {
-    const MOMENT: Duration = Duration::from_millis(500);
-    static LAST: Mutex<Option<(Instant, Option<u64>)>> = Mutex::new(None);
-    let mut last = LAST.lock().unwrap_or_else(PoisonError::into_inner);
+    const CACHE_LIFETIME: Duration = Duration::from_millis(500);
+    static LAST_MEASUREMENT: Mutex<Option<(Instant, Option<u64>)>> = Mutex::new(None);
+    let mut last = LAST_MEASUREMENT.lock().unwrap_or_else(PoisonError::into_inner);
     if let Some((when, left)) = *last
-        && when.elapsed() < MOMENT
+        && when.elapsed() < CACHE_LIFETIME
     {
         return left;
     }
@@ -54,8 +55,8 @@ impl LimitedGroup {
 
 /// Returns the control groups of this process, in the files of both versions.
 fn groups() -> &'static [LimitedGroup] {
-    static GROUPS: OnceLock<Vec<LimitedGroup>> = OnceLock::new();
-    GROUPS.get_or_init(|| {
+    static LIMITED_GROUPS: OnceLock<Vec<LimitedGroup>> = OnceLock::new();
+    LIMITED_GROUPS.get_or_init(|| {
         let places = crate::supervisor::memory_groups();
         let limited = |place: &PathBuf| {
             let names = [("memory.max", "memory.current"), ("memory.limit_in_bytes", "memory.usage_in_bytes")];

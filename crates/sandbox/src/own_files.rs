@@ -13,19 +13,19 @@ use std::{
 };
 
 /// The path of the current program.
-const THIS: &str = "/proc/self/exe";
+const CURRENT_PROGRAM: &str = "/proc/self/exe";
 /// The prefix of the sample's name.
-const SAMPLE: &str = "fosssim-sample";
+const SAMPLE_PREFIX: &str = "fosssim-sample";
 /// The prefixes of the names of the grader's programs.
-const NAMES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
+const PROGRAM_PREFIXES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
 /// The folders in which the programs are usually installed.
-const FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
+const PROGRAM_FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
 /// The prefix of the names of the Python module and of the folder that `pip` creates next to it.
-const MODULE: &str = "fosssim";
+const MODULE_PREFIX: &str = "fosssim";
 /// The folders that contain Python installations.
-const PYTHONS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"];
+const PYTHON_FOLDERS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"];
 /// The folders of modules within a Python installation.
-const MODULES: [&str; 2] = ["dist-packages", "site-packages"];
+const MODULE_FOLDERS: [&str; 2] = ["dist-packages", "site-packages"];
 
 /// Returns whether the file has the name of a grader's program.
 pub(super) fn is_name(path: &Path) -> bool {
@@ -33,46 +33,50 @@ pub(super) fn is_name(path: &Path) -> bool {
 }
 
 fn is_named(name: &OsStr) -> bool {
-    NAMES.iter().any(|own| begins(name, own))
+    PROGRAM_PREFIXES.iter().any(|own| begins_with(name, own))
 }
 
-fn begins(name: &OsStr, own: &str) -> bool {
+fn begins_with(name: &OsStr, own: &str) -> bool {
     name.as_bytes().get(..own.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(own.as_bytes()))
 }
 
 /// Returns the entries of a folder; none if it cannot be read.
-fn entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
+fn list_entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
     std::fs::read_dir(folder).into_iter().flatten().flatten()
 }
 
 /// Returns the files and folders of the Python module, wherever `pip` has put them below `pythons`.
-fn modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
-    let is_python = |entry: &DirEntry| ["python", "pypy"].iter().any(|kind| begins(&entry.file_name(), kind));
-    let pythons = pythons.iter().flat_map(|folder| entries(folder).filter(is_python));
-    let places = pythons.flat_map(|python| MODULES.map(|name| python.path().join(name)));
-    let modules =
-        places.flat_map(|place| entries(&place).filter(|entry| begins(&entry.file_name(), MODULE)).collect::<Vec<_>>());
+fn list_modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
+    let is_python = |entry: &DirEntry| ["python", "pypy"].iter().any(|kind| begins_with(&entry.file_name(), kind));
+    let pythons = pythons.iter().flat_map(|folder| list_entries(folder).filter(is_python));
+    let places = pythons.flat_map(|python| MODULE_FOLDERS.map(|name| python.path().join(name)));
+    let modules = places.flat_map(|place| {
+        list_entries(&place).filter(|entry| begins_with(&entry.file_name(), MODULE_PREFIX)).collect::<Vec<_>>()
+    });
     modules.map(|entry| entry.path()).collect()
 }
 
-/// Returns the result of [`files`] for the current program and its supervisor. It is computed once for all runs,
+/// Returns the result of [`list_files`] for the current program and its supervisor. It is computed once for all runs,
 /// because `/usr/bin` alone may hold thousands of files.
 pub(super) fn known_files(supervisor: &Path) -> Arc<[PathBuf]> {
-    static KNOWN: Mutex<BTreeMap<PathBuf, Arc<[PathBuf]>>> = Mutex::new(BTreeMap::new());
-    let mut known = KNOWN.lock().unwrap_or_else(PoisonError::into_inner);
-    known.entry(supervisor.to_path_buf()).or_insert_with(|| files(&[Path::new(THIS), supervisor]).into()).clone()
+    static KNOWN_FILES: Mutex<BTreeMap<PathBuf, Arc<[PathBuf]>>> = Mutex::new(BTreeMap::new());
+    let mut known = KNOWN_FILES.lock().unwrap_or_else(PoisonError::into_inner);
+    known
+        .entry(supervisor.to_path_buf())
+        .or_insert_with(|| list_files(&[Path::new(CURRENT_PROGRAM), supervisor]).into())
+        .clone()
 }
 
 /// Returns the resolved paths of `programs`, of the other programs next to them, and of installed ones.
-fn files(programs: &[&Path]) -> Vec<PathBuf> {
+fn list_files(programs: &[&Path]) -> Vec<PathBuf> {
     let programs: Vec<PathBuf> = programs.iter().filter_map(|program| program.canonicalize().ok()).collect();
     let beside = programs.iter().filter_map(|program| program.parent()).map(Path::to_path_buf);
-    let installed = FOLDERS.into_iter().map(PathBuf::from).chain(beside);
+    let installed = PROGRAM_FOLDERS.into_iter().map(PathBuf::from).chain(beside);
     // Some of the files are large, and some are links to others.
     let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
-    let entries = folders.iter().flat_map(|folder| entries(folder));
+    let entries = folders.iter().flat_map(|folder| list_entries(folder));
     let named = entries.filter(|entry| is_named(&entry.file_name())).map(|entry| entry.path());
-    let named = named.chain(modules(&PYTHONS.map(PathBuf::from)));
+    let named = named.chain(list_modules(&PYTHON_FOLDERS.map(PathBuf::from)));
     let mut files: Vec<PathBuf> =
         named.filter_map(|path| path.canonicalize().ok()).chain(programs.iter().cloned()).collect();
     files.sort();
@@ -85,9 +89,9 @@ fn files(programs: &[&Path]) -> Vec<PathBuf> {
 /// submission.
 #[must_use]
 pub fn is_own(length: u64, digest: &blake3::Hash, itself: (u64, u64)) -> bool {
-    files(&[Path::new(THIS)]).into_iter().any(|path| {
+    list_files(&[Path::new(CURRENT_PROGRAM)]).into_iter().any(|path| {
         let Ok(metadata) = path.metadata() else { return false };
-        let sample = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(SAMPLE));
+        let sample = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(SAMPLE_PREFIX));
         // The content is compared, because the grader's file may have any name.
         let shown = sample && (metadata.dev(), metadata.ino()) == itself;
         metadata.len() == length && !shown && digest_of(&path).is_some_and(|own| own == *digest)
@@ -124,7 +128,7 @@ pub(super) fn allow_all_except(path: &Path, own: &[PathBuf]) -> Vec<AllowedPath>
             allowed.push(AllowedPath::Whole(path));
             continue;
         }
-        let real = entries(&path).filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()));
+        let real = list_entries(&path).filter(|entry| entry.file_type().is_ok_and(|kind| !kind.is_symlink()));
         left.extend(real.map(|entry| entry.path()));
         allowed.push(AllowedPath::Listing(path));
     }
@@ -169,7 +173,7 @@ mod tests {
         for other in ["python3/dist-packages/numpy", "perl5/site-packages/fosssim", "python3.12/fosssim"] {
             std::fs::create_dir_all(folder.path().join(other)).unwrap();
         }
-        let mut found = modules(&pythons);
+        let mut found = list_modules(&pythons);
         found.sort();
         let names: Vec<_> = found.iter().map(|path| path.strip_prefix(folder.path()).unwrap()).collect();
         assert_eq!(names.len(), 2, "{names:?}");
@@ -179,7 +183,7 @@ mod tests {
     #[test]
     fn this_program_is_among_the_graders_files() {
         let this = std::fs::read_link("/proc/self/exe").unwrap().canonicalize().unwrap();
-        assert!(files(&[Path::new(THIS)]).contains(&this));
+        assert!(list_files(&[Path::new(CURRENT_PROGRAM)]).contains(&this));
         assert!(is_name(Path::new("/x/FOSSSimOracle2")) && is_name(Path::new("fosssim-sample.pp-no-two")));
         assert!(!is_name(Path::new("/x/FOSSSim")) && !is_name(Path::new("python3")));
     }

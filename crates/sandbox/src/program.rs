@@ -18,9 +18,9 @@ const ELF_MAGIC: &[u8] = b"\x7fELF";
 /// The number of bytes that show the kind of a file. The kernel reads the same number for the first line of a script.
 const FIRST_BYTES: u64 = 256;
 /// The folders of the system's programs that a script may name, in the order of the sandbox's `PATH`.
-const PROGRAMS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
+const PROGRAM_FOLDERS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
 /// The folders of interpreters to which the folders of programs link.
-const LIBRARIES: [&str; 4] = ["/lib", "/usr/lib", "/usr/lib64", "/usr/libexec"];
+const LIBRARY_FOLDERS: [&str; 4] = ["/lib", "/usr/lib", "/usr/lib64", "/usr/libexec"];
 
 /// The facts about a program that the sandbox needs before the start.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
@@ -73,7 +73,7 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
     match (start.strip_prefix(b"#!"), other_system(&start)) {
         (Some(line), _) => find_interpreter(line, own, 0),
         (None, Some(system)) => Err(StartProblem::WrongSystem { system: system.into() }),
-        (None, None) => elf(&start).map(|()| Program::default()),
+        (None, None) => require_elf(&start).map(|()| Program::default()),
     }
 }
 
@@ -127,7 +127,7 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
         return Err(StartProblem::NotTheSystems { path: interpreter.escape_default().to_string() });
     }
     let mut found = place(Path::new(interpreter)).ok_or_else(|| missing(interpreter, hint))?;
-    let mut resolved = systems(&found, own)?;
+    let mut resolved = require_system_file(&found, own)?;
     let mut script = Script { words: vec![interpreter.to_owned()], ..Script::default() };
     if interpreter.ends_with("/env") {
         let (name, arguments) = by_env(rest, &mut script.environment)?;
@@ -137,9 +137,9 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
         if name.starts_with('-') {
             return Err(missing(&name, "; of the options of env only -S is known here"));
         }
-        let place = PROGRAMS.iter().find_map(|folder| place(&Path::new(folder).join(&name)));
+        let place = PROGRAM_FOLDERS.iter().find_map(|folder| place(&Path::new(folder).join(&name)));
         found = place.ok_or_else(|| missing(&name, hint))?;
-        resolved = systems(&found, own)?;
+        resolved = require_system_file(&found, own)?;
         script.words = [vec![name], arguments].concat();
     } else if !rest.is_empty() {
         script.words.push(rest.to_owned());
@@ -186,21 +186,21 @@ fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String
 /// Returns whether the path is textually in one of the system's folders.
 fn is_systems(path: &Path) -> bool {
     let plain = path.components().all(|part| matches!(part, Component::RootDir | Component::Normal(_)));
-    plain && PROGRAMS.iter().chain(&LIBRARIES).any(|folder| path.starts_with(folder))
+    plain && PROGRAM_FOLDERS.iter().chain(&LIBRARY_FOLDERS).any(|folder| path.starts_with(folder))
 }
 
 /// Returns the resolved path of an interpreter. It must be below one of the system's folders, and not a program of the
 /// grader.
-fn systems(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartProblem> {
+fn require_system_file(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartProblem> {
     let refused = || StartProblem::NotTheSystems { path: path.to_string_lossy().escape_default().to_string() };
     let resolved = path.canonicalize().map_err(|_| refused())?;
     let beneath = |folder: &&str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
     // The permission bit that lets every user execute. A file that only its owner may execute would otherwise be
     // rejected too late.
-    const EXECUTE: u32 = 0o001;
-    let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE != 0);
+    const EXECUTE_BIT: u32 = 0o001;
+    let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE_BIT != 0);
     let named = [path, &resolved].into_iter().any(own_files::is_name);
-    let beneath = PROGRAMS.iter().chain(&LIBRARIES).any(beneath);
+    let beneath = PROGRAM_FOLDERS.iter().chain(&LIBRARY_FOLDERS).any(beneath);
     if !beneath || named || is_one_of(&resolved, own) || !resolved.ancestors().all(open) {
         return Err(refused());
     }
@@ -215,7 +215,7 @@ fn is_one_of(path: &Path, own: &[PathBuf]) -> bool {
 }
 
 /// Checks that a file beginning with `start` is an ELF program for this machine.
-fn elf(start: &[u8]) -> Result<(), StartProblem> {
+fn require_elf(start: &[u8]) -> Result<(), StartProblem> {
     if !start.starts_with(ELF_MAGIC) {
         return Err(StartProblem::NotAProgram);
     }

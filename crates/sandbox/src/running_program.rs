@@ -111,7 +111,7 @@ impl RunningProgram {
             Ok(answer) => answer,
             Err(_) => {
                 let error = supervised.host.loss_error();
-                orphans::end(supervised.session, supervised.user);
+                orphans::end_orphans(supervised.session, supervised.user);
                 return Err(error);
             }
         };

@@ -87,12 +87,12 @@ pub(super) fn exit_now(code: i32) -> ! {
 }
 
 /// Returns the effective user.
-pub(super) fn user() -> u32 {
+pub(super) fn user_id() -> u32 {
     rustix::process::geteuid().as_raw()
 }
 
 /// Returns the effective group.
-pub(super) fn group() -> u32 {
+pub(super) fn group_id() -> u32 {
     rustix::process::getegid().as_raw()
 }
 
@@ -117,7 +117,7 @@ pub(super) fn no_new_privileges() -> io::Result<()> {
 }
 
 /// Sets a soft and hard limit, never above the existing hard limit.
-pub(super) fn limit(resource: Resource, value: u64) -> io::Result<()> {
+pub(super) fn set_limit(resource: Resource, value: u64) -> io::Result<()> {
     let value = Some(getrlimit(resource).maximum.map_or(value, |most| value.min(most)));
     Ok(setrlimit(resource, Rlimit { current: value, maximum: value })?)
 }
@@ -341,7 +341,7 @@ pub(super) fn enter_folder(fd: BorrowedFd<'_>) -> io::Result<()> {
 }
 
 /// Returns whether the current user has the access `mode` to the path.
-pub(super) fn accessible(path: &CStr, mode: Access) -> bool {
+pub(super) fn is_accessible(path: &CStr, mode: Access) -> bool {
     rustix::fs::access(path, mode).is_ok()
 }
 
@@ -351,13 +351,13 @@ pub(super) fn memory_file() -> io::Result<OwnedFd> {
 }
 
 /// Returns null-terminated pointers to the strings, which must outlive the list.
-fn pointers(strings: &[CString]) -> Vec<*const libc::c_char> {
+fn to_pointers(strings: &[CString]) -> Vec<*const libc::c_char> {
     strings.iter().map(|text| text.as_ptr()).chain([std::ptr::null()]).collect()
 }
 
 /// Replaces this process with the program at `path`; returns only if there is an error.
 pub(super) fn execute(path: &CStr, arguments: &[CString], environment: &[CString]) -> io::Error {
-    let (arguments, environment) = (pointers(arguments), pointers(environment));
+    let (arguments, environment) = (to_pointers(arguments), to_pointers(environment));
     // SAFETY: both lists end with a null pointer and, like the path, outlive the call.
     unsafe { libc::execve(path.as_ptr(), arguments.as_ptr(), environment.as_ptr()) };
     io::Error::last_os_error()
@@ -365,7 +365,7 @@ pub(super) fn execute(path: &CStr, arguments: &[CString], environment: &[CString
 
 /// Replaces this process with the program in the open file; returns only if there is an error.
 pub(super) fn execute_open(file: BorrowedFd<'_>, arguments: &[CString], environment: &[CString]) -> io::Error {
-    let (arguments, environment) = (pointers(arguments), pointers(environment));
+    let (arguments, environment) = (to_pointers(arguments), to_pointers(environment));
     // SAFETY: as in `execute`; the empty path is a constant and means the descriptor itself.
     unsafe {
         libc::syscall(

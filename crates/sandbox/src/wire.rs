@@ -28,15 +28,15 @@ const MAX_MESSAGE_BYTES: u64 = 64 << 20;
 
 /// The byte that starts a run in a supervisor of several runs. It is sent with three descriptors: the channel of
 /// commands, the channel of answers, and the working folder on disk.
-pub(super) const RUN: u8 = b'r';
+pub(super) const RUN_BYTE: u8 = b'r';
 /// The byte that announces a working folder in memory to the grader. It is sent with the folder.
-pub(super) const FOLDER: u8 = b'f';
+pub(super) const FOLDER_BYTE: u8 = b'f';
 
 /// The bytes of a path or an argument.
 pub(super) type RawBytes = Vec<u8>;
 
 /// Converts a path into bytes.
-pub(super) fn raw(path: &Path) -> RawBytes {
+pub(super) fn to_raw_bytes(path: &Path) -> RawBytes {
     path.as_os_str().as_bytes().to_vec()
 }
 
@@ -124,7 +124,7 @@ pub(super) enum Event {
 }
 
 /// The setup step whose failure is the program's and not the grader's.
-pub(super) const EXECUTE: &str = "execute the program";
+pub(super) const EXECUTE_STEP: &str = "execute the program";
 
 /// A failed setup step.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
@@ -141,7 +141,7 @@ impl Failure {
 }
 
 /// Converts an error of the system into a failure of the stage `name`.
-pub(super) fn stage(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
+pub(super) fn failure_at(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
     move |error| Failure::new(name, &error)
 }
 
@@ -197,12 +197,12 @@ pub(super) struct Probe {
 
 /// Writes one message.
 pub(super) fn send<T: Serialize>(mut to: impl Write, message: &T) -> io::Result<()> {
-    to.write_all(&packet(message)?)?;
+    to.write_all(&encode_packet(message)?)?;
     to.flush()
 }
 
 /// Returns the encoded form of one message.
-pub(super) fn packet<T: Serialize>(message: &T) -> io::Result<Vec<u8>> {
+pub(super) fn encode_packet<T: Serialize>(message: &T) -> io::Result<Vec<u8>> {
     let body = serde_json::to_vec(message)?;
     let mut packet = (body.len() as u64).to_le_bytes().to_vec();
     packet.extend_from_slice(&body);

@@ -8,7 +8,7 @@ use prometheus::{
 use std::time::Duration;
 
 /// Upper bounds of the histogram of latencies, in seconds: from a page to an upload over a slow line.
-const BUCKETS: [f64; 12] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0];
+const LATENCY_BUCKETS: [f64; 12] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0];
 
 /// The server's counters. Clones are cheap and share the counters.
 #[derive(Debug, Clone)]
@@ -43,7 +43,7 @@ impl Instruments {
         let requests = Opts::new("http_requests_total", "Requests that were answered.");
         Ok(Self {
             requests: IntCounterVec::new(requests, &of_requests)?,
-            seconds: HistogramVec::new(duration.buckets(BUCKETS.into()), &of_requests[..2])?,
+            seconds: HistogramVec::new(duration.buckets(LATENCY_BUCKETS.into()), &of_requests[..2])?,
             in_flight: IntGauge::new("http_requests_in_flight", "Requests that are being answered.")?,
         })
     }

@@ -33,7 +33,7 @@ pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToke
 }
 
 /// Returns a client for requests to configured services, which follows no redirections.
-pub(crate) fn agent(over_http: bool, patience: Duration) -> Agent {
+pub(crate) fn new_agent(over_http: bool, patience: Duration) -> Agent {
     Agent::config_builder()
         .http_status_as_error(false)
         .max_redirects(0)

@@ -146,7 +146,7 @@ impl Provider {
             client: ClientId::new(client),
             secret: ClientSecret::new(secret),
             domain: domain.map(|domain| domain.to_ascii_lowercase()),
-            agent: net::agent(over_http, ANSWER_TIMEOUT),
+            agent: net::new_agent(over_http, ANSWER_TIMEOUT),
             published: Mutex::default(),
         })
     }

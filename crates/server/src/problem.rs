@@ -110,11 +110,11 @@ problems! {
         "correct the suite and upload it again; the assignment keeps its suite";
     /// The upload has more bytes than allowed.
     too_large(most: u64): 413, "too-large", "Too large",
-        format!("more than the {} that are allowed", size(most)),
+        format!("more than the {} that are allowed", format_size(most)),
         "send less: leave out build folders, and traces in an archive of sources";
     /// A request other than an upload is too large.
     too_long(most: usize): 413, "too-large", "Too large",
-        format!("more than the {} that are allowed", size(most as u64)),
+        format!("more than the {} that are allowed", format_size(most as u64)),
         "send less in one request";
     /// The address does not support the method.
     wrong_method(method: &str): 405, "wrong-method", "Not done so",
@@ -156,7 +156,7 @@ pub(crate) fn ensure<E>(holds: bool, otherwise: E) -> Result<(), E> {
 }
 
 /// Formats a size in bytes, in a unit with few digits.
-pub(crate) fn size(bytes: u64) -> String {
+pub(crate) fn format_size(bytes: u64) -> String {
     match bytes {
         few @ ..1024 => format!("{few} B"),
         some @ ..1_048_576 => format!("{} KiB", (some + 512) / 1024),

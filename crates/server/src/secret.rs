@@ -6,7 +6,7 @@
 pub fn random_hex() -> String {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).expect("random numbers from the system");
-    hex(&bytes)
+    to_hex(&bytes)
 }
 
 /// Returns eight random bits, for values that should only differ.
@@ -15,6 +15,6 @@ pub(crate) fn random_byte() -> u8 {
 }
 
 /// Returns bytes in hexadecimal.
-pub fn hex(bytes: &[u8]) -> String {
+pub fn to_hex(bytes: &[u8]) -> String {
     bytes.iter().map(|byte| format!("{byte:02x}")).collect()
 }

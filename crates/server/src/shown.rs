@@ -13,7 +13,7 @@ use tokio_util::io::{StreamReader, SyncIoBridge};
 
 /// The verdicts from best to worst, each with its code, its text, and its letter in a row of scenes. The worst verdict
 /// of all scenes is the grade's.
-const VERDICTS: [(&str, &str, char); 14] = [
+const VERDICT_TEXTS: [(&str, &str, char); 14] = [
     ("AC", "accepted", 'r'),
     ("--", "not run", 'n'),
     ("NW", "nothing written", 'w'),
@@ -32,7 +32,7 @@ const VERDICTS: [(&str, &str, char); 14] = [
 
 /// Returns the text of a verdict. A grader of another version may have verdicts that are unknown here.
 pub fn verdict(code: &str) -> &str {
-    let known = VERDICTS.iter().find(|verdict| verdict.0 == code);
+    let known = VERDICT_TEXTS.iter().find(|verdict| verdict.0 == code);
     known.map_or(if code == "NR" { "not shown yet" } else { code }, |verdict| verdict.1)
 }
 
@@ -103,7 +103,7 @@ fn list_failed(report: &GradeFile) -> String {
 fn parts(report: &GradeFile) -> String {
     let groups = report.grades.iter().flat_map(|grade| &grade.groups);
     let mistakes = report.grades.iter().flat_map(|grade| &grade.likely_mistakes);
-    let known = |scene: &SceneInFile| VERDICTS.iter().find(|verdict| scene.code == verdict.0);
+    let known = |scene: &SceneInFile| VERDICT_TEXTS.iter().find(|verdict| scene.code == verdict.0);
     let letter = |scene: &SceneInFile| known(scene).map_or('e', |verdict| verdict.2);
     let rows = groups.clone().map(|group| group.scenes.iter().map(letter).collect::<String>());
     let parts = GradeParts {
@@ -140,8 +140,9 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     }
     let scenes: Vec<&SceneInFile> = visible.iter().flat_map(|group| &group.scenes).collect();
     // A code of a newer grader that is unknown here counts as worse than all known ones.
-    let rank =
-        |scene: &&SceneInFile| VERDICTS.iter().position(|verdict| scene.code == verdict.0).unwrap_or(VERDICTS.len());
+    let rank = |scene: &&SceneInFile| {
+        VERDICT_TEXTS.iter().position(|verdict| scene.code == verdict.0).unwrap_or(VERDICT_TEXTS.len())
+    };
     let counted = visible.iter().filter(|group| !group.extra).flat_map(|group| &group.scenes);
     let Some(worst) = counted.max_by_key(rank).or_else(|| scenes.first().copied()) else { return Some(empty_grade()) };
     let sum = |of: fn(&GroupInFile) -> Option<f64>| {
@@ -180,7 +181,7 @@ impl ShownGrade {
 
     /// Reduces an outcome to the part that students see. Digests, sizes and exact times are removed as well, because
     /// they would reveal changes of the withheld parts.
-    pub fn cover(self, outcome: &mut Outcome, page: &str) {
+    pub fn hide_from(self, outcome: &mut Outcome, page: &str) {
         (outcome.verdict, outcome.code, outcome.summary) = (self.verdict, self.code, self.summary);
         (outcome.points, outcome.max_points) = (self.points, self.max_points);
         outcome.seconds = String::new();
@@ -213,8 +214,8 @@ mod tests {
         let known = |words: [&str; 14], of: &str| {
             assert_eq!(schema["$defs"]["SceneView"]["properties"][of]["enum"], serde_json::json!(words));
         };
-        known(VERDICTS.map(|verdict| verdict.0), "code");
-        known(VERDICTS.map(|verdict| verdict.1), "verdict");
+        known(VERDICT_TEXTS.map(|verdict| verdict.0), "code");
+        known(VERDICT_TEXTS.map(|verdict| verdict.1), "verdict");
         assert_eq!([verdict("RTE"), verdict("XX")], ["run-time error", "XX"]);
     }
 

@@ -66,8 +66,8 @@ impl Storage {
     }
 
     async fn fault(&self) -> Option<&'static str> {
-        match db::version(&self.database).await {
-            Ok(db::LATEST) => {}
+        match db::read_version(&self.database).await {
+            Ok(db::NEWEST) => {}
             Ok(_) => return Some("the tables are not those of this version"),
             Err(error) => {
                 tracing::error!(%error, "the database does not answer");

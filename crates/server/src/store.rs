@@ -8,7 +8,7 @@ mod sweep;
 
 pub use read::OpenArtifact;
 
-use crate::secret::hex;
+use crate::secret::to_hex;
 use futures_util::TryStreamExt;
 use object_store::{
     ObjectStore, ObjectStoreExt, PutPayload, WriteMultipart, local::LocalFileSystem, path::Path as Key,
@@ -31,7 +31,7 @@ const CHUNK_BYTES: usize = 256 * 1024;
 
 /// The folder of artifacts.
 const KEPT_FOLDER: &str = "sha256";
-const TRASH: &str = "aside";
+const TRASH_FOLDER: &str = "aside";
 
 /// The age above which an artifact is written again if it is stored again. The removal of unreferenced artifacts checks
 /// their age, and must not remove one that is about to be referenced.
@@ -81,7 +81,7 @@ impl From<io::Error> for StoreError {
 impl Digest {
     /// Returns the digest of bytes.
     pub fn from_bytes(bytes: &[u8]) -> Self {
-        Self(hex(&Sha256::digest(bytes)))
+        Self(to_hex(&Sha256::digest(bytes)))
     }
 
     /// Returns the digest as text.
@@ -182,7 +182,7 @@ impl Store {
     ///
     /// Fails if the store fails.
     pub async fn prove(&self) -> Result<(), StoreError> {
-        let key = Key::from(format!("{TRASH}/proof-{}", std::process::id()));
+        let key = Key::from(format!("{TRASH_FOLDER}/proof-{}", std::process::id()));
         self.objects.put(&key, PutPayload::from_static(b"proof")).await?;
         self.objects.delete(&key).await?;
         Ok(())
@@ -198,7 +198,7 @@ impl Store {
         if self.find_fresh(&artifact.digest).await? {
             return Ok(artifact);
         }
-        let (mut pieces, mut hasher) = (pieces(file).await?, Sha256::new());
+        let (mut pieces, mut hasher) = (stream_file(file).await?, Sha256::new());
         // An incomplete upload is never visible under its name.
         let mut upload = WriteMultipart::new(self.objects.put_multipart(&artifact.digest.key(KEPT_FOLDER)).await?);
         while let Some(piece) = pieces.try_next().await? {
@@ -206,7 +206,7 @@ impl Store {
             upload.wait_for_capacity(4).await?;
             upload.write(&piece);
         }
-        if hex(&hasher.finalize()) != artifact.digest.0 {
+        if to_hex(&hasher.finalize()) != artifact.digest.0 {
             upload.abort().await?;
             return Err(StoreError::Failed(format!("{} changed while it was read", file.display())));
         }
@@ -220,7 +220,7 @@ impl Store {
     ///
     /// Fails if the store fails.
     pub async fn has(&self, digest: &Digest) -> Result<bool, StoreError> {
-        Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some() || self.age(&digest.key(TRASH)).await?.is_some())
+        Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some() || self.age(&digest.key(TRASH_FOLDER)).await?.is_some())
     }
 
     /// Returns whether there is an artifact that will not be removed soon.
@@ -249,15 +249,15 @@ fn age(meta: &object_store::ObjectMeta) -> Duration {
 /// # Errors
 /// Fails if it can't be read.
 pub async fn digest_of_file(file: &Path) -> io::Result<Artifact> {
-    let (mut pieces, mut hasher, mut size) = (pieces(file).await?, Sha256::new(), 0);
+    let (mut pieces, mut hasher, mut size) = (stream_file(file).await?, Sha256::new(), 0);
     while let Some(piece) = pieces.try_next().await? {
         size += piece.len() as u64;
         hasher.update(&piece);
     }
-    Ok(Artifact { digest: Digest(hex(&hasher.finalize())), size })
+    Ok(Artifact { digest: Digest(to_hex(&hasher.finalize())), size })
 }
 
 /// Returns a file in pieces, so that it is never completely in memory.
-async fn pieces(file: &Path) -> io::Result<ReaderStream<tokio::fs::File>> {
+async fn stream_file(file: &Path) -> io::Result<ReaderStream<tokio::fs::File>> {
     Ok(ReaderStream::with_capacity(tokio::fs::File::open(file).await?, CHUNK_BYTES))
 }

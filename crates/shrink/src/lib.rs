@@ -1,6 +1,6 @@
 //! The smallest scene on which a program is still wrong for the same reason.
 //!
-//! Every step is judged from the submission's own state, so any wrong step is a scene of one step ([`beginnings`]).
+//! Every step is judged from the submission's own state, so any wrong step is a scene of one step ([`step_starts`]).
 //! From there [`reduce`] removes bodies, edges, half-planes and forces, simplifies features, and takes rounder
 //! numbers, as long as the program stays wrong for its [`WrongReason`]. The order of attempts is fixed, and the result
 //! is 1-minimal: no single attempt makes it smaller (delta debugging, Zeller and Hildebrandt 2002).
@@ -11,7 +11,7 @@
 //! use fosssim_ended::RunEnd;
 //! use fosssim_student::{self as student, Mistake, Student};
 //! use fosssim_model::{assignments::Assignment, scene};
-//! use fosssim_shrink::{Observation, WrongReason, beginnings, reduce};
+//! use fosssim_shrink::{Observation, WrongReason, reduce, step_starts};
 //!
 //! let text = br#"<scene>
 //!   <duration time="0.5"/> <integrator type="explicit-euler" dt="0.125"/> <collision type="none"/>
@@ -27,7 +27,7 @@
 //! };
 //!
 //! let reason = WrongReason::first(&scene, &run(&scene)).expect("it is wrong");
-//! let begin = beginnings(&scene, &run(&scene).trace, &[1]);
+//! let begin = step_starts(&scene, &run(&scene).trace, &[1]);
 //! let mut holds = |scene: &_, is_alone| Some(reason.holds(scene, &run(scene), is_alone));
 //! let found = reduce(&begin, Assignment::T1M1, &mut holds).expect("a scene");
 //! assert_eq!((found.scene.steps(), found.scene.particles.len()), (1, 1));
@@ -36,14 +36,14 @@
 #![forbid(unsafe_code)]
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
-mod beginnings;
 mod reason;
 mod reducer;
 mod reductions;
 mod size;
+mod step_starts;
 #[cfg(test)]
 mod tests;
 
-pub use beginnings::beginnings;
 pub use reason::{Observation, WrongReason};
 pub use reducer::{Holds, SmallScene, reduce};
+pub use step_starts::step_starts;

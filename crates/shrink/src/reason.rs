@@ -11,7 +11,7 @@ use fosssim_model::{scene::Scene, sim::PairKind};
 use fosssim_student::find;
 
 /// A difference is plain if it is more than this: more than the round-off of any program.
-const PLAIN: f64 = 1e-6;
+const MIN_CLEAR_DIFFERENCE: f64 = 1e-6;
 
 /// The trace and the end of a program's run on a scene.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -47,8 +47,8 @@ impl WrongReason {
 
     /// Returns the reason why a program is wrong on a scene; `None` if it is right, or if only round-off decides that.
     #[must_use]
-    pub fn first(scene: &Scene, seen: &Observation) -> Option<Self> {
-        let (fault, detail) = fault(scene, seen)?;
+    pub fn first_reason(scene: &Scene, seen: &Observation) -> Option<Self> {
+        let (fault, detail) = find_reason(scene, seen)?;
         let Some(detail) = detail else { return Some(fault) };
         let explanations = diagnose::explain(scene, &seen.trace);
         if explanations.iter().any(Explanation::is_not_finite) {
@@ -64,7 +64,7 @@ impl WrongReason {
     /// first one that the scene shows, without other mistakes that have the same effect.
     #[must_use]
     pub fn holds(&self, scene: &Scene, seen: &Observation, is_alone: bool) -> bool {
-        let Some((fault, detail)) = fault(scene, seen) else { return false };
+        let Some((fault, detail)) = find_reason(scene, seen) else { return false };
         let explanations = || diagnose::explain(scene, &seen.trace);
         match (self, detail) {
             (Self::Mistake(_), Some(FindingDetail::BeyondReach { .. })) => false,
@@ -89,7 +89,7 @@ impl WrongReason {
 
 /// Returns the reason that needs no explanation, and the first finding of a trace that can be read; `None` if nothing
 /// is wrong, or if round-off may decide that.
-fn fault(scene: &Scene, seen: &Observation) -> Option<(WrongReason, Option<FindingDetail>)> {
+fn find_reason(scene: &Scene, seen: &Observation) -> Option<(WrongReason, Option<FindingDetail>)> {
     if let Some(end) = WrongReason::from_end(&seen.ended) {
         return Some((end, None));
     }
@@ -116,7 +116,7 @@ const fn is_plain(detail: FindingDetail) -> bool {
         Position { residual, .. }
         | Velocity { residual, .. }
         | Coefficient { residual, .. }
-        | WrongNormal { residual, .. } => !(residual <= PLAIN),
+        | WrongNormal { residual, .. } => !(residual <= MIN_CLEAR_DIFFERENCE),
         _ => true,
     }
 }

@@ -1,7 +1,7 @@
 //! The search: attempts in a fixed order, until a whole pass of them helps nothing.
 use crate::{
     reductions::REDUCTIONS,
-    size::{Size, is_clear, size},
+    size::{Size, is_clear, measure_size},
 };
 use fosssim_model::{
     assignments::Assignment,
@@ -30,8 +30,8 @@ pub fn reduce(beginnings: &[(u32, Scene)], assignment: Assignment, holds: &mut H
         for (step, scene) in beginnings {
             if holds(scene, is_alone)? {
                 let mut search = Search {
-                    size: size(scene),
-                    oddities: oddities(scene, assignment),
+                    size: measure_size(scene),
+                    oddities: count_warnings(scene, assignment),
                     is_clear: is_clear(scene),
                     scene: scene.clone(),
                     refuted: BTreeSet::new(),
@@ -83,15 +83,17 @@ impl Search<'_, '_> {
     /// reason; returns whether there is one, or `None` if the search must end.
     fn take(&mut self, attempts: Vec<Scene>) -> Option<bool> {
         for scene in attempts {
-            if size(&scene) >= self.size {
+            if measure_size(&scene) >= self.size {
                 continue;
             }
-            let (oddities, is_clear, xml) = (oddities(&scene, self.assignment), is_clear(&scene), scene::write(&scene));
+            let (oddities, is_clear, xml) =
+                (count_warnings(&scene, self.assignment), is_clear(&scene), scene::write(&scene));
             if oddities > self.oddities || (self.is_clear && !is_clear) || self.refuted.contains(&xml) {
                 continue;
             }
             if (self.holds)(&scene, self.is_alone)? {
-                (self.size, self.oddities, self.is_clear, self.scene) = (size(&scene), oddities, is_clear, scene);
+                (self.size, self.oddities, self.is_clear, self.scene) =
+                    (measure_size(&scene), oddities, is_clear, scene);
                 return Some(true);
             }
             self.refuted.insert(xml);
@@ -102,7 +104,7 @@ impl Search<'_, '_> {
 
 /// Counts the warnings about a scene, and its parts that programs of the assignment do not support. A scene that is not
 /// sound has more of them than any other.
-fn oddities(scene: &Scene, assignment: Assignment) -> usize {
+fn count_warnings(scene: &Scene, assignment: Assignment) -> usize {
     let loaded = scene::read("", scene::write(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene);
     loaded.map_or(usize::MAX, |loaded| loaded.warnings.len() + scene.unknown_to(assignment).count())
 }

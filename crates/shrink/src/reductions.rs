@@ -1,5 +1,5 @@
 //! The attempts to make a scene smaller: fewer parts, plainer features, rounder numbers.
-use crate::size::{NumberKind, numbers, set_steps};
+use crate::size::{NumberKind, list_numbers, set_steps};
 use fosssim_model::{
     assignments::Assignment,
     scene::{Collision, Force, Integrator, Scene},
@@ -99,7 +99,7 @@ fn move_and_round(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scen
 /// Returns the scene with each number replaced.
 fn map_numbers(scene: &Scene, mut replace: impl FnMut(NumberKind, f64) -> f64) -> Scene {
     let (mut scene, steps) = (scene.clone(), scene.steps());
-    numbers(&mut scene).into_iter().for_each(|(kind, value)| *value = replace(kind, *value));
+    list_numbers(&mut scene).into_iter().for_each(|(kind, value)| *value = replace(kind, *value));
     set_steps(&mut scene, steps);
     scene
 }
@@ -112,7 +112,7 @@ fn round(value: f64, decimals: usize) -> f64 {
 /// Makes one number rounder, the roundest first.
 fn round_number(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let mut copy = scene.clone();
-    let (kind, value) = numbers(&mut copy).into_iter().nth(index).map(|(kind, value)| (kind, *value))?;
+    let (kind, value) = list_numbers(&mut copy).into_iter().nth(index).map(|(kind, value)| (kind, *value))?;
     let plain = [kind.simplest_value(), 0.0, 1.0, 2.0, 0.5, 3.0, 4.0, -value, -1.0, -2.0];
     let whole = [value.trunc(), value.trunc() + value.signum()];
     let new = plain.into_iter().chain(whole).chain((0..=4).map(|decimals| round(value, decimals)));

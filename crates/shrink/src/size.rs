@@ -5,12 +5,12 @@ use fosssim_model::{
 };
 
 /// Only scenes with at most this many bodies and steps are simulated.
-const FEW: usize = 8;
+const MAX_SIMULATED_SIZE: usize = 8;
 /// The maximum number of digits of a number that people compute by hand.
-const HANDY: usize = 3;
+const HAND_DIGITS: usize = 3;
 /// The relative and absolute change of numbers that must not matter, and the factor by which it may grow.
-const SHIFT: f64 = 1e-9;
-const GROWTH: f64 = 1e4;
+const NUMBER_SHIFT: f64 = 1e-9;
+const MAX_GROWTH: f64 = 1e4;
 
 /// The kind of a number in a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -33,7 +33,7 @@ impl NumberKind {
 }
 
 /// Returns all numbers of a scene in its order, the time step first. A caller that changes it sets the duration, too.
-pub(crate) fn numbers(scene: &mut Scene) -> Vec<(NumberKind, &mut f64)> {
+pub(crate) fn list_numbers(scene: &mut Scene) -> Vec<(NumberKind, &mut f64)> {
     use NumberKind::{Addition, Factor, Place, Velocity};
     let mut all = vec![(Factor, &mut scene.time_step)];
     match &mut scene.collision {
@@ -88,13 +88,13 @@ pub(crate) type Size = ([usize; 7], f64);
 /// Measures a scene: steps; bodies; edges and half-planes; forces; features that are not the plainest; collisions that
 /// the reference detects; digits of all numbers that are not plain, such as a mass of 1, and those of the result as far
 /// as they are more than anybody computes by hand; magnitudes and signs, where 1 is before 7 and 7 before -7.
-pub(crate) fn size(scene: &Scene) -> Size {
+pub(crate) fn measure_size(scene: &Scene) -> Size {
     use Integrator::{ExplicitEuler, ForwardBackwardEuler, ImplicitEuler, LinearizedImplicitEuler, SymplecticEuler};
     let mut copy = scene.clone();
-    let not_plain = numbers(&mut copy).into_iter().filter(|(kind, value)| **value != kind.simplest_value());
+    let not_plain = list_numbers(&mut copy).into_iter().filter(|(kind, value)| **value != kind.simplest_value());
     let (mut written, mut magnitude) = (0, 0.0);
     for (_, value) in not_plain {
-        written += digits(*value);
+        written += count_digits(*value);
         magnitude += value.abs() + if *value < 0.0 { 0.01 } else { 0.0 };
     }
     let efforts = [ExplicitEuler, SymplecticEuler, ForwardBackwardEuler, LinearizedImplicitEuler, ImplicitEuler];
@@ -105,17 +105,17 @@ pub(crate) fn size(scene: &Scene) -> Size {
         Collision::Hybrid { max_iterations, .. } => 2 + usize::from(max_iterations != 1),
     };
     let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
-    let is_small = scene.particles.len().max(scene.steps() as usize) <= FEW;
+    let is_small = scene.particles.len().max(scene.steps() as usize) <= MAX_SIMULATED_SIZE;
     let (hits, end) = if is_small { run(scene).unwrap_or_default() } else { Default::default() };
     let hits = hits.iter().filter(|(_, collides)| *collides).count();
-    let long: usize = end.iter().map(|value| digits(*value).saturating_sub(HANDY)).sum();
+    let long: usize = end.iter().map(|value| count_digits(*value).saturating_sub(HAND_DIGITS)).sum();
     let (steps, bodies) = (scene.steps() as usize, scene.particles.len());
     let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort + handling + fixed);
     ([steps, bodies, objects, scene.forces.len(), features, hits, written + long], magnitude)
 }
 
 /// Returns the digits of a number as it is written, without the zero before its point: 2 for 0.05, for 1.5 and for 10.
-fn digits(value: f64) -> usize {
+fn count_digits(value: f64) -> usize {
     let text = value.abs().to_string();
     text.strip_prefix("0.").unwrap_or(&text).chars().filter(char::is_ascii_digit).count()
 }
@@ -125,12 +125,12 @@ pub(crate) fn is_clear(scene: &Scene) -> bool {
     let Some((decisions, end)) = run(scene) else { return false };
     (1..=2_usize).all(|seed| {
         let mut shifted = scene.clone();
-        for (index, (_, value)) in numbers(&mut shifted).into_iter().enumerate().skip(1) {
+        for (index, (_, value)) in list_numbers(&mut shifted).into_iter().enumerate().skip(1) {
             // Up or down, as if by chance (Knuth's multiplicative hashing).
             let is_up = (seed * 64 + index).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 63 == 0;
-            *value += if is_up { SHIFT } else { -SHIFT } * (1.0 + value.abs());
+            *value += if is_up { NUMBER_SHIFT } else { -NUMBER_SHIFT } * (1.0 + value.abs());
         }
-        let is_near = |(one, other): (&f64, &f64)| (one - other).abs() <= SHIFT * GROWTH * (1.0 + one.abs());
+        let is_near = |(one, other): (&f64, &f64)| (one - other).abs() <= NUMBER_SHIFT * MAX_GROWTH * (1.0 + one.abs());
         run(&shifted).is_some_and(|(others, other)| others == decisions && end.iter().zip(&other).all(is_near))
     })
 }
@@ -143,7 +143,7 @@ pub(crate) fn run(scene: &Scene) -> Option<RunResult> {
     #[derive(Default)]
     struct Decisions(Vec<(Pair, bool)>);
     impl Observer for Decisions {
-        fn detection(&mut self, detection: &Detection<'_>) {
+        fn observe_detection(&mut self, detection: &Detection<'_>) {
             self.0.push((detection.pair, detection.decision.collides()));
         }
     }

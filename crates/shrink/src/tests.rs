@@ -23,7 +23,7 @@ fn most_digits(scene: &Scene) -> usize {
         let digits: String = value.abs().to_string().chars().filter(char::is_ascii_digit).collect();
         digits.trim_matches('0').len()
     };
-    size::numbers(&mut scene.clone()).into_iter().map(|(_, value)| significant(value)).max().unwrap_or(0)
+    size::list_numbers(&mut scene.clone()).into_iter().map(|(_, value)| significant(value)).max().unwrap_or(0)
 }
 
 /// Shrinks a probe scene on which a program with this mistake is wrong.
@@ -31,10 +31,10 @@ fn smallest(assignment: Assignment, mistake: &str) -> (WrongReason, SmallScene) 
     let student = Student::new(Some(find(mistake).expect("a row").mistake));
     for (_, scene) in probe_scenes(assignment) {
         let seen = run(&scene, student);
-        let Some(reason) = WrongReason::first(&scene, &seen) else { continue };
+        let Some(reason) = WrongReason::first_reason(&scene, &seen) else { continue };
         let steps: Vec<u32> = (1..=scene.steps()).collect();
         let mut holds = |scene: &Scene, is_alone| Some(reason.holds(scene, &run(scene, student), is_alone));
-        let found = reduce(&beginnings(&scene, &seen.trace, &steps), assignment, &mut holds).expect("a scene");
+        let found = reduce(&step_starts(&scene, &seen.trace, &steps), assignment, &mut holds).expect("a scene");
         return (reason, found);
     }
     panic!("{mistake} shows on no probe scene");
@@ -65,7 +65,7 @@ fn a_named_mistake_is_shown_by_one_step_of_few_bodies_and_round_numbers() {
         assert!(reason.holds(scene, &run(scene, student), false), "{mistake}");
         assert!(scene.unknown_to(assignment).next().is_none(), "{mistake}");
         for right in [Student::default(), Student::default().with_right_approach()] {
-            assert_eq!(WrongReason::first(scene, &run(scene, right)), None, "{mistake}");
+            assert_eq!(WrongReason::first_reason(scene, &run(scene, right)), None, "{mistake}");
         }
     }
 }
@@ -74,15 +74,15 @@ fn a_named_mistake_is_shown_by_one_step_of_few_bodies_and_round_numbers() {
 fn a_search_that_is_stopped_keeps_the_best_so_far() {
     let scene = &probe_scenes(Assignment::T1M1)[0].1;
     let student = Student::new(Some(find("gravity-doubled").expect("a row").mistake));
-    let reason = WrongReason::first(scene, &run(scene, student)).expect("wrong");
+    let reason = WrongReason::first_reason(scene, &run(scene, student)).expect("wrong");
     let mut holds = |scene: &Scene, is_alone| Some(reason.holds(scene, &run(scene, student), is_alone));
-    let begin = beginnings(scene, &run(scene, student).trace, &[1]);
+    let begin = step_starts(scene, &run(scene, student).trace, &[1]);
     let all = reduce(&begin, Assignment::T1M1, &mut holds).expect("a scene");
     let mut runs = 0..2;
     let mut few = |scene: &Scene, is_alone| runs.next().and_then(|_| holds(scene, is_alone));
     let some = reduce(&begin, Assignment::T1M1, &mut few).expect("one");
     assert!(all.is_minimal && !some.is_minimal);
-    assert!(size::size(&all.scene) < size::size(&some.scene));
+    assert!(size::measure_size(&all.scene) < size::measure_size(&some.scene));
     assert!(reason.holds(&some.scene, &run(&some.scene, student), false));
 }
 
@@ -92,7 +92,7 @@ fn one_body_is_tried_first() {
     let scene = &probe_scenes(Assignment::T2M2)[0].1;
     let mut runs = 0..2;
     let mut holds = |_: &Scene, _| runs.next().map(|_| true);
-    let small = reduce(&beginnings(scene, &[], &[1]), Assignment::T2M2, &mut holds).expect("a scene");
+    let small = reduce(&step_starts(scene, &[], &[1]), Assignment::T2M2, &mut holds).expect("a scene");
     assert!(scene.particles.len() > 1 && small.scene.particles.len() == 1);
 }
 
@@ -101,12 +101,12 @@ fn a_crash_is_the_same_by_its_signal_and_a_loop_by_its_limit() {
     use fosssim_ended::RunEnd::{CpuLimit, MemoryLimit, Signalled, WallLimit};
     let scene = &probe_scenes(Assignment::T1M1)[0].1;
     let seen = |ended| Observation { trace: Vec::new(), ended };
-    let reason = |ended| WrongReason::first(scene, &seen(ended)).expect("wrong");
+    let reason = |ended| WrongReason::first_reason(scene, &seen(ended)).expect("wrong");
     assert!(reason(Signalled(11)).holds(scene, &seen(Signalled(11)), false));
     assert!(!reason(Signalled(11)).holds(scene, &seen(Signalled(8)), false));
     assert!(reason(CpuLimit).holds(scene, &seen(WallLimit), false));
     assert!(!reason(CpuLimit).holds(scene, &seen(MemoryLimit), false));
-    assert_eq!(WrongReason::first(scene, &from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
+    assert_eq!(WrongReason::first_reason(scene, &from_trace(Vec::new())), Some(WrongReason::BrokenTrace));
 }
 
 /// A ball between two posts is thrown from one to the other in each round of impulses: judging stops there, and the
@@ -131,6 +131,6 @@ fn a_judgement_that_stops_is_no_broken_trace() {
     let trace = [&trace(&far)[..initial], &trace(&between)[initial..]].concat();
     let outcome = judge(&far, &trace[..], &Options { threads: 1, fair: true, ..Options::default() }, &mut ());
     assert!(matches!(outcome.stop, Some(Stop::Step(_))), "{:?}", outcome.stop);
-    let reason = WrongReason::first(&far, &from_trace(trace));
+    let reason = WrongReason::first_reason(&far, &from_trace(trace));
     assert!(reason.is_some() && reason != Some(WrongReason::BrokenTrace), "{reason:?}");
 }

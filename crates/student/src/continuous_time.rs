@@ -35,7 +35,7 @@ pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepL
 }
 
 fn handle_all_at_once(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
-    let contacts = detection::pass(world, q_start, &state.x, log)?;
+    let contacts = detection::detect_contacts(world, q_start, &state.x, log)?;
     let predicted = state.clone();
     for contact in contacts {
         respond(world, &contact, q_start, &predicted, state);

@@ -1,7 +1,7 @@
 //! The rigid failsafe: an impact zone moves as one rigid body, or stops (collisions.md 5, last part).
 use fosssim_num::{
     elementary,
-    vector::{Vec2, at, divide, length, put},
+    vector::{Vec2, divide, length, set_vector, vector_at},
 };
 
 use super::{
@@ -13,10 +13,10 @@ use super::{
 };
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::Failsafe];
+const MODULE_AREAS: &[Area] = &[Area::Failsafe];
 
 /// The mistakes in zones that stop or should stop; the others are made in zones that move.
-const STOPS: &[Mistake] = &[
+const STOP_MISTAKES: &[Mistake] = &[
     Mistake::FailsafeFixedForgotten,
     Mistake::FailsafeHalfPlaneForgotten,
     Mistake::FailsafeAllFixedOnly,
@@ -28,7 +28,7 @@ const STOPS: &[Mistake] = &[
 
 /// Returns the mistake in the motion of a zone.
 fn mistake_of_motion(student: Student) -> Option<Mistake> {
-    student.mistakes().find(|mistake| HERE.contains(&mistake.area()) && !STOPS.contains(mistake))
+    student.mistakes().find(|mistake| MODULE_AREAS.contains(&mistake.area()) && !STOP_MISTAKES.contains(mistake))
 }
 
 /// Replaces the end of the step for the zone's particles by that of a rigid body with their momentum.
@@ -37,7 +37,7 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     if mistake == Some(Mistake::FailsafeEmpty) {
         return;
     }
-    if stops(world, zone) {
+    if is_stopped(world, zone) {
         stop_zone(world, zone, q_start, state);
     } else {
         let rigid = RigidBody::new(world, zone, q_start, state);
@@ -48,9 +48,9 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
 }
 
 /// Returns whether a part of the zone cannot move.
-fn stops(world: &World, zone: &Zone) -> bool {
+fn is_stopped(world: &World, zone: &Zone) -> bool {
     let student = world.student;
-    let fixed = particles(world, zone).into_iter().any(|particle| world.is_fixed(particle));
+    let fixed = zone_particles(world, zone).into_iter().any(|particle| world.is_fixed(particle));
     let half_plane = zone.half_plane && !student.makes(Mistake::FailsafeHalfPlaneForgotten);
     let fixed = match () {
         () if student.makes(Mistake::FailsafeFixedForgotten) => false,
@@ -63,7 +63,7 @@ fn stops(world: &World, zone: &Zone) -> bool {
 }
 
 /// Returns the particles of a zone in the order of the loop.
-fn particles(world: &World, zone: &Zone) -> Vec<usize> {
+fn zone_particles(world: &World, zone: &Zone) -> Vec<usize> {
     match (zone.particles.first(), zone.particles.last()) {
         (Some(&first), Some(&last)) if world.student.makes(Mistake::FailsafeRange) => (first..=last).collect(),
         _ => zone.particles.iter().copied().collect(),
@@ -71,16 +71,16 @@ fn particles(world: &World, zone: &Zone) -> Vec<usize> {
 }
 
 fn stop_zone(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
-    for particle in particles(world, zone) {
+    for particle in zone_particles(world, zone) {
         if world.student.makes(Mistake::FailsafeStopsFixedOnly) && !world.is_fixed(particle) {
             continue;
         }
         if !world.student.makes(Mistake::FailsafeStopKeepsPosition) {
-            put(&mut state.x, particle, at(q_start, particle));
+            set_vector(&mut state.x, particle, vector_at(q_start, particle));
         }
         if !world.student.makes(Mistake::FailsafeStopKeepsVelocity) {
-            let stopped = at(&state.v, particle) * 0.0;
-            put(&mut state.v, particle, stopped);
+            let stopped = vector_at(&state.v, particle) * 0.0;
+            set_vector(&mut state.v, particle, stopped);
         }
     }
 }
@@ -132,14 +132,14 @@ impl<'a> RigidBody<'a> {
         let mut total = 0.0;
         let (student, both) = (self.world.student, self.mistake() == Some(Mistake::FailsafeMeansUnweighted));
         let is_unweighted = |alone| both || student.makes(alone);
-        for (number, particle) in particles(self.world, zone).into_iter().enumerate() {
+        for (number, particle) in zone_particles(self.world, zone).into_iter().enumerate() {
             let mass = self.mass(number, particle);
-            let start = at(self.q_start, particle);
-            let moved = at(&state.x, particle) - start;
+            let start = vector_at(self.q_start, particle);
+            let moved = vector_at(&state.x, particle) - start;
             let position = if self.mistake() == Some(Mistake::FailsafeCenterAtEnd) { start + moved } else { start };
             let weight = |forgotten| if is_unweighted(forgotten) { 1.0 } else { mass };
             let motion = match self.mistake() {
-                Some(Mistake::FailsafeMomentumVelocity) => at(&state.v, particle),
+                Some(Mistake::FailsafeMomentumVelocity) => vector_at(&state.v, particle),
                 _ => moved,
             };
             self.center = student.add_scaled(self.center, weight(Mistake::FailsafeCenterUnweighted), position);
@@ -167,17 +167,17 @@ impl<'a> RigidBody<'a> {
         let mut momentum = 0.0;
         let mut inertia = 0.0;
         let student = self.world.student;
-        for (number, particle) in particles(self.world, zone).into_iter().enumerate() {
-            let start = at(self.q_start, particle);
-            let moved = at(&state.x, particle) - start;
+        for (number, particle) in zone_particles(self.world, zone).into_iter().enumerate() {
+            let start = vector_at(self.q_start, particle);
+            let moved = vector_at(&state.x, particle) - start;
             let arm = match self.mistake() {
                 Some(Mistake::FailsafeAboutOrigin) => start,
                 _ => start - self.center,
             };
             let relative = match self.mistake() {
                 Some(Mistake::FailsafeWholeDisplacement) => moved,
-                Some(Mistake::FailsafeAngularVelocity) => at(&state.v, particle),
-                Some(Mistake::FailsafeMomentumFromEnd) => at(&state.x, particle) - self.center,
+                Some(Mistake::FailsafeAngularVelocity) => vector_at(&state.v, particle),
+                Some(Mistake::FailsafeMomentumFromEnd) => vector_at(&state.x, particle) - self.center,
                 _ => moved - self.shift,
             };
             let weight = |forgotten| if student.makes(forgotten) { 1.0 } else { self.mass(number, particle) };
@@ -198,7 +198,7 @@ impl<'a> RigidBody<'a> {
             let square = match self.mistake() {
                 Some(Mistake::FailsafeInertiaDistance) => length(arm),
                 Some(Mistake::FailsafeInertiaAtEnd) => {
-                    let arm = at(&state.x, particle) - self.center - self.shift;
+                    let arm = vector_at(&state.x, particle) - self.center - self.shift;
                     arm.dot(&arm)
                 }
                 Some(Mistake::FailsafeInertiaAboutOrigin) => start.dot(&start),
@@ -244,10 +244,10 @@ impl<'a> RigidBody<'a> {
             _ => (elementary::cos(self.angle), elementary::sin(self.angle)),
         };
         let student = self.world.student;
-        for particle in particles(self.world, zone) {
-            let start = at(self.q_start, particle);
+        for particle in zone_particles(self.world, zone) {
+            let start = vector_at(self.q_start, particle);
             let arm = match self.mistake() {
-                Some(Mistake::FailsafeTurnsEnd) => at(&state.x, particle) - self.center - self.shift,
+                Some(Mistake::FailsafeTurnsEnd) => vector_at(&state.x, particle) - self.center - self.shift,
                 _ => start - self.center,
             };
             let across = match self.mistake() {
@@ -266,17 +266,17 @@ impl<'a> RigidBody<'a> {
                     student.add_scaled(student.add_scaled(to, cosine, arm), sine, across)
                 }
             };
-            let (h, before) = (self.world.scene.time_step, at(&state.v, particle));
+            let (h, before) = (self.world.scene.time_step, vector_at(&state.v, particle));
             let v = match self.mistake() {
                 Some(Mistake::FailsafeVelocityKept) => before,
                 Some(Mistake::FailsafeVelocityNoStep) => x - start,
                 Some(Mistake::FailsafeVelocityAdded) => before + divide(x - start, h),
-                Some(Mistake::FailsafeVelocityFromPrediction) => divide(x - at(&state.x, particle), h),
+                Some(Mistake::FailsafeVelocityFromPrediction) => divide(x - vector_at(&state.x, particle), h),
                 Some(Mistake::FailsafeVelocityOfCenter) => divide(self.shift, h),
                 _ => divide(x - start, h),
             };
-            put(&mut state.x, particle, x);
-            put(&mut state.v, particle, v);
+            set_vector(&mut state.x, particle, x);
+            set_vector(&mut state.v, particle, v);
         }
     }
 }

@@ -1,6 +1,6 @@
 //! The forces: the gradient of their potentials (simulation.md 2 and 3).
 use fosssim_model::scene::{Collision, CollisionDetection, Force};
-use fosssim_num::vector::{Vec2, at, divide, length};
+use fosssim_num::vector::{Vec2, divide, length, vector_at};
 
 use super::{
     Slip, StepMistake, Term,
@@ -29,32 +29,32 @@ fn add_gradient(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64
     let (student, count) = (world.student, world.scene.particles.len());
     let subtracted = |term, particle| TermPart { is_negative: true, ..TermPart::from_term(term, particle) };
     match *force {
-        Force::Spring { .. } => spring(world, force, x, v, g),
+        Force::Spring { .. } => add_spring(world, force, x, v, g),
         Force::SimpleGravity { acceleration } => {
             for i in 0..count {
                 world.contribute(g, subtracted(Term::Gravity, i), world.masses[2 * i] * acceleration);
             }
         }
-        Force::Gravitation { first, second, constant } => gravitation(world, (first, second), constant, x, g),
+        Force::Gravitation { first, second, constant } => add_gravitation(world, (first, second), constant, x, g),
         Force::Constant { force } => (0..count).for_each(|i| subtract(g, i, force)),
         Force::Drag { coefficient } => {
             let of = if student.makes(StepMistake::DragOfPositions) { x } else { v };
             for i in 0..count {
-                let speed = if student.makes(StepMistake::DragQuadratic) { length(at(v, i)) } else { 1.0 };
-                world.contribute(g, TermPart::from_term(Term::Drag, i), speed * (coefficient * at(of, i)));
+                let speed = if student.makes(StepMistake::DragQuadratic) { length(vector_at(v, i)) } else { 1.0 };
+                world.contribute(g, TermPart::from_term(Term::Drag, i), speed * (coefficient * vector_at(of, i)));
             }
         }
-        Force::Vortex { .. } => vortex(force, x, v, g),
+        Force::Vortex { .. } => add_vortex(force, x, v, g),
     }
 }
 
-fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
+fn add_spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let Force::Spring { edge, stiffness, rest_length, damping } = *force else { return };
     let student = world.student;
     let makes = |mistake: StepMistake| student.makes(mistake);
     let edge = world.scene.edges[edge];
     let (a, b) = (edge.first, edge.second);
-    let d = at(x, b) - at(x, a);
+    let d = vector_at(x, b) - vector_at(x, a);
     let l = length(d);
     let is_long = makes(StepMistake::SpringDirection) || makes(StepMistake::SpringDirectionEverywhere);
     let n = if is_long { d } else { divide(d, l) };
@@ -65,28 +65,28 @@ fn spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
         () if makes(StepMistake::SpringStrain) => (l - rest_length) / rest_length,
         () => l - rest_length,
     };
-    let tension = amend(student, Term::SpringElastic, stiffness * stretch, stretch);
+    let tension = apply_slips(student, Term::SpringElastic, stiffness * stretch, stretch);
     world.contribute_opposite(g, Term::SpringElastic, (a, b), tension * n, l);
 
     let damping = if makes(StepMistake::SpringDampingNoCoefficient) { 1.0 } else { damping };
     let w = match () {
-        () if makes(StepMistake::SpringDampingOneVelocity) => at(v, b),
-        () if makes(StepMistake::SpringDampingFirstVelocity) => -at(v, a),
-        () if makes(StepMistake::SpringDampingVelocitySum) => at(v, b) + at(v, a),
-        () => at(v, b) - at(v, a),
+        () if makes(StepMistake::SpringDampingOneVelocity) => vector_at(v, b),
+        () if makes(StepMistake::SpringDampingFirstVelocity) => -vector_at(v, a),
+        () if makes(StepMistake::SpringDampingVelocitySum) => vector_at(v, b) + vector_at(v, a),
+        () => vector_at(v, b) - vector_at(v, a),
     };
     let damped = if makes(StepMistake::SpringDampingAllDirections) {
         damping * w
     } else {
         let speed = n.dot(&w);
-        amend(student, Term::SpringDamping, damping * speed, speed) * n
+        apply_slips(student, Term::SpringDamping, damping * speed, speed) * n
     };
     world.contribute_opposite(g, Term::SpringDamping, (a, b), damped, l);
 }
 
 /// Returns the factor of a direction, for a student who takes its modulus, or a square like in the energy; `factor` is
 /// the squared quantity.
-fn amend(student: Student, term: Term, value: f64, factor: f64) -> f64 {
+fn apply_slips(student: Student, term: Term, value: f64, factor: f64) -> f64 {
     match () {
         () if student.slips_by(term, Slip::Absolute) => value.abs(),
         () if student.slips_by(term, Slip::Squared) => value * factor,
@@ -95,9 +95,9 @@ fn amend(student: Student, term: Term, value: f64, factor: f64) -> f64 {
     }
 }
 
-fn gravitation(world: &World, (first, second): (usize, usize), constant: f64, x: &[f64], g: &mut [f64]) {
+fn add_gravitation(world: &World, (first, second): (usize, usize), constant: f64, x: &[f64], g: &mut [f64]) {
     let makes = |mistake: StepMistake| world.student.makes(mistake);
-    let d = at(x, second) - at(x, first);
+    let d = vector_at(x, second) - vector_at(x, first);
     let r = length(d);
     let n = divide(d, r);
     let constant = if makes(StepMistake::GravitationNoConstant) { 1.0 } else { constant };
@@ -112,12 +112,12 @@ fn gravitation(world: &World, (first, second): (usize, usize), constant: f64, x:
 }
 
 /// Adds the vortex force, which the course's library computes.
-fn vortex(force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
+fn add_vortex(force: &Force, x: &[f64], v: &[f64], g: &mut [f64]) {
     let Force::Vortex { first, second, strength, coupling } = *force else { return };
-    let d = at(x, second) - at(x, first);
+    let d = vector_at(x, second) - vector_at(x, first);
     let r = length(d);
     let along = strength * divide(d, r);
-    let around = Vec2::new(-along.y, along.x) - (at(v, second) - at(v, first));
+    let around = Vec2::new(-along.y, along.x) - (vector_at(v, second) - vector_at(v, first));
     let push = -(coupling * divide(around, r * r));
     subtract(g, first, push);
     add(g, second, push);

@@ -1,6 +1,6 @@
 //! The matrix of the implicit integrators: the mass, and the second derivatives of the forces (simulation.md 3 and 4).
 use fosssim_model::scene::{Force, Integrator};
-use fosssim_num::vector::{at, divide, length};
+use fosssim_num::vector::{divide, length, vector_at};
 
 use super::{Slip, StepMistake, Term, step_failure::StepFailure, world::World};
 
@@ -65,7 +65,7 @@ impl HessianSum<'_> {
             Force::Spring { edge, .. } => {
                 let edge = world.scene.edges[edge];
                 let ends = (edge.first, edge.second);
-                let l = length(at(x, edge.second) - at(x, edge.first));
+                let l = length(vector_at(x, edge.second) - vector_at(x, edge.first));
                 if self.takes(Term::JacobianSpring, false) {
                     self.add_pair(Term::JacobianElastic, ends, &elastic_block(world, force, x), l);
                     self.add_pair(Term::JacobianDamping, ends, &damping_block(world, force, x, v), l);
@@ -75,7 +75,7 @@ impl HessianSum<'_> {
                 }
             }
             Force::Gravitation { first, second, .. } if self.takes(Term::JacobianGravitation, false) => {
-                let r = length(at(x, second) - at(x, first));
+                let r = length(vector_at(x, second) - vector_at(x, first));
                 self.add_pair(Term::JacobianGravitation, (first, second), &gravitation_block(world, force, x), r);
             }
             Force::Drag { coefficient } if self.takes(Term::JacobianDrag, true) => {
@@ -155,7 +155,7 @@ fn block(entry: impl Fn(usize, usize) -> f64) -> Matrix2 {
 fn gravitation_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Gravitation { first, second, constant } = *force else { return Matrix2::default() };
     let student = world.student;
-    let d = at(x, second) - at(x, first);
+    let d = vector_at(x, second) - vector_at(x, first);
     let r = length(d);
     let n = if student.makes(StepMistake::JacobianGravitationDirection) { d } else { divide(d, r) };
     let scale = constant * world.masses[2 * second] * world.masses[2 * first] / (r * r * r);
@@ -170,7 +170,7 @@ fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Spring { edge, stiffness, rest_length, .. } = *force else { return Matrix2::default() };
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let edge = world.scene.edges[edge];
-    let d = at(x, edge.second) - at(x, edge.first);
+    let d = vector_at(x, edge.second) - vector_at(x, edge.first);
     let l = length(d);
     let is_long = makes(StepMistake::JacobianElasticDirection) || makes(StepMistake::SpringDirectionEverywhere);
     let n = if is_long { d } else { divide(d, l) };
@@ -191,12 +191,12 @@ fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let edge = world.scene.edges[edge];
     let (a, b) = (edge.first, edge.second);
-    let d = at(x, b) - at(x, a);
+    let d = vector_at(x, b) - vector_at(x, a);
     let l = length(d);
     let is_long = makes(StepMistake::JacobianDampingDirection) || makes(StepMistake::SpringDirectionEverywhere);
     let n = if is_long { d } else { divide(d, l) };
     let outer = block(|r, c| n[r] * n[c]);
-    let w = at(v, b) - at(v, a);
+    let w = vector_at(v, b) - vector_at(v, a);
     let of_outer = world.weight(Term::JacobianDampingOuter, l);
     let mut damped = block(|r, c| of_outer * (n[r] * w[c]));
     let scalar = world.weight(Term::JacobianDampingScalar, l) * n.dot(&w);
@@ -211,7 +211,7 @@ fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 
 fn velocity_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let Force::Spring { edge, damping, .. } = *force else { return Matrix2::default() };
     let edge = world.scene.edges[edge];
-    let d = at(x, edge.second) - at(x, edge.first);
+    let d = vector_at(x, edge.second) - vector_at(x, edge.first);
     let n = if world.student.makes(StepMistake::SpringDirectionEverywhere) { d } else { divide(d, length(d)) };
     if world.student.makes(StepMistake::JacobianVelocityIdentity) {
         return block(|r, c| damping * IDENTITY[r][c]);

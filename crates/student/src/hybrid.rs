@@ -8,7 +8,7 @@ use super::{
 };
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::ImpactZones];
+const MODULE_AREAS: &[Area] = &[Area::ImpactZones];
 
 /// A number of rounds that no right program needs in any scene; some mistakes change the list of zones forever.
 const MAX_ROUNDS: u32 = 1000;
@@ -34,7 +34,7 @@ pub fn handle(
     }
     if !resolved && !world.student.makes(Mistake::GeometricEmpty) {
         let before = world.student.makes(Mistake::GeometricVelocitiesKept).then(|| state.v.clone());
-        geometric(world, q_start, state, log)?;
+        respond_geometrically(world, q_start, state, log)?;
         if let Some(before) = before {
             state.v = before;
         }
@@ -43,11 +43,16 @@ pub fn handle(
 }
 
 /// Moves impact zones rigidly, and enlarges them, until there is no new collision.
-fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
+fn respond_geometrically(
+    world: &World,
+    q_start: &[f64],
+    state: &mut State,
+    log: &mut StepLog,
+) -> Result<(), StepFailure> {
     let student = world.student;
     let prediction = state.clone();
     log.prediction = None;
-    let contacts = detection::pass(world, q_start, &state.x, log)?;
+    let contacts = detection::detect_contacts(world, q_start, &state.x, log)?;
     let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::zone_of(world, contact)).collect());
     let mut round = 0;
     if zones.is_empty() && student.makes(Mistake::GeometricStopsWhenEmpty) {
@@ -72,7 +77,7 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
         }
         let is_old = student.makes(Mistake::GeometricDetectsPrediction);
         let q_end = if is_old { &prediction.x } else { &state.x };
-        let contacts = detection::pass(world, q_start, q_end, log)?;
+        let contacts = detection::detect_contacts(world, q_start, q_end, log)?;
         let found = contacts.iter().map(|contact| zones::zone_of(world, contact));
         let stops_when_clear = contacts.is_empty() && student.makes(Mistake::GeometricStopsWhenClear);
         if stops_when_clear || student.makes(Mistake::GeometricFindsInVain) {
@@ -82,10 +87,10 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
             if student.makes(Mistake::GeometricForgetsZones) { Vec::new() } else { zones.clone() };
         next.extend(found);
         let next = zones::merge(student, next);
-        let same = zones::equal(student, &zones, &next);
+        let same = zones::are_equal(student, &zones, &next);
         if same || round > MAX_ROUNDS {
             if student.makes(Mistake::GeometricExtraPass) {
-                detection::pass(world, q_start, &state.x, log)?;
+                detection::detect_contacts(world, q_start, &state.x, log)?;
             }
             return Ok(());
         }
@@ -104,7 +109,7 @@ fn geometric(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLo
 fn move_zones(world: &World, q_start: &[f64], zones: &[Zone], state: &mut State) {
     let (first, last) = (zones.len().min(1), zones.len().saturating_sub(1));
     let mut chosen: Vec<&Zone> = zones.iter().collect();
-    match world.student.mistake_in(HERE) {
+    match world.student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ZonesReversed) => chosen.reverse(),
         Some(Mistake::GeometricFirstZoneOnly) => chosen.truncate(1),
         Some(Mistake::GeometricLastZoneOnly) => drop(chosen.drain(..last)),

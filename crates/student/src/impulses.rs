@@ -1,5 +1,5 @@
 //! The first part of `hybrid`: rounds of detection and impulses, at most `maxiters` of them (collisions.md 5.2).
-use fosssim_num::vector::{at, length, put};
+use fosssim_num::vector::{length, set_vector, vector_at};
 
 use super::{
     Area, Mistake, detection,
@@ -35,7 +35,7 @@ pub fn apply(
     while rounds < limit {
         let is_old = student.makes(Mistake::ImpulsesDetectPrediction);
         let q_end = if is_old { &prediction.x } else { &state.x };
-        let found = detection::pass(world, &start, q_end, log)?;
+        let found = detection::detect_contacts(world, &start, q_end, log)?;
         let is_as_before = rounds > 0 && found.len() == list.len();
         if !student.makes(Mistake::ImpulsesListKept) {
             list.clear();
@@ -74,7 +74,7 @@ pub fn apply(
     // All rounds found contacts; a correct program does nothing more.
     match student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesDetectAfterLast) => {
-            return Ok(detection::pass(world, q_start, &state.x, log)?.is_empty());
+            return Ok(detection::detect_contacts(world, q_start, &state.x, log)?.is_empty());
         }
         Some(Mistake::ImpulsesReset) => state.clone_from(&prediction),
         Some(Mistake::ImpulsesVelocityRestored) => state.v.clone_from(&prediction.v),
@@ -95,17 +95,19 @@ fn end_before_rounds(
     let ending = match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesEmpty) => Some(false),
         Some(Mistake::ImpulsesEmptySuccess) => Some(true),
-        Some(Mistake::ImpulsesTestBefore) => detection::pass(world, q_start, &state.x, log)?.is_empty().then_some(true),
+        Some(Mistake::ImpulsesTestBefore) => {
+            detection::detect_contacts(world, q_start, &state.x, log)?.is_empty().then_some(true)
+        }
         Some(Mistake::ImpulsesDetectBefore) => {
-            detection::pass(world, q_start, &state.x, log)?;
+            detection::detect_contacts(world, q_start, &state.x, log)?;
             None
         }
         Some(Mistake::ImpulsesPassWhenZero) if max_iterations <= 0 => {
-            detection::pass(world, q_start, &state.x, log)?;
+            detection::detect_contacts(world, q_start, &state.x, log)?;
             Some(false)
         }
         Some(Mistake::ImpulsesTestWhenZero) if max_iterations <= 0 => {
-            Some(detection::pass(world, q_start, &state.x, log)?.is_empty())
+            Some(detection::detect_contacts(world, q_start, &state.x, log)?.is_empty())
         }
         Some(Mistake::ImpulsesSuccessWhenZero) if max_iterations <= 0 => Some(true),
         _ => None,
@@ -169,7 +171,11 @@ fn resolve(
         Some(Mistake::ImpulsesPositionsRestored) => state.x.clone_from(&prediction.x),
         Some(Mistake::ImpulsesPositionsFromVelocities) => {
             for particle in 0..world.scene.particles.len() {
-                put(&mut state.x, particle, at(start, particle) + world.scene.time_step * at(&state.v, particle));
+                set_vector(
+                    &mut state.x,
+                    particle,
+                    vector_at(start, particle) + world.scene.time_step * vector_at(&state.v, particle),
+                );
             }
         }
         Some(Mistake::LogHybridImpulses) => log.impulses.extend_from_slice(contacts),
@@ -180,12 +186,12 @@ fn resolve(
 /// Limits every change of velocity to a maximum size, and the change of position in the same way.
 fn limit_velocity_changes(world: &World, before: &State, state: &mut State) {
     for particle in 0..world.scene.particles.len() {
-        let change = at(&state.v, particle) - at(&before.v, particle);
+        let change = vector_at(&state.v, particle) - vector_at(&before.v, particle);
         if length(change) > MAX_IMPULSE {
             let share = MAX_IMPULSE / length(change);
-            put(&mut state.v, particle, at(&before.v, particle) + share * change);
-            let moved = at(&state.x, particle) - at(&before.x, particle);
-            put(&mut state.x, particle, at(&before.x, particle) + share * moved);
+            set_vector(&mut state.v, particle, vector_at(&before.v, particle) + share * change);
+            let moved = vector_at(&state.x, particle) - vector_at(&before.x, particle);
+            set_vector(&mut state.x, particle, vector_at(&before.x, particle) + share * moved);
         }
     }
 }

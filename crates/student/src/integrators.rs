@@ -27,9 +27,9 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
         }
         // The library supplies the integrator, and the student the forces.
         Integrator::ForwardBackwardEuler => {
-            step_explicit(&world.for_student(Student::default()), world, SYMPLECTIC, false, state)
+            step_explicit(&world.for_student(Student::default()), world, SYMPLECTIC_TERMS, false, state)
         }
-        Integrator::SymplecticEuler => step_explicit(world, world, SYMPLECTIC, false, state),
+        Integrator::SymplecticEuler => step_explicit(world, world, SYMPLECTIC_TERMS, false, state),
         Integrator::LinearizedImplicitEuler if world.student.makes(StepMistake::LinearIterates) => {
             step_implicit(world, state, solves)?;
         }
@@ -45,7 +45,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
     Ok(())
 }
 
-const SYMPLECTIC: [Term; 2] = [Term::SymplecticPositions, Term::SymplecticVelocities];
+const SYMPLECTIC_TERMS: [Term; 2] = [Term::SymplecticPositions, Term::SymplecticVelocities];
 
 /// Returns the term that represents the whole step of an integrator that students write.
 const fn whole_step_term(integrator: Integrator) -> Option<Term> {
@@ -73,7 +73,7 @@ fn treat_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
 
 /// Returns the rate at which velocities move positions, for a student who may use a different rate than the
 /// assignment's.
-fn rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
+fn change_rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     match () {
         () if world.student.slips_by(term, Slip::OtherVelocity) => other.to_vec(),
         () if world.student.slips_by(term, Slip::MeanVelocity) => {
@@ -100,7 +100,7 @@ fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_b
     let old = state.v.clone();
     world.advance(of_v, &mut state.v, h, &accelerations);
     let (right, other) = if moves_by_old { (&old, &state.v) } else { (&state.v, &old) };
-    world.advance(of_x, &mut state.x, h, &rate(world, of_x, right, other));
+    world.advance(of_x, &mut state.x, h, &change_rate(world, of_x, right, other));
 }
 
 /// Clears the entries of fixed particles in a right-hand side.
@@ -133,7 +133,7 @@ fn step_linearized_implicit(world: &World, state: &mut State) -> Result<(), Step
     linear::solve(&mut matrix, &mut rhs, &mut linear::Workspace::default());
     let old = state.v.clone();
     world.advance(Term::LinearVelocities, &mut state.v, 1.0, &rhs);
-    world.advance(Term::LinearPositions, &mut state.x, h, &rate(world, Term::LinearPositions, &state.v, &old));
+    world.advance(Term::LinearPositions, &mut state.x, h, &change_rate(world, Term::LinearPositions, &state.v, &old));
     Ok(())
 }
 
@@ -187,7 +187,12 @@ fn step_implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(
     }
     if world.student.slips(Term::ImplicitPositions).next().is_some() {
         let new: Vec<f64> = state.v.iter().zip(&dv).map(|(v, dv)| v + dv).collect();
-        world.advance(Term::ImplicitPositions, &mut state.x, h, &rate(world, Term::ImplicitPositions, &new, &state.v));
+        world.advance(
+            Term::ImplicitPositions,
+            &mut state.x,
+            h,
+            &change_rate(world, Term::ImplicitPositions, &new, &state.v),
+        );
     } else {
         state.x.iter_mut().zip(&dx).for_each(|(x, dx)| *x += dx);
     }

@@ -47,7 +47,7 @@ pub use author::Student;
 pub use detection::polynomials_of;
 pub use false_positives::FALSE_POSITIVES;
 pub use objects::{Contact, Object, Pair, State};
-pub use record::{Record, trace, trace_within};
+pub use record::{Record, record_trace, trace_within};
 pub use step::step;
 pub use step_failure::StepFailure;
 pub use world::{Guard, StepLog, World};

@@ -3,12 +3,12 @@ use super::{Area, Mistake, author::Student, world::StepLog};
 use std::borrow::Cow;
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::Trace];
+const MODULE_AREAS: &[Area] = &[Area::Trace];
 
 /// Returns the coefficients of the record's polynomial `index`, as logged by this program.
 pub fn logged_polynomial<'a>(student: Student, log: &'a StepLog, index: usize) -> Cow<'a, [f64]> {
     let partner = index ^ 1;
-    let Some(mistake) = student.mistake_in(HERE) else { return log.polynomials[index].coefficients().into() };
+    let Some(mistake) = student.mistake_in(MODULE_AREAS) else { return log.polynomials[index].coefficients().into() };
     let swapped = student.makes(Mistake::LogSwapped) && partner < log.polynomials.len();
     let mut list = log.polynomials[if swapped { partner } else { index }].coefficients().to_vec();
     match mistake {

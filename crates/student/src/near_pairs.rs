@@ -1,6 +1,6 @@
 //! A search for near pairs that misses some pairs, or finds some twice.
 use fosssim_model::sim::PairKind;
-use fosssim_num::vector::{Vec2, at};
+use fosssim_num::vector::{Vec2, vector_at};
 
 use super::{StepMistake, world::World};
 
@@ -42,7 +42,7 @@ impl<'a> NearPairSearch<'a> {
     }
 
     /// Returns how many times a near pair is found.
-    pub fn times(&self, kind: PairKind, one: usize, other: usize) -> u32 {
+    pub fn pair_count(&self, kind: PairKind, one: usize, other: usize) -> u32 {
         if !self.is_found(kind, one, other) {
             return 0;
         }
@@ -74,11 +74,11 @@ impl<'a> NearPairSearch<'a> {
         match kind {
             PairKind::ParticleParticle => {
                 let are_neighbors = self.ranks.is_empty() || self.ranks[one].abs_diff(self.ranks[other]) == 1;
-                are_neighbors && self.meet(self.particle(one), self.particle(other))
+                are_neighbors && self.boxes_meet(self.particle(one), self.particle(other))
             }
             PairKind::ParticleEdge => {
                 !(makes(StepMistake::NearPairsLastEdgeMissing) && other + 1 == scene.edges.len())
-                    && self.edge(other).into_iter().any(|of_edge| self.meet(self.particle(one), of_edge))
+                    && self.edge(other).into_iter().any(|of_edge| self.boxes_meet(self.particle(one), of_edge))
             }
             PairKind::ParticleHalfPlane => {
                 !(makes(StepMistake::NearPairsLastHalfPlaneMissing) && other + 1 == scene.half_planes.len())
@@ -86,7 +86,7 @@ impl<'a> NearPairSearch<'a> {
         }
     }
 
-    fn meet(&self, one: BoundingBox, other: BoundingBox) -> bool {
+    fn boxes_meet(&self, one: BoundingBox, other: BoundingBox) -> bool {
         let makes = |mistake: StepMistake| self.world.student.makes(mistake);
         let looks = [
             StepMistake::NearPairsBoxesOfPoints,
@@ -103,7 +103,7 @@ impl<'a> NearPairSearch<'a> {
     fn particle(&self, particle: usize) -> BoundingBox {
         let is_point = self.world.student.makes(StepMistake::NearPairsBoxesOfPoints);
         let radius = if is_point { 0.0 } else { self.world.scene.particles[particle].radius };
-        let (center, side) = (at(&self.x, particle), radius + 0.5 * self.h);
+        let (center, side) = (vector_at(&self.x, particle), radius + 0.5 * self.h);
         [center - Vec2::new(side, side), center + Vec2::new(side, side)]
     }
 
@@ -112,7 +112,7 @@ impl<'a> NearPairSearch<'a> {
         let edge = self.world.scene.edges[edge];
         let side = edge.radius + 0.5 * self.h;
         let around = |low: Vec2, high: Vec2| [low - Vec2::new(side, side), high + Vec2::new(side, side)];
-        let (first, second) = (at(&self.x, edge.first), at(&self.x, edge.second));
+        let (first, second) = (vector_at(&self.x, edge.first), vector_at(&self.x, edge.second));
         match () {
             () if self.world.student.makes(StepMistake::NearPairsEdgeFirstEnd) => vec![around(first, first)],
             () if self.world.student.makes(StepMistake::NearPairsEdgeEnds) => {

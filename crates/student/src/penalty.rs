@@ -3,7 +3,7 @@ use fosssim_model::{
     scene::CollisionDetection,
     sim::{PairKind, PenaltyPairs},
 };
-use fosssim_num::vector::{Vec2, at, length, unit};
+use fosssim_num::vector::{Vec2, length, unit, vector_at};
 
 use super::{
     Area, Slip, StepMistake, Term, author::Student, near_pairs::NearPairSearch, slip_effects::TermPart, world::World,
@@ -33,7 +33,7 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
     }
     let near = NearPairSearch::new(world, layer.h, x, v);
     let mut visit = |kind: PairKind, (one, other): (usize, usize)| {
-        for _ in 0..near.times(kind, one, other) {
+        for _ in 0..near.pair_count(kind, one, other) {
             force.add(kind, (one, other));
             if kind == PairKind::ParticleParticle && student.makes(StepMistake::PenaltyBothOrders) {
                 force.add(kind, (other, one));
@@ -112,7 +112,7 @@ impl PenaltySum<'_> {
     fn particle_particle(&mut self, (i, j): (usize, usize)) {
         let term = Term::PenaltyParticles;
         let particles = &self.world.scene.particles;
-        let n = at(self.x, j) - at(self.x, i);
+        let n = vector_at(self.x, j) - vector_at(self.x, i);
         let Some([k, depth]) = self.depth(term, length(n), [particles[i].radius, particles[j].radius]) else { return };
         // In the contest the original normalizes the direction twice.
         let is_contest = self.layer.detection == CollisionDetection::Contest;
@@ -126,10 +126,10 @@ impl PenaltySum<'_> {
         let world = self.world;
         let makes = |slip: Slip| world.student.slips_by(term, slip);
         let edge = world.scene.edges[edge];
-        let (x1, x2, x3) = (at(self.x, i), at(self.x, edge.first), at(self.x, edge.second));
+        let (x1, x2, x3) = (vector_at(self.x, i), vector_at(self.x, edge.first), vector_at(self.x, edge.second));
         let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
         // Unlike in the responses, a NaN is kept.
-        let alpha = closest(world.student, term, alpha, |alpha| alpha.clamp(0.0, 1.0));
+        let alpha = closest_alpha(world.student, term, alpha, |alpha| alpha.clamp(0.0, 1.0));
         let n = x2 + alpha * (x3 - x2) - x1;
         let particles = &world.scene.particles;
         let radius = if makes(Slip::EndRadius) { particles[edge.first].radius } else { edge.radius };
@@ -154,7 +154,7 @@ impl PenaltySum<'_> {
         let makes = |slip: Slip| self.world.student.slips_by(term, slip);
         let plane = self.world.scene.half_planes[plane];
         let q = plane.normal;
-        let to_point = plane.point - at(self.x, i);
+        let to_point = plane.point - vector_at(self.x, i);
         let n = match () {
             () if makes(Slip::ToPoint) => to_point,
             () if makes(Slip::Undivided) => to_point.dot(&q) * q,
@@ -175,7 +175,7 @@ impl PenaltySum<'_> {
 
 /// Returns the closest point of an edge in this student's formulas; `limited` is the right way to keep it between the
 /// ends.
-pub fn closest(student: Student, term: Term, alpha: f64, limited: impl Fn(f64) -> f64) -> f64 {
+pub fn closest_alpha(student: Student, term: Term, alpha: f64, limited: impl Fn(f64) -> f64) -> f64 {
     student
         .slips(term)
         .fold(None, |found, slip| match slip {

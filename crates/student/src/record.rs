@@ -14,7 +14,7 @@ use fosssim_model::scene::{Collision, Scene};
 use fosssim_num::vector::Vec2;
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::Trace];
+const MODULE_AREAS: &[Area] = &[Area::Trace];
 
 /// The numbers of one record, with this student's mistakes of logging. A list is `None` if scenes of this collision
 /// type do not have it.
@@ -76,7 +76,7 @@ impl Record {
 ///
 /// # Errors
 /// Fails with the bytes written so far, and the reason why there are no more.
-pub fn trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
+pub fn record_trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     write_trace(scene, student, StepLog::default())
 }
 
@@ -120,7 +120,7 @@ fn logged_numbers(student: Student, values: &[f64]) -> Vec<f64> {
 }
 
 fn logged_impulses(student: Student, impulses: &[Contact]) -> Vec<Contact> {
-    let mut listed: Vec<Contact> = match student.mistake_in(HERE) {
+    let mut listed: Vec<Contact> = match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::LogNoImpulses) => Vec::new(),
         Some(Mistake::LogDuplicateImpulses) => impulses.iter().flat_map(|impulse| [*impulse, *impulse]).collect(),
         Some(Mistake::LogImpulsesReversed) => impulses.iter().rev().copied().collect(),

@@ -1,6 +1,6 @@
 //! The impulses that resolve one contact (collisions.md 3): positions and velocities at the end of the step change.
 use fosssim_model::scene::Collision;
-use fosssim_num::vector::{Vec2, at, divide, unit};
+use fosssim_num::vector::{Vec2, divide, unit, vector_at};
 
 use super::{
     Area, Mistake,
@@ -11,12 +11,12 @@ use super::{
 };
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::Response];
+const MODULE_AREAS: &[Area] = &[Area::Response];
 
 /// Returns twice `(1 + COR) / 2`.
 pub fn restitution_factor(world: &World) -> f64 {
     let student = world.student;
-    let f = match student.mistake_in(HERE) {
+    let f = match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ResponseNoRestitution) => 1.0,
         Some(Mistake::ResponseInelastic) => 0.5,
         Some(Mistake::ResponseRestitutionOnly) => restitution(world) / 2.0,
@@ -66,9 +66,9 @@ impl PairResponse<'_> {
     /// Returns the particle's mean velocity over the step.
     fn velocity(&self, particle: usize) -> Vec2 {
         if self.world.student.makes(Mistake::ResponseEndVelocity) {
-            return at(&self.predicted.v, particle);
+            return vector_at(&self.predicted.v, particle);
         }
-        divide(at(&self.predicted.x, particle) - at(self.q_start, particle), self.world.scene.time_step)
+        divide(vector_at(&self.predicted.x, particle) - vector_at(self.q_start, particle), self.world.scene.time_step)
     }
 
     /// Pushes a particle that is not fixed; `share / inertia` is the change of its speed along `u`.
@@ -115,7 +115,7 @@ impl PairResponse<'_> {
         let (v1, v2, v3) = (self.velocity(one), self.velocity(two), self.velocity(three));
         let elapsed = if student.makes(Mistake::ResponseEdgeAtStart) { 0.0 } else { time * h };
         let impact =
-            |particle: usize, velocity: Vec2| student.add_scaled(at(self.q_start, particle), elapsed, velocity);
+            |particle: usize, velocity: Vec2| student.add_scaled(vector_at(self.q_start, particle), elapsed, velocity);
         let (y1, y2, y3) = (impact(one, v1), impact(two, v2), impact(three, v3));
         let along = y3 - y2;
         let alpha = clamp(student.dot(y1 - y2, along) / student.dot(along, along));
@@ -177,7 +177,7 @@ impl PairResponse<'_> {
 
 /// Returns the masses of two particles in this student's formulas.
 pub fn masses(student: Student, first: f64, second: f64) -> (f64, f64) {
-    match student.mistake_in(HERE) {
+    match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ResponseMassesSwapped) => (second, first),
         Some(Mistake::ResponseEqualMasses) => (1.0, 1.0),
         _ => (first, second),
@@ -186,7 +186,7 @@ pub fn masses(student: Student, first: f64, second: f64) -> (f64, f64) {
 
 /// Returns the share of an edge's second end in this student's formulas.
 pub fn share_of_second(student: Student, alpha: f64) -> f64 {
-    match student.mistake_in(HERE) {
+    match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ResponseEdgeMiddle) => 0.5,
         Some(Mistake::ResponseEdgeSwapped) => 1.0 - alpha,
         _ => alpha,

@@ -1,5 +1,5 @@
 //! Sums of products outside detection, as evaluated by this student's compiler: operation by operation, or fused.
-use fosssim_num::vector::{Vec2, at, put};
+use fosssim_num::vector::{Vec2, set_vector, vector_at};
 
 use super::{Mistake, author::Student};
 
@@ -37,6 +37,6 @@ impl Student {
 
     /// Adds `s * w` to the vector of one particle.
     pub fn push(self, array: &mut [f64], particle: usize, s: f64, w: Vec2) {
-        put(array, particle, self.add_scaled(at(array, particle), s, w));
+        set_vector(array, particle, self.add_scaled(vector_at(array, particle), s, w));
     }
 }

@@ -1,12 +1,12 @@
 //! The collision type `simple`: one pass over the positions at the end of the step that changes velocities
 //! (collisions.md 6).
 use fosssim_model::scene::Collision;
-use fosssim_num::vector::{Vec2, at, length, unit};
+use fosssim_num::vector::{Vec2, length, unit, vector_at};
 
 use super::{
     Slip, Term,
     objects::{Contact, Object, State},
-    penalty::closest,
+    penalty::closest_alpha,
     response::clamp,
     slip_effects::TermPart,
     world::{StepLog, World},
@@ -41,14 +41,14 @@ struct SimpleKind {
     response: Term,
 }
 
-const PARTICLES: SimpleKind = SimpleKind {
+const PARTICLE_KIND: SimpleKind = SimpleKind {
     detection: Term::DetectParticles,
     overlap: Term::OverlapParticles,
     approach: Term::ApproachParticles,
     normal: Term::NormalParticles,
     response: Term::RespondParticles,
 };
-const EDGES: SimpleKind = SimpleKind {
+const EDGE_KIND: SimpleKind = SimpleKind {
     detection: Term::DetectEdges,
     overlap: Term::OverlapEdges,
     approach: Term::ApproachEdges,
@@ -70,7 +70,7 @@ impl SimplePass<'_> {
 
     /// Returns whether two bodies collide, given their radii, their contact vector `n`, and their relative velocity
     /// `w`.
-    fn collides(&self, kind: &SimpleKind, n: Vec2, radii: [f64; 2], w: Vec2) -> bool {
+    fn is_colliding(&self, kind: &SimpleKind, n: Vec2, radii: [f64; 2], w: Vec2) -> bool {
         let [first, second] = radii;
         let reach = match () {
             () if self.makes(kind.overlap, Slip::FirstOnly) => first,
@@ -114,7 +114,7 @@ impl SimplePass<'_> {
     /// Returns the velocity from which an impulse is computed.
     fn velocity(&self, kind: &SimpleKind, state: &State, particle: usize) -> Vec2 {
         let from_start = self.makes(kind.response, Slip::StartVelocity);
-        at(if from_start { &self.start } else { &state.v }, particle)
+        vector_at(if from_start { &self.start } else { &state.v }, particle)
     }
 
     /// Returns the mass of a body of the pair; infinite if it is fixed.
@@ -136,11 +136,11 @@ impl SimplePass<'_> {
     }
 
     fn particle_particle(&self, state: &mut State, one: usize, two: usize) -> Option<Vec2> {
-        let kind = &PARTICLES;
-        let n = at(&state.x, two) - at(&state.x, one);
-        let [v1, v2] = self.seen_velocities(kind, [at(&state.v, one), at(&state.v, two)]);
+        let kind = &PARTICLE_KIND;
+        let n = vector_at(&state.x, two) - vector_at(&state.x, one);
+        let [v1, v2] = self.seen_velocities(kind, [vector_at(&state.v, one), vector_at(&state.v, two)]);
         let radii = [one, two].map(|particle| self.world.scene.particles[particle].radius);
-        if !self.collides(kind, n, radii, v1 - v2) {
+        if !self.is_colliding(kind, n, radii, v1 - v2) {
             return None;
         }
         let n = self.returned_vector(kind, n);
@@ -167,13 +167,13 @@ impl SimplePass<'_> {
     }
 
     fn particle_edge(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
-        let (kind, student) = (&EDGES, self.world.student);
+        let (kind, student) = (&EDGE_KIND, self.world.student);
         let edge = self.world.scene.edges[index];
         let (two, three) = (edge.first, edge.second);
-        let [x1, x2, x3] = [one, two, three].map(|particle| at(&state.x, particle));
-        let [v1, v2, v3] = [one, two, three].map(|particle| at(&state.v, particle));
+        let [x1, x2, x3] = [one, two, three].map(|particle| vector_at(&state.x, particle));
+        let [v1, v2, v3] = [one, two, three].map(|particle| vector_at(&state.v, particle));
         let on_line = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-        let alpha = closest(student, Term::ClosestPoint, on_line, clamp);
+        let alpha = closest_alpha(student, Term::ClosestPoint, on_line, clamp);
         let n = x2 + alpha * (x3 - x2) - x1;
         let seen = match () {
             () if self.makes(kind.approach, Slip::Middle) => 0.5,
@@ -185,16 +185,16 @@ impl SimplePass<'_> {
         let particles = &self.world.scene.particles;
         let radius = if self.makes(kind.overlap, Slip::EndRadius) { particles[two].radius } else { edge.radius };
         let is_off = self.makes(Term::ClosestPoint, Slip::EndsOut) && !(0.0..=1.0).contains(&on_line);
-        if is_off || !self.collides(kind, n, [particles[one].radius, radius], of_particle - of_first - turning) {
+        if is_off || !self.is_colliding(kind, n, [particles[one].radius, radius], of_particle - of_first - turning) {
             return None;
         }
         let n = self.returned_vector(kind, n);
-        self.push_edge(state, [one, two, three], n, closest(student, kind.response, on_line, clamp));
+        self.push_edge(state, [one, two, three], n, closest_alpha(student, kind.response, on_line, clamp));
         Some(n)
     }
 
     fn push_edge(&self, state: &mut State, [one, two, three]: [usize; 3], n: Vec2, alpha: f64) {
-        let kind = &EDGES;
+        let kind = &EDGE_KIND;
         let (u, bounce, beta) = (unit(n), self.restitution_factor(kind), 1.0 - alpha);
         let impulse = |pass: &Self, state: &State| {
             let [v1, v2, v3] = [one, two, three].map(|particle| pass.velocity(kind, state, particle));
@@ -231,13 +231,13 @@ impl SimplePass<'_> {
     fn particle_half_plane(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
         let kind = &HALF_PLANES;
         let plane = self.world.scene.half_planes[index];
-        let to_point = plane.point - at(&state.x, one);
+        let to_point = plane.point - vector_at(&state.x, one);
         let q = if self.makes(kind.normal, Slip::Undivided) { plane.normal } else { unit(plane.normal) };
         let n = if self.makes(kind.normal, Slip::ToPoint) { to_point } else { to_point.dot(&q) * q };
-        let seen = at(&state.v, one);
+        let seen = vector_at(&state.v, one);
         let is_behind = self.makes(kind.overlap, Slip::OneSided) && to_point.dot(&q) > 0.0;
         let reach = if is_behind { f64::INFINITY } else { self.world.scene.particles[one].radius };
-        if !self.collides(kind, n, [reach, 0.0], seen) {
+        if !self.is_colliding(kind, n, [reach, 0.0], seen) {
             return None;
         }
         let n = self.returned_vector(kind, n);

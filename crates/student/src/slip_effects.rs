@@ -5,7 +5,7 @@ use super::{
     world::{World, add, subtract},
 };
 use crate::assignments::states::{Edit, Slip, Term};
-use fosssim_num::vector::{Vec2, put};
+use fosssim_num::vector::{Vec2, set_vector};
 
 /// A particle's part of a quantity, and the data on which its slips may depend.
 #[derive(Clone, Copy)]
@@ -106,7 +106,7 @@ impl World {
             }
         }
         match (is_assigned, is_negative) {
-            (true, _) => put(sum, particle, if is_negative { -value } else { value }),
+            (true, _) => set_vector(sum, particle, if is_negative { -value } else { value }),
             (false, true) => subtract(sum, particle, value),
             (false, false) => add(sum, particle, value),
         }

@@ -9,7 +9,7 @@ use super::{
 use fosssim_model::scene::Collision;
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::Trace];
+const MODULE_AREAS: &[Area] = &[Area::Trace];
 
 /// Advances `state` by one step (simulation.md 1). `log` is the log of the previous step; it is emptied first, unless
 /// the student forgets that. `write` is called for each record that the program writes: the mid record if there is one,
@@ -47,7 +47,7 @@ pub fn step(
         }
         Collision::Hybrid { max_iterations, .. } => {
             hybrid::handle(world, &q_start, max_iterations, state, log, &mut |state, log| {
-                if !matches!(student.mistake_in(HERE), Some(Mistake::LogNoMid | Mistake::LogMidIsEnd)) {
+                if !matches!(student.mistake_in(MODULE_AREAS), Some(Mistake::LogNoMid | Mistake::LogMidIsEnd)) {
                     write(state, log);
                 }
             })?;

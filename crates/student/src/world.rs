@@ -2,7 +2,7 @@
 use fosssim_model::scene::Scene;
 use fosssim_num::{
     polynomial::Polynomial,
-    vector::{Vec2, at, put},
+    vector::{Vec2, set_vector, vector_at},
 };
 
 use std::sync::Arc;
@@ -45,12 +45,12 @@ pub type Guard<'a> = &'a dyn Fn(usize, &[f64]) -> bool;
 
 /// Adds `change` to the vector of one particle.
 pub fn add(array: &mut [f64], particle: usize, change: Vec2) {
-    put(array, particle, at(array, particle) + change);
+    set_vector(array, particle, vector_at(array, particle) + change);
 }
 
 /// Subtracts `change` from the vector of one particle.
 pub fn subtract(array: &mut [f64], particle: usize, change: Vec2) {
-    put(array, particle, at(array, particle) - change);
+    set_vector(array, particle, vector_at(array, particle) - change);
 }
 
 impl World {

@@ -9,7 +9,7 @@ use super::{
 };
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::ImpactZones];
+const MODULE_AREAS: &[Area] = &[Area::ImpactZones];
 
 /// Returns the zone of one contact.
 pub fn zone_of(world: &World, contact: &Contact) -> Zone {
@@ -21,7 +21,7 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
         Object::Particle(other) => particles.extend([other]),
         Object::Edge(index) => {
             let edge = world.scene.edges[index];
-            match student.mistake_in(HERE) {
+            match student.mistake_in(MODULE_AREAS) {
                 Some(Mistake::ZonesOneEndpoint) => particles.extend([edge.first]),
                 Some(Mistake::ZonesOtherEndpoint) => particles.extend([edge.second]),
                 Some(Mistake::ZonesNextParticle) => particles.extend([edge.first, (edge.first + 1).min(all - 1)]),
@@ -38,7 +38,7 @@ pub fn zone_of(world: &World, contact: &Contact) -> Zone {
 
 /// Joins zones until no two share a particle.
 pub fn merge(student: Student, zones: Vec<Zone>) -> Vec<Zone> {
-    match student.mistake_in(HERE) {
+    match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ZonesNotMerged) => return zones,
         Some(Mistake::ZonesAllInOne) => return merge_all(zones),
         Some(Mistake::ZonesUnionFind) => return disjoint_sets(&zones),
@@ -75,7 +75,7 @@ fn merge_overlapping(student: Student, mut zones: Vec<Zone>) -> Vec<Zone> {
 }
 
 fn join(student: Student, zone: &mut Zone, other: Zone) {
-    zone.half_plane = match student.mistake_in(HERE) {
+    zone.half_plane = match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ZonesFlagLost) => zone.half_plane,
         Some(Mistake::ZonesFlagOverwritten) => other.half_plane,
         Some(Mistake::ZonesFlagBoth) => zone.half_plane && other.half_plane,
@@ -101,7 +101,7 @@ fn disjoint_sets(zones: &[Zone]) -> Vec<Zone> {
     let count = zones.iter().filter_map(|zone| zone.particles.last()).max().map_or(0, |last| last + 1);
     let mut parents: Vec<usize> = (0..count).collect();
     for zone in zones {
-        let mut roots = zone.particles.iter().map(|&particle| root(&parents, particle)).collect::<BTreeSet<_>>();
+        let mut roots = zone.particles.iter().map(|&particle| find_root(&parents, particle)).collect::<BTreeSet<_>>();
         let first = roots.pop_first();
         for other in roots {
             parents[other] = first.unwrap_or(other);
@@ -111,7 +111,7 @@ fn disjoint_sets(zones: &[Zone]) -> Vec<Zone> {
     for zone in zones {
         for &particle in &zone.particles {
             let set = sets
-                .entry(root(&parents, particle))
+                .entry(find_root(&parents, particle))
                 .or_insert_with(|| Zone { particles: BTreeSet::new(), half_plane: false });
             set.particles.insert(particle);
             set.half_plane |= zone.half_plane;
@@ -120,7 +120,7 @@ fn disjoint_sets(zones: &[Zone]) -> Vec<Zone> {
     sets.into_values().collect()
 }
 
-fn root(parents: &[usize], mut particle: usize) -> usize {
+fn find_root(parents: &[usize], mut particle: usize) -> usize {
     while parents[particle] != particle {
         particle = parents[particle];
     }
@@ -128,8 +128,8 @@ fn root(parents: &[usize], mut particle: usize) -> usize {
 }
 
 /// Returns whether two lists contain the same zones, in any order.
-pub fn equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
-    let same = |one: &Zone, other: &Zone| match student.mistake_in(HERE) {
+pub fn are_equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
+    let same = |one: &Zone, other: &Zone| match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ZonesEqualByCount) => true,
         Some(Mistake::ZonesEqualNoFlag) => one.particles == other.particles,
         Some(Mistake::ZonesEqualBySize) => one.particles.len() == other.particles.len(),

@@ -1,5 +1,5 @@
 //! Arguments of the commands that run programs.
-use super::values::{TextOrJson, hints, parse_positive, reader, rules};
+use super::values::{TextOrJson, audience_parser, hints_parser, parse_positive, rules_parser};
 use crate::{
     assignments::Assignment,
     judge::Rules,
@@ -55,7 +55,7 @@ pub(in crate::cli) struct GradeArguments {
     #[arg(long, value_name = "SUITE", default_value = Assignment::DEFAULT.key(), help = help_of_suite())]
     pub(in crate::cli) suite: String,
     /// The rule books; by default those of the suite.
-    #[arg(long, value_parser = rules())]
+    #[arg(long, value_parser = rules_parser())]
     pub(in crate::cli) rules: Option<Rules>,
     /// The folder for results, logs and the journal.
     #[arg(short, long, value_name = "DIR")]
@@ -64,7 +64,7 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) format: Vec<String>,
     /// The reader of the reports. Staff see everything; students see what the suite's hints allow, without hidden
     /// groups. The output folder gets pages of both kinds; those for students are in students/.
-    #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
+    #[arg(long = "for", value_parser = audience_parser(), value_name = "READER", default_value = "staff")]
     pub(in crate::cli) reader: Audience,
     /// The number of parallel runs. One per core by default.
     #[arg(short, long, value_name = "N", value_parser = parse_positive::<NonZeroUsize>)]
@@ -77,7 +77,7 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) failed: bool,
     /// The level of detail in reports. By default staff see everything, and students what the suite allows. `full` may
     /// give a formula away.
-    #[arg(long, value_parser = hints(), value_name = "LEVEL")]
+    #[arg(long, value_parser = hints_parser(), value_name = "LEVEL")]
     pub(in crate::cli) hints: Option<Hints>,
     /// Find the smallest scene on which a program is still wrong, for up to four causes of each submission, with two
     /// seconds of processor time for each.
@@ -189,7 +189,7 @@ pub(in crate::cli) struct MergeArguments {
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
     pub(in crate::cli) format: Vec<String>,
     /// The reader of HTML pages. Pages for students are written to students/, next to those for staff.
-    #[arg(long = "for", value_parser = reader(), value_name = "READER", default_value = "staff")]
+    #[arg(long = "for", value_parser = audience_parser(), value_name = "READER", default_value = "staff")]
     pub(in crate::cli) reader: Audience,
     /// Show only a line per submission.
     #[arg(short, long)]

@@ -11,7 +11,7 @@ use draw::{DetectArguments, RenderArguments};
 use grade::{DemoArguments, DoctorArguments, GradeArguments, MergeArguments, SelftestArguments, SuiteCommand};
 use scenes::SceneCommand;
 use std::{ffi::OsString, num::NonZeroUsize, path::PathBuf};
-use values::{TextOrJson, assignment, explanation_hints, parse_positive, reader, rules};
+use values::{TextOrJson, assignment_parser, audience_parser, explanation_hints, parse_positive, rules_parser};
 
 /// Grades the traces of FOSSSim, a course's collision simulator: right or wrong, where, and why.
 #[derive(Debug, Parser)]
@@ -101,7 +101,7 @@ pub(super) enum Command {
 }
 
 /// Returns the number of a step.
-fn step(word: &str) -> Result<u32, &'static str> {
+fn to_step(word: &str) -> Result<u32, &'static str> {
     word.trim().parse().map_err(|_| "steps are counted from 1; 0 is the first record, before any step")
 }
 
@@ -170,7 +170,7 @@ pub(super) struct CheckArguments {
     /// The trace, a file, - for standard input, or asset:Group/name.
     pub(super) trace: PathBuf,
     /// The rule books.
-    #[arg(long, value_parser = rules(), default_value = "both")]
+    #[arg(long, value_parser = rules_parser(), default_value = "both")]
     pub(super) rules: Rules,
     /// The format of the report.
     #[arg(long, value_enum, default_value_t = CheckFormat::Text)]
@@ -187,7 +187,7 @@ pub(super) struct CheckArguments {
     pub(super) tables: bool,
 
     /// Show only these steps, from 1; 0 is the first record. Several are separated by commas.
-    #[arg(long, short, value_name = "N", value_delimiter = ',', allow_negative_numbers = true, value_parser = step)]
+    #[arg(long, short, value_name = "N", value_delimiter = ',', allow_negative_numbers = true, value_parser = to_step)]
     pub(super) step: Vec<u32>,
     /// Do not search for the mistake that explains a wrong trace.
     #[arg(long)]
@@ -224,7 +224,7 @@ pub(super) struct ExplainArguments {
     #[arg(
         long,
         alias = "assignment",
-        value_parser = assignment(),
+        value_parser = assignment_parser(),
         ignore_case = true,
         value_name = "MILESTONE",
         requires = "program"
@@ -321,7 +321,7 @@ pub(super) struct TraceShowArguments {
     /// The trace file.
     pub(super) trace: PathBuf,
     /// The step, from 1; 0 is the initial record.
-    #[arg(long, short, value_name = "N", allow_negative_numbers = true, value_parser = step)]
+    #[arg(long, short, value_name = "N", allow_negative_numbers = true, value_parser = to_step)]
     pub(super) step: u32,
     /// The format of the report.
     #[arg(long, value_enum, default_value_t = TextOrJson::Text)]
@@ -395,7 +395,7 @@ pub(super) struct PageArguments {
     /// The readers of the page. A page for students contains nothing that the suite hides from them.
     #[arg(
         long = "for",
-        value_parser = reader(),
+        value_parser = audience_parser(),
         value_name = "READER",
         default_value = "student",
         requires = "suite"

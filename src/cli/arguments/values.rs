@@ -31,7 +31,7 @@ fn word_parser<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> im
 }
 
 /// Returns the parser for the rule books.
-pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
+pub(in crate::cli) fn rules_parser() -> impl TypedValueParser<Value = Rules> {
     word_parser(&[
         ("parity", Rules::Parity, "The original's rules alone"),
         (
@@ -48,7 +48,7 @@ pub(in crate::cli) fn rules() -> impl TypedValueParser<Value = Rules> {
 }
 
 /// Returns the parser for the hints of reports.
-pub(in crate::cli) fn hints() -> impl TypedValueParser<Value = Hints> {
+pub(in crate::cli) fn hints_parser() -> impl TypedValueParser<Value = Hints> {
     word_parser(&[
         ("none", Hints::None, "The verdict only"),
         ("where", Hints::Where, "The place of the first difference"),
@@ -70,13 +70,13 @@ pub(in crate::cli) fn explanation_hints() -> impl TypedValueParser<Value = Hints
 }
 
 /// Returns the parser for a milestone of the course.
-pub(in crate::cli) fn assignment() -> impl TypedValueParser<Value = Assignment> {
+pub(in crate::cli) fn assignment_parser() -> impl TypedValueParser<Value = Assignment> {
     PossibleValuesParser::new(Assignment::default_first().map(Assignment::key))
         .try_map(|key| Assignment::from_key(&key.to_ascii_lowercase()).ok_or("no such milestone"))
 }
 
 /// Returns the parser for the reader of a page.
-pub(in crate::cli) fn reader() -> impl TypedValueParser<Value = Audience> {
+pub(in crate::cli) fn audience_parser() -> impl TypedValueParser<Value = Audience> {
     word_parser(&[
         ("staff", Audience::Staff, "Staff, or a student on their own machine: everything, of every group"),
         ("student", Audience::Student, "The student: the visible groups, as far as the suite's hints allow"),

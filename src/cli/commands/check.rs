@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let (shown, lasts) = (ShownParts::from_arguments(arguments), is_rereadable(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
     let mut bar = console::Bar::new(scene.scene.steps());
-    let (options, heard) = (options(arguments), &mut BothObservers(&mut bar, &mut wrong));
+    let (options, heard) = (replay_options(arguments), &mut BothObservers(&mut bar, &mut wrong));
     let examined = examine(&scene.scene, &mut trace.reader, shown.keep(lasts), &options, heard);
     drop(bar);
     let outcome = &examined.outcome;
@@ -55,7 +55,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let accepted = check.is_accepted();
     let is_states_only = |data: std::fs::Metadata| Layout::for_scene(&scene.scene).is_states_only(data.len());
     if lasts && !accepted && std::fs::metadata(name).is_ok_and(is_states_only) {
-        console::remark(format!("{}\n", words::STATES_ONLY));
+        console::print_remark(format!("{}\n", words::STATES_ONLY));
     }
     let evidence = || evidence_of(&examined, name, lasts);
     write_report(target, arguments.format, check, &examined, &evidence)?;
@@ -110,7 +110,7 @@ impl ShownParts {
     }
 }
 
-fn options(arguments: &CheckArguments) -> replay::Options {
+fn replay_options(arguments: &CheckArguments) -> replay::Options {
     replay::Options {
         threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
         root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded },
@@ -151,7 +151,7 @@ fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) 
 /// whole trace.
 fn evidence_of(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Evidence {
     let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
-    examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::BUDGET)
+    examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::MAX_NUMBERS)
 }
 
 /// Returns whether a trace can be read a second time, so that it need not be kept during judging.

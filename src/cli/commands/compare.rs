@@ -10,7 +10,7 @@ use serde::Deserialize;
 use std::path::Path;
 
 /// The name of the file of grades in a folder for results.
-const FILE: &str = "grades.jsonl";
+const FILE_NAME: &str = "grades.jsonl";
 
 /// The maximum size of the file, in bytes; 10,000 submissions of 120 wrong scenes need less.
 const MAX_BYTES: u64 = 4 << 30;
@@ -27,7 +27,7 @@ struct GradesFile {
 ///
 /// Fails if the file can't be read, or contains no grade.
 pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
-    let file = if place.is_dir() { Place::new(place, FILE) } else { Place::new("", place) };
+    let file = if place.is_dir() { Place::new(place, FILE_NAME) } else { Place::new("", place) };
     let shown = input::printable_name(&file.path()).to_string();
     let text = file.read(MAX_BYTES).with_context(|| format!("cannot read the earlier grading {shown}"))?;
     let grades = match serde_json::from_slice(&text) {
@@ -36,7 +36,9 @@ pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
         Err(_) => text.split(|&byte| byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok()).collect(),
     };
     if grades.is_empty() {
-        bail!("{shown} holds no grades: give --compare an output folder, its {FILE}, or the output of --format json");
+        bail!(
+            "{shown} holds no grades: give --compare an output folder, its {FILE_NAME}, or the output of --format json"
+        );
     }
     Ok(grades)
 }
@@ -55,6 +57,9 @@ pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     let new: Vec<&str> = grades.iter().filter(|one| one.before.is_none()).map(|one| one.submission.as_str()).collect();
     if let (false, [first, ..]) = (earlier.is_empty(), &new[..]) {
         let new = format_count(new.len() as u64, "submission");
-        console::remark(format!("{new} have no earlier grade, for example {}\n", strip_control_characters(first)));
+        console::print_remark(format!(
+            "{new} have no earlier grade, for example {}\n",
+            strip_control_characters(first)
+        ));
     }
 }

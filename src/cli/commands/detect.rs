@@ -28,11 +28,11 @@ const NO_ANSWER: &str = "no result: the numbers are too large or too small, and 
 pub(super) fn run(arguments: &DetectArguments) -> Result<()> {
     match &arguments.scene {
         Some(scene) => detect_in_scene(arguments, scene),
-        None => show(arguments, &study(&parse_typed(arguments)?)?, None, &[]),
+        None => show(arguments, &study_motion(&parse_typed(arguments)?)?, None, &[]),
     }
 }
 
-fn study(motion: &PairMotion) -> Result<Study> {
+fn study_motion(motion: &PairMotion) -> Result<Study> {
     Study::for_motion(motion).context(NO_ANSWER)
 }
 
@@ -41,7 +41,7 @@ fn show(arguments: &DetectArguments, study: &Study, place: Option<Place<'_>>, in
     write_output(arguments, inputs, |style| match arguments.format {
         DetectFormat::Text => report.text(style),
         DetectFormat::Json => report.json(),
-        DetectFormat::Svg => detection::picture(study, &report.title(), PlotTarget::File),
+        DetectFormat::Svg => detection::render_picture(study, &report.title(), PlotTarget::File),
     })
 }
 
@@ -75,7 +75,7 @@ fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
     const NO_PAIR: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in \
                            a scene (--scene, --step, --pair)";
     let word = arguments.word.as_deref().context(NO_PAIR)?;
-    pair::motion(word, arguments.radii.as_deref())
+    pair::parse_motion(word, arguments.radii.as_deref())
 }
 
 /// Reports on a pair of a scene, in a step of the reference's run or of a trace.
@@ -120,7 +120,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let study = match call.map(|call| &call.study) {
         Some(Ok(seen)) => seen.clone(),
         Some(Err(error)) => return Err(*error).context(NO_ANSWER),
-        None => study(&PairMotion::between(&scene.scene, pair, &before.positions, &end.positions))?,
+        None => study_motion(&PairMotion::between(&scene.scene, pair, &before.positions, &end.positions))?,
     };
     let pass = call.filter(|call| call.polynomials > 0).map(|call| call.pass);
     let logged = call.map_or(&CallLog::Unknown, |call| &call.logged);

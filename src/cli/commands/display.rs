@@ -4,7 +4,7 @@ use crate::{
     files::Place,
     report::{
         foreign::one_line,
-        grade::{no_points, score, shorten_name},
+        grade::{format_score, no_points, shorten_name},
     },
     suite::{Submission, batch::Event, plan::Plan},
 };
@@ -63,7 +63,7 @@ impl<'a> LiveDisplay<'a> {
                 if self.submissions.len() == 1 {
                     return;
                 }
-                let reached = grade.points.map(|reached| score(reached, grade.max_points));
+                let reached = grade.points.map(|reached| format_score(reached, grade.max_points));
                 let line = format!(
                     "[{}/{}] {}: {}, {}",
                     self.graded,
@@ -74,7 +74,7 @@ impl<'a> LiveDisplay<'a> {
                 );
                 match &self.bars {
                     Some(bars) => drop(bars.all.println(line)),
-                    None => console::remark(format!("{line}\n")),
+                    None => console::print_remark(format!("{line}\n")),
                 }
             }
         }

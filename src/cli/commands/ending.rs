@@ -68,7 +68,7 @@ pub(super) fn text(
     let mut text = Text { style, shown, width, closer }.render(grades);
     if grades.len() > 1 && shown > TextDetail::Line {
         text += "\n";
-        text += &grade::class(grades, hardest, style);
+        text += &grade::render_class(grades, hardest, style);
     }
     text + &grade::not_graded(grades, passed_over, style)
 }

@@ -51,7 +51,9 @@ fn explain_program(
     }
     let is_traceless = |(_, steps): &(_, u32)| *steps == 0;
     if suite.is_some() && explained.as_ref().is_some_and(|all| all.ends.iter().all(is_traceless)) {
-        console::remark("if the program belongs to another milestone, omit --suite: the milestone is then inferred\n");
+        console::print_remark(
+            "if the program belongs to another milestone, omit --suite: the milestone is then inferred\n",
+        );
     }
     Ok(explained)
 }

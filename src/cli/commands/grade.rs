@@ -8,7 +8,7 @@ use super::{
     last_run::LastRun,
     pages::{self, Pages},
     probes::Drawing,
-    results::{Report, Results, refuse_several, reports, wanted_pages},
+    results::{Report, Results, read_reports, refuse_several, wanted_pages},
     shard::Sharding,
     shrink,
     submissions::{FoundSubmissions, Search},
@@ -85,7 +85,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         (Some(hints), Audience::Staff) => plan.tell_at_most(hints),
         (Some(hints), Audience::Student) => plan.tell_students(hints),
     }
-    let reports = reports(&arguments.format)?;
+    let reports = read_reports(&arguments.format)?;
     // Read the earlier grading before anything is written, because its files may be in the folder for results.
     let earlier = arguments.compare.as_deref().map(compare::read).transpose()?.unwrap_or_default();
     if arguments.traces {
@@ -125,12 +125,13 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         (true, Some(failed)) => Some(failed),
         (true, None) => bail!("there is no earlier run of this grading; run the same command without --failed first"),
     };
-    plan = plan.part(|scene| selection.takes(scene) && failed.as_ref().is_none_or(|failed| failed.contains(scene)));
+    plan = plan
+        .filter_scenes(|scene| selection.selects(scene) && failed.as_ref().is_none_or(|failed| failed.contains(scene)));
     if arguments.failed {
         submissions.retain(|submission| last_run.has_failed(&submission.name));
     }
     if plan.scenes().next().is_none() {
-        console::complain("nothing to run: everything was accepted in the last run\n");
+        console::print_error("nothing to run: everything was accepted in the last run\n");
         return Ok(exit::ACCEPTED);
     }
     let is_part = plan.scenes().count() < whole || arguments.failed;
@@ -194,12 +195,12 @@ impl GradingSession<'_> {
         if let Some(folder) = &self.folder {
             if taken > 0 {
                 let (folder, all) = (folder.display(), format_count(all as u64, "result"));
-                console::complain(format!("reused {taken} of {all} from {folder} (--fresh regrades everything)\n"));
+                console::print_error(format!("reused {taken} of {all} from {folder} (--fresh regrades everything)\n"));
             }
             if self.cancellation.is_cancelled() {
                 let folder = folder.display();
                 let line = format!("stopped; results are kept in {folder}: the same command continues from there\n");
-                console::complain(&line);
+                console::print_error(&line);
             }
         }
     }
@@ -336,7 +337,7 @@ impl GradingSession<'_> {
                 return Ok(code);
             }
             earlier = grades.iter().map(EarlierGrade::from).collect();
-            console::complain("waiting for a change; Ctrl-C ends\n");
+            console::print_error("waiting for a change; Ctrl-C ends\n");
             // Wait until a file has stopped changing, because a linker writes in several steps.
             let mut last = seen.clone();
             loop {
@@ -391,9 +392,9 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
             "\n=== {} ===\n{}: {}\n",
             strip_control_characters(&scene.scene),
             scene.verdict,
-            strip_control_characters(&words::summary(scene))
+            strip_control_characters(&words::summarize(scene))
         );
-        let details = grade::describe_difference(scene).into_iter().chain(words::details(scene));
+        let details = grade::describe_difference(scene).into_iter().chain(words::list_details(scene));
         text.extend(
             details
                 .chain(explain::lines(&scene.settled, Style::Plain))

@@ -81,7 +81,8 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     let pages = Pages::new(None, false)?;
     let draw = |judged: &JudgedTrace<'_>| pages::draw_card(judged, false);
     let (mut verdicts, mut last) = (Vec::new(), None);
-    for (name, pinned) in [("right sample".to_owned(), pin::RIGHT), (format!("sample with mistake {mistake}"), mistake)]
+    for (name, pinned) in
+        [("right sample".to_owned(), pin::RIGHT_ID), (format!("sample with mistake {mistake}"), mistake)]
     {
         let path = folder.path().join("FOSSSim");
         write_sample(pinned, &path)?;
@@ -146,9 +147,9 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     let table = selftest::run_some(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
         done += 1;
         if let selftest::PromiseState::Broken(how) = &promise.state {
-            console::complain(format!("not held: {}: {how}\n", promise.attack));
+            console::print_error(format!("not held: {}: {how}\n", promise.attack));
         } else if done % 20 == 0 {
-            console::complain(format!("{done} attacks so far\n"));
+            console::print_error(format!("{done} attacks so far\n"));
         }
     })?;
     let mut text = String::new();
@@ -175,7 +176,7 @@ pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
         return Backend::without_sandbox(supervisor)
             .context("programs can't be run on this machine, not even without the sandbox");
     }
-    Backend::best(supervisor).context(
+    Backend::with_all_layers(supervisor).context(
         "programs can't be run safely on this machine; `fosssim-oracle doctor` says what to do; --unsafe-no-sandbox \
          runs them anyway",
     )

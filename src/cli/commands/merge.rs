@@ -3,7 +3,7 @@ use super::{
     ending::{exit_code, text},
     last_run::LastRun,
     pages::Pages,
-    results::{Results, refuse_several, reports},
+    results::{Results, read_reports, refuse_several},
     shard::Part,
 };
 use crate::{
@@ -15,7 +15,7 @@ use crate::{
     },
     suite::{
         Grade,
-        results::{FolderResults, JOURNAL, MAX_JOURNAL_BYTES, Results as _, for_each_line, read_line},
+        results::{FolderResults, JOURNAL_NAME, MAX_JOURNAL_BYTES, Results as _, for_each_line, read_line},
     },
 };
 use anyhow::{Context, Result, bail};
@@ -35,10 +35,10 @@ const MAX_DEPTH: usize = 4;
 const MAX_FILE_BYTES: u64 = 2 << 30;
 
 pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
-    let reports = reports(&arguments.format)?;
+    let reports = read_reports(&arguments.format)?;
     clean_up_when_interrupted();
     let parts = find(&arguments.folders)?;
-    let (first, output) = complete(&parts, arguments)?;
+    let (first, output) = require_complete(&parts, arguments)?;
     let names = &first.common.submissions;
     refuse_several(&reports, names.len(), "")?;
     Folder::make(&output).with_context(|| format!("cannot make {}", output.display()))?;
@@ -47,7 +47,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     for (folder, _) in &parts {
         for name in COPIED_FOLDERS {
             let place = Place::new(folder, name);
-            match place.folder() {
+            match place.open_folder() {
                 Ok(from) => copy(&from, &Place::new(&output, name), MAX_DEPTH)?,
                 Err(FileError::Missing { .. }) => {}
                 Err(error) => {
@@ -106,7 +106,7 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
 }
 
 /// Checks that each shard of one grading exists once; returns one of them, and the folder for the results.
-fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Result<(&'a Part, PathBuf)> {
+fn require_complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Result<(&'a Part, PathBuf)> {
     let (place, first) = parts.first().context("there is no shard")?;
     for (other, part) in parts {
         if let Some(what) = first.common.difference(&part.common) {
@@ -158,8 +158,8 @@ fn complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Res
 
 /// Stores a shard's results in the merged folder, so that a later grading without shards finds them.
 fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
-    let place = Place::new(folder, JOURNAL);
-    let (file, length) = match place.file(MAX_JOURNAL_BYTES) {
+    let place = Place::new(folder, JOURNAL_NAME);
+    let (file, length) = match place.open_file(MAX_JOURNAL_BYTES) {
         Ok(opened) => opened,
         // A shard without submissions has no journal.
         Err(FileError::Missing { .. }) => return Ok(()),
@@ -186,7 +186,7 @@ fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
                 copy().with_context(|| format!("cannot copy {} to {}", source.display(), target.path().display()))?;
             }
             Ok(FolderEntry::Folder(_) | FolderEntry::Other) => {
-                console::complain(format!("skipped {}: it is not a file\n", input::printable_name(&source)));
+                console::print_error(format!("skipped {}: it is not a file\n", input::printable_name(&source)));
             }
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", source.display())),
         }

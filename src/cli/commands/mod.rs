@@ -50,7 +50,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Explain(arguments) => return explain::run(arguments),
         Command::Shrink(arguments) => return shrink::run(arguments),
         Command::Render(arguments) => return render::run(arguments),
-        Command::Trace(TraceCommand::Info(arguments)) => return trace::info(arguments),
+        Command::Trace(TraceCommand::Info(arguments)) => return trace::print_info(arguments),
         Command::Record(arguments) => return record::run(arguments),
         Command::Grade(arguments) => return grade::run(arguments),
         Command::Merge(arguments) => return merge::run(arguments),
@@ -66,7 +66,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Scene(arguments) => scene::run(arguments),
         Command::Serve(arguments) => serve::run(arguments),
         Command::Page(arguments) => page::run(arguments),
-        Command::Completions(arguments) => shell::completions(arguments),
+        Command::Completions(arguments) => shell::print_completions(arguments),
         Command::Man(arguments) => shell::write_manual(arguments),
     };
     done.map(|()| exit::ACCEPTED)

@@ -177,7 +177,7 @@ impl ProgramUnderTest {
         tasks.truncate(cases.len());
         if left_out > 0 {
             let scenes = format_count(left_out as u64, "scene");
-            console::remark(format!(
+            console::print_remark(format!(
                 "the program ran into its limits on {stopped} scenes, so it was not run on {scenes} more; look for a \
                  loop that does not end\n"
             ));
@@ -291,7 +291,7 @@ fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
     let found = milestone::infer_milestone(runner, program).map_err(anyhow::Error::msg)?.unwrap_or(Assignment::DEFAULT);
     if found != Assignment::DEFAULT {
         let Definition { title, key, .. } = found.definition();
-        console::remark(format!("it looks like a program of {title} (--suite {key})\n"));
+        console::print_remark(format!("it looks like a program of {title} (--suite {key})\n"));
     }
     Ok(found)
 }

@@ -20,7 +20,7 @@ pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
     // A folder that the user names is used even if it does not exist yet.
     let defaults = arguments.assets == Path::new("assets") && arguments.references == Path::new("references");
     let embedded = arguments.check && defaults && !arguments.assets.is_dir();
-    let scenes = if embedded { list_bundled() } else { scenes(&arguments.assets)? };
+    let scenes = if embedded { list_bundled() } else { find_scenes(&arguments.assets)? };
     let mut recordings = Vec::new();
     for Input { name, stem, xml } in scenes {
         recordings.push((stem, Recording::for_scene(&name, &xml).with_context(|| format!("cannot record {name}"))?));
@@ -47,7 +47,7 @@ fn list_bundled() -> Vec<Input> {
 }
 
 /// Returns the scenes of a folder, in alphabetical order.
-fn scenes(folder: &Path) -> Result<Vec<Input>> {
+fn find_scenes(folder: &Path) -> Result<Vec<Input>> {
     let shown = folder.display();
     let files = scene_files::list(folder, ".xml").with_context(|| {
         format!("cannot read the scenes in {shown}; run this command in the checkout, or choose a folder with --assets")
@@ -96,7 +96,7 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
     let mut text = String::new();
     for (stem, recording) in recordings {
         let (packed, steps) = (old.file(&format!("{stem}.bin.zst"))?, old.file(&format!("{stem}.steps"))?);
-        text += &recording.difference(packed.as_deref(), steps.as_deref()).unwrap_or_default();
+        text += &recording.describe_difference(packed.as_deref(), steps.as_deref()).unwrap_or_default();
     }
     for stem in old.stems() {
         if !recordings.iter().any(|(known, _)| *known == stem) {
@@ -104,7 +104,7 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
         }
     }
     let before = old.file("manifest.txt")?.unwrap_or_default();
-    text += &recording::diff("manifest.txt", &String::from_utf8_lossy(&before), &manifest(recordings));
+    text += &recording::render_diff("manifest.txt", &String::from_utf8_lossy(&before), &manifest(recordings));
     if text.is_empty() {
         let steps = recordings.iter().map(|(_, recording)| u64::from(recording.steps)).sum();
         let (recordings, steps) = (format_count(recordings.len() as u64, "recording"), format_count(steps, "step"));
@@ -112,7 +112,9 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
         return Ok(exit::ACCEPTED);
     }
     console::print(&text)?;
-    console::remark("the recordings differ; if this is intended, run `fosssim-oracle record` and check the change\n");
+    console::print_remark(
+        "the recordings differ; if this is intended, run `fosssim-oracle record` and check the change\n",
+    );
     Ok(exit::NOT_ACCEPTED)
 }
 
@@ -142,7 +144,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
 
 /// Returns the manifest of the recordings.
 fn manifest(recordings: &[(String, Recording)]) -> String {
-    recording::manifest(recordings.iter().map(|(_, recording)| recording))
+    recording::render_manifest(recordings.iter().map(|(_, recording)| recording))
 }
 
 fn replace(place: &Place, bytes: &[u8]) -> Result<()> {

@@ -31,7 +31,7 @@ pub(super) struct Report {
 /// # Errors
 ///
 /// Fails if a format is unknown, or two formats have the same destination.
-pub(super) fn reports(words: &[String]) -> Result<Vec<Report>> {
+pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
     let mut reports = Vec::new();
     for word in words {
         let (name, file) = match word.split_once('=') {
@@ -124,14 +124,14 @@ impl Results<'_> {
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if self.is_part && self.folder.is_some() {
-            console::complain("only a part was graded, so grades.csv and the other tables are not changed\n");
+            console::print_error("only a part was graded, so grades.csv and the other tables are not changed\n");
         } else if let Some(folder) = self.folder {
             let by_submission = || grade::csv_of_submissions(grades, passed_over);
             let by_scene = || Format::Csv.render_class(grades, passed_over);
             let lines = || grade::json_lines(grades, passed_over);
             let class = || {
                 let missing = grade::not_graded(grades, passed_over, Style::Plain);
-                wrap::wrap(&(grade::class(grades, usize::MAX, Style::Plain) + &missing), CLASS_WIDTH)
+                wrap::wrap(&(grade::render_class(grades, usize::MAX, Style::Plain) + &missing), CLASS_WIDTH)
             };
             let tables: [(&str, &(dyn Fn() -> String + Sync)); 4] = [
                 ("grades.csv", &by_submission),
@@ -147,7 +147,7 @@ impl Results<'_> {
             tables.into_iter().for_each(&mut keep);
             keep(first.and_then(|first| first).map(|first| {
                 if let Some(first) = first {
-                    console::remark(format!("to look at: {}\n", first.display()));
+                    console::print_remark(format!("to look at: {}\n", first.display()));
                 }
             }));
         }

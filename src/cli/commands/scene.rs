@@ -22,7 +22,7 @@ pub(super) fn run(command: &SceneCommand) -> Result<()> {
 
 /// Lists the scenes that match patterns, or all scenes if there are no patterns.
 fn print_list(patterns: &[String], quiet: bool) -> Result<()> {
-    let names = matching(patterns)?;
+    let names = matching_names(patterns)?;
     if quiet {
         let text: String = names.iter().map(|name| format!("asset:{name}\n")).collect();
         return console::print(&text);
@@ -51,12 +51,12 @@ fn show(name: &str) -> Result<()> {
 }
 
 fn export(arguments: &SceneExportArguments) -> Result<()> {
-    let names = matching(&arguments.patterns)?;
+    let names = matching_names(&arguments.patterns)?;
     let (mut written, mut kept, mut other) = (0_u64, 0_u64, Vec::new());
     for name in names {
         let xml = library::scene(name).context("a scene that was just listed")?;
         let place = Place::new(&arguments.output, format!("{name}.xml"));
-        match holds(&place, xml) {
+        match has_contents(&place, xml) {
             Some(true) => kept += 1,
             Some(false) if !arguments.force => other.push(place.path()),
             _ => {
@@ -78,7 +78,7 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
 }
 
 /// Returns whether a file has the given content; `None` if the file does not exist.
-fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
+fn has_contents(place: &Place, bytes: &[u8]) -> Option<bool> {
     match place.read(MAX_SCENE_BYTES as u64) {
         Ok(old) => Some(old == bytes),
         Err(FileError::Missing { .. }) => None,
@@ -87,8 +87,8 @@ fn holds(place: &Place, bytes: &[u8]) -> Option<bool> {
 }
 
 /// Returns the names of the embedded scenes that match patterns.
-fn matching(patterns: &[String]) -> Result<Vec<&'static str>> {
+fn matching_names(patterns: &[String]) -> Result<Vec<&'static str>> {
     let names: Vec<_> = library::all_names().collect();
     let selection = Selection::new(patterns, &names)?;
-    Ok(names.into_iter().filter(|name| selection.takes(name)).collect())
+    Ok(names.into_iter().filter(|name| selection.selects(name)).collect())
 }

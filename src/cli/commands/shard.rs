@@ -82,7 +82,7 @@ impl Part {
     /// Fails if the file can't be read, or was written by a different version.
     pub(super) fn read(folder: &Path) -> Result<Option<Self>> {
         let file = folder.join(SHARD_FILE);
-        let opened = match Place::new(folder, SHARD_FILE).file(MAX_BYTES) {
+        let opened = match Place::new(folder, SHARD_FILE).open_file(MAX_BYTES) {
             Ok((opened, length)) => opened.take(length),
             Err(FileError::Missing { .. }) => return Ok(None),
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
@@ -180,7 +180,10 @@ impl Sharding {
         let part = Part { common, number, grades: grades.to_vec(), passed_over };
         output::write_at(&Place::new(&self.folder, SHARD_FILE), &serde_json::to_vec(&part)?)?;
         let (own, all) = (grades.len(), self.common.submissions.len());
-        console::remark(format!("shard {} of {}: {own} of {all} submissions\n", self.shard.number, self.shard.total));
+        console::print_remark(format!(
+            "shard {} of {}: {own} of {all} submissions\n",
+            self.shard.number, self.shard.total
+        ));
         Ok(())
     }
 }

@@ -20,7 +20,7 @@ use std::ffi::OsStr;
 const PROGRAM_NAME: &str = "fosssim-oracle";
 
 /// The environment variable with which a shell's script requests completions.
-const VARIABLE: &str = "FOSSSIM_COMPLETE";
+const COMPLETION_VARIABLE: &str = "FOSSSIM_COMPLETE";
 
 /// Parts of the script for bash, which splits `asset:Group/name` into three words, with replacements that join them.
 const BASH_REPLACEMENTS: [(&str, &str); 2] = [
@@ -51,7 +51,10 @@ const BASH_REPLACEMENTS: [(&str, &str); 2] = [
 
 /// Answers a shell that requests completions, and ends the program after that.
 pub(in crate::cli) fn complete_if_asked() {
-    CompleteEnv::with_factory(|| with_names(Arguments::command())).var(VARIABLE).bin(PROGRAM_NAME).complete();
+    CompleteEnv::with_factory(|| with_names(Arguments::command()))
+        .var(COMPLETION_VARIABLE)
+        .bin(PROGRAM_NAME)
+        .complete();
 }
 
 /// Returns a command in which suites, scenes, traces and mistakes are completed by name.
@@ -59,28 +62,29 @@ fn with_names(command: Command) -> Command {
     let completed = command.mut_args(|argument| match argument.get_id().as_str() {
         "suite" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
             let names = plan::built_in_names().filter_map(|name| name.strip_suffix("@1").map(str::to_owned));
-            beginning(typed, names).into_iter().chain(PathCompleter::file().complete(typed)).collect()
+            complete_names(typed, names).into_iter().chain(PathCompleter::file().complete(typed)).collect()
         })),
         "scene" | "trace" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
             let names = library::all_names().map(|name| format!("asset:{name}"));
-            beginning(typed, names).into_iter().chain(PathCompleter::file().complete(typed)).collect()
+            complete_names(typed, names).into_iter().chain(PathCompleter::file().complete(typed)).collect()
         })),
-        "mistake" => argument
-            .add(ArgValueCompleter::new(|typed: &OsStr| beginning(typed, all_rows().map(|row| row.id.to_owned())))),
+        "mistake" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
+            complete_names(typed, all_rows().map(|row| row.id.to_owned()))
+        })),
         _ => argument,
     });
     completed.mut_subcommands(with_names)
 }
 
-fn beginning(typed: &OsStr, names: impl Iterator<Item = String>) -> Vec<CompletionCandidate> {
+fn complete_names(typed: &OsStr, names: impl Iterator<Item = String>) -> Vec<CompletionCandidate> {
     let typed = typed.to_string_lossy();
     names.filter(|name| name.starts_with(&*typed)).map(CompletionCandidate::new).collect()
 }
 
-pub(super) fn completions(arguments: &CompletionsArguments) -> Result<()> {
+pub(super) fn print_completions(arguments: &CompletionsArguments) -> Result<()> {
     let (shells, mut script) = (Shells::builtins(), Vec::new());
     let shell = shells.completer(&arguments.shell.to_string()).context("no script for this shell")?;
-    shell.write_registration(VARIABLE, PROGRAM_NAME, PROGRAM_NAME, PROGRAM_NAME, &mut script)?;
+    shell.write_registration(COMPLETION_VARIABLE, PROGRAM_NAME, PROGRAM_NAME, PROGRAM_NAME, &mut script)?;
     let mut script = String::from_utf8(script)?;
     if arguments.shell == Shell::Bash {
         for (split, whole) in BASH_REPLACEMENTS {

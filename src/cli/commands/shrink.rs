@@ -18,12 +18,12 @@ use crate::{
         style::Style,
     },
     scene,
-    shrink::{SmallScene, WrongReason, beginnings},
+    shrink::{SmallScene, WrongReason, step_starts},
     suite::{
         config::Hints,
         located::FailureKind,
         smallest::{
-            MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, causes, shorten_limits,
+            MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, group_causes, shorten_limits,
         },
     },
     together::told::cut,
@@ -86,12 +86,12 @@ pub(super) fn add_smallest(
     let (run_limits, name) = (shorten_limits(&program.limits()), program.program.display().to_string());
     let (runner, assignment) = (program.runner(&run_limits), program.assignment);
     let shrinker = Shrinker { runner, program: &program.program, assignment, limits };
-    let causes = causes(&diagnosis.common, &wrong);
+    let causes = group_causes(&diagnosis.common, &wrong);
     let bar = console::Bar::for_runs(causes.len() as u64);
     let mut found: Vec<SmallestScene> = Vec::new();
     for cause in causes {
         bar.next_run("making scenes smaller");
-        let small = shrinker.smallest(cause).map_err(anyhow::Error::msg)?;
+        let small = shrinker.shrink_cause(cause).map_err(anyhow::Error::msg)?;
         let told = small.map(|small| describe(&small, &name, &program.suite, drawing));
         if let Some((small, card)) = told.filter(|(told, _)| told.is_new(&found)) {
             found.push(small);
@@ -135,10 +135,10 @@ pub(super) fn describe(
         ..SmallestScene::default()
     };
     if drawing.hints == Hints::Full {
-        let (differs, first) = differences(small);
+        let (differs, first) = list_differences(small);
         told.differs = differs;
         if let Some(Finding { step, detail, .. }) = first.filter(|_| told.note.is_none()) {
-            let alone = beginnings(scene, &seen.trace, &[step]).into_iter().find(|(_, scene)| scene.steps() == 1);
+            let alone = step_starts(scene, &seen.trace, &[step]).into_iter().find(|(_, scene)| scene.steps() == 1);
             let pair = detail.pair().map(|pair| (pair, detail.pass()));
             told.by_hand = alone.and_then(|(_, scene)| first_step(&scene, pair, step));
         }
@@ -165,7 +165,7 @@ fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
 }
 
 /// Returns the differing values as text, and the first finding.
-fn differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
+fn list_differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);
     let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };

@@ -42,8 +42,8 @@ pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
     let audited = arguments.audit.then_some(searches);
     let summary = SimulationSummary { scene: &scene.name, output: name.as_deref(), steps, counts, written, audited };
     match (to_stdout, arguments.format) {
-        (true, TextOrJson::Text) => console::remark(summary.text(Style::Plain)),
-        (true, TextOrJson::Json) => console::remark(summary.json()),
+        (true, TextOrJson::Text) => console::print_remark(summary.text(Style::Plain)),
+        (true, TextOrJson::Json) => console::print_remark(summary.json()),
         (false, format) => console::show(format, || summary.text(console::style()), || summary.json())?,
     }
     if searches.disagreements > 0 {

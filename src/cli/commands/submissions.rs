@@ -154,7 +154,7 @@ impl<'a> Search<'a> {
                 Ok(data) if data.is_symlink() => {
                     "it is a link, which may lead to another's submission; name it to grade it".to_owned()
                 }
-                Ok(data) if data.is_file() => match rejection(folder, path, &data) {
+                Ok(data) if data.is_file() => match rejection_reason(folder, path, &data) {
                     Some(why) => why,
                     None => {
                         found.push(program_entry(folder, path));
@@ -171,7 +171,7 @@ impl<'a> Search<'a> {
                 "{} holds no submission: no program, no archive ({}), no folder, and no {}; with --single the folder \
                  itself is one",
                 folder.display(),
-                fosssim_intake::KNOWN,
+                fosssim_intake::KNOWN_EXTENSIONS,
                 self.arguments.program
             );
         }
@@ -196,23 +196,23 @@ fn list_entries(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
 
 /// Returns the reason why a file in a class's folder is not a submission, if so. Executable files are submissions, and
 /// so are files that begin like programs or archives, because learning platforms lose permissions.
-fn rejection(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
+fn rejection_reason(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     if data.permissions().mode() & 0o111 != 0 {
         return None;
     }
     let mut start = Vec::new();
     let opened = Folder::to_write(folder).map_err(|error| error.to_string()).and_then(|folder| {
-        folder.file(path.file_name().unwrap_or_default(), u64::MAX).map_err(|error| error.to_string())
+        folder.open_file(path.file_name().unwrap_or_default(), u64::MAX).map_err(|error| error.to_string())
     });
     let read = opened.and_then(|(file, _)| {
-        file.take(fosssim_intake::START as u64).read_to_end(&mut start).map_err(|error| error.to_string())
+        file.take(fosssim_intake::START_BYTES as u64).read_to_end(&mut start).map_err(|error| error.to_string())
     });
     match (read, FileKind::from_start(&start)) {
         // The grade reports why the file can't be read.
         (Err(_), _) | (_, FileKind::Program | FileKind::Archive(_)) => None,
         (Ok(_), FileKind::Other) => {
             let found = fosssim_intake::describe(&start);
-            Some(format!("it is neither a program nor an archive ({}): {found}", fosssim_intake::KNOWN))
+            Some(format!("it is neither a program nor an archive ({}): {found}", fosssim_intake::KNOWN_EXTENSIONS))
         }
     }
 }
@@ -238,7 +238,7 @@ fn refuse_scene(path: &Path) -> Result<()> {
 
 fn skip_entry(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
     let name = names::printable(path.file_name().unwrap_or(path.as_os_str()));
-    console::complain(format!("passed over {name}: {why}\n"));
+    console::print_error(format!("passed over {name}: {why}\n"));
     passed_over.push(PassedOver { name, why: why.to_owned() });
 }
 
@@ -302,7 +302,7 @@ fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> 
     }
     for same in owners.values().filter(|same| same.len() > 1) {
         let names: Vec<&str> = same.iter().map(|&number| names[number].as_str()).collect();
-        console::complain(format!("one file with several names (hard links): {}\n", names.join(", ")));
+        console::print_error(format!("one file with several names (hard links): {}\n", names.join(", ")));
     }
     let of = |(identity, is_owner): (Identity, Option<bool>)| {
         let same = &owners[&identity];

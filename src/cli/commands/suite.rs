@@ -9,7 +9,7 @@ use crate::{
         console,
         output::Output,
     },
-    judge::fair::borderline,
+    judge::fair::find_borderline,
     suite::{config, coverage::Coverage, plan},
 };
 use anyhow::{Context, Result, bail};
@@ -57,7 +57,7 @@ fn built_in() -> Result<Vec<(String, plan::Plan)>> {
 /// Runs the reference on every scene, on all cores, and returns the scenes with undecided decisions.
 fn find_undecided(plan: &plan::Plan) -> Vec<UndecidedScene> {
     let tasks: Vec<_> = plan.scenes().collect();
-    let all = tasks.par_iter().map(|task| (task.name.clone(), borderline(&task.scene)));
+    let all = tasks.par_iter().map(|task| (task.name.clone(), find_borderline(&task.scene)));
     all.filter(|(_, found)| !matches!(found, Ok(found) if found.is_empty())).collect()
 }
 

@@ -1,13 +1,13 @@
 //! The text of `suite check`: the contents of a suite, and facts to know before grading. Also the list of suites.
-use super::suite_sight::{ENOUGH_SCENES, SeenPart};
+use super::suite_sight::{MAX_LISTED_SCENES, SeenPart};
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},
     report::{
         foreign::one_line,
-        grade::points,
+        grade::format_points,
         number::format_count,
         style::{Look, Style},
-        view::key,
+        view::to_key,
     },
     sim::StepError,
     suite::{
@@ -38,7 +38,7 @@ pub(super) struct SuiteContents {
 
 /// Renders the whole report; `undecided` are the scenes with borderline decisions.
 pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[UndecidedScene], style: Style) -> String {
-    let mut text = head(plan, style);
+    let mut text = render_head(plan, style);
     for group in &plan.groups {
         text += &describe_group(group, style);
     }
@@ -98,7 +98,7 @@ fn describe_size(plan: &Plan) -> String {
 
 /// Returns points as text, such as `1 point` or `12.5 points`.
 fn counted_points(value: f64) -> String {
-    let words = points(value);
+    let words = format_points(value);
     let plural = if words == "1" { "" } else { "s" };
     format!("{words} point{plural}")
 }
@@ -121,7 +121,7 @@ const fn describe_credit(credit: Credit) -> &'static str {
     }
 }
 
-fn head(plan: &Plan, style: Style) -> String {
+fn render_head(plan: &Plan, style: Style) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "{}: {}", style.paint(Look::Strong, &one_line(&plan.name)), describe_size(plan));
     let _ = writeln!(text, "run: {}", one_line(&plan.run.join(" ")));
@@ -161,7 +161,7 @@ fn head(plan: &Plan, style: Style) -> String {
 
 fn describe_group(group: &PlannedGroup, style: Style) -> String {
     let marking = &group.marking;
-    let (points, visibility) = (counted_points(marking.points), key(&marking.visibility).replace('_', " "));
+    let (points, visibility) = (counted_points(marking.points), to_key(&marking.visibility).replace('_', " "));
     let name = style.paint(Look::Strong, &one_line(&group.name));
     let (credit, hints) = (describe_credit(marking.credit), marking.hints.describe().0);
     let extra = if marking.extra { " extra" } else { "" };
@@ -212,16 +212,16 @@ fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
     }
     let title = style.paint(Look::Strong, "Known mistakes that a scene shows, by area");
     let mut text = format!("\n{title}\n");
-    let width = parts.iter().map(|part| key(&part.area).len()).chain(["together".len()]).max().unwrap_or(0);
+    let width = parts.iter().map(|part| to_key(&part.area).len()).chain(["together".len()]).max().unwrap_or(0);
     let (mut all_seen, mut together) = (0, 0);
     for SeenPart { area, all, unseen, rare } in parts {
         (all_seen, together) = (all_seen + all - unseen.len(), together + all);
-        let _ = writeln!(text, "  {:width$}  {:4} of {all:4}", key(area), all - unseen.len());
+        let _ = writeln!(text, "  {:width$}  {:4} of {all:4}", to_key(area), all - unseen.len());
         if !unseen.is_empty() {
             let _ = writeln!(text, "    not shown: {}", unseen.join(", "));
         }
         if !rare.is_empty() {
-            let _ = writeln!(text, "    shown by fewer than {ENOUGH_SCENES} scenes: {}", rare.join(", "));
+            let _ = writeln!(text, "    shown by fewer than {MAX_LISTED_SCENES} scenes: {}", rare.join(", "));
         }
     }
     let _ = writeln!(text, "  {:width$}  {all_seen:4} of {together:4}", "together");

@@ -23,12 +23,13 @@ pub(super) struct SeenPart {
     pub(super) all: usize,
     /// The mistakes with which the sample program writes the same traces as without, on every scene.
     pub(super) unseen: Vec<&'static str>,
-    /// The mistakes that fewer than [`ENOUGH_SCENES`] scenes show, so that a small change of one scene could hide them.
+    /// The mistakes that fewer than [`MAX_LISTED_SCENES`] scenes show, so that a small change of one scene could hide
+    /// them.
     pub(super) rare: Vec<&'static str>,
 }
 
 /// The number of scenes that are sufficient to show a mistake.
-pub(super) const ENOUGH_SCENES: usize = 3;
+pub(super) const MAX_LISTED_SCENES: usize = 3;
 
 /// Returns the areas in the order of the catalogue.
 pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
@@ -51,7 +52,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
         .map(|row| {
             let student = Student::new(Some(row.mistake));
             let showing = scenes.iter().zip(&right).filter(|(scene, right)| written(scene, student) != **right);
-            showing.take(ENOUGH_SCENES).count()
+            showing.take(MAX_LISTED_SCENES).count()
         })
         .collect();
     let mut parts: Vec<SeenPart> = Vec::new();
@@ -66,7 +67,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
         parts[place].all += 1;
         match seen {
             0 => parts[place].unseen.push(row.id),
-            ENOUGH_SCENES.. => {}
+            MAX_LISTED_SCENES.. => {}
             _ => parts[place].rare.push(row.id),
         }
     }

@@ -25,5 +25,5 @@ pub(super) fn print(timings: &Timings) {
         let each = if runs == 0 { String::new() } else { format!("{:.2}", 1000.0 * seconds / f64::from(runs)) };
         table.row([name.into(), format!("{seconds:.3}").into(), each.into()]);
     }
-    console::complain(table.render(Style::Plain));
+    console::print_error(table.render(Style::Plain));
 }

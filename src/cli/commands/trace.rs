@@ -8,12 +8,12 @@ use crate::{
         number::format_count,
         trace::{self as report, ShownRecord, ShownStep},
     },
-    trace::{Frame, Layout, Summary, labels},
+    trace::{Frame, Layout, Summary, collect_labels},
 };
 use anyhow::{Result, bail};
 
 /// Prints the contents of a trace. The exit code is 1 if it can't be read to its end.
-pub(super) fn info(arguments: &TraceInfoArguments) -> Result<u8> {
+pub(super) fn print_info(arguments: &TraceInfoArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;
     let summary = Summary::for_scene(&scene.scene, &mut trace.reader);
@@ -62,7 +62,7 @@ pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
             std::mem::swap(&mut frame, &mut before);
         }
     }
-    let labels = if step > 0 { labels(&scene.scene, &before.state) } else { Vec::new() };
+    let labels = if step > 0 { collect_labels(&scene.scene, &before.state) } else { Vec::new() };
     let shown = ShownStep { step, steps, records: &records, labels: &labels };
     console::show(arguments.format, || shown.text(console::style()), || shown.json(&scene.name, &trace.name))
 }

@@ -28,7 +28,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
     let names: Vec<String> = names.into_iter().map(str::to_owned).collect();
-    let plan = plan.part(|scene| selection.takes(scene));
+    let plan = plan.filter_scenes(|scene| selection.selects(scene));
     let is_part = plan.scenes().count() < names.len();
     for folder in &arguments.programs {
         if !folder.is_dir() {
@@ -50,7 +50,7 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
     compare::add(earlier, &mut grades);
     for folder in &paths {
         if let Some(strays) = Folder::open(folder).ok().and_then(|folder| describe_strays(&folder, &names)) {
-            console::remark(format!("warning: {}\n", one_line(&format!("{}: {strays}", folder.display()))));
+            console::print_remark(format!("warning: {}\n", one_line(&format!("{}: {strays}", folder.display()))));
         }
     }
     let (reader, platform_hides) = (arguments.reader, arguments.platform_hides);
@@ -92,7 +92,7 @@ fn describe_strays(folder: &Folder, scenes: &[String]) -> Option<String> {
     };
     let mut found = texts(folder);
     for group in found.clone() {
-        let inner = folder.folder(OsStr::new(&group)).iter().flat_map(&texts).collect::<Vec<_>>();
+        let inner = folder.open_folder(OsStr::new(&group)).iter().flat_map(&texts).collect::<Vec<_>>();
         found.extend(inner.into_iter().map(|name| format!("{group}/{name}")));
     }
     let is_stray = |name: &&String| {
@@ -154,7 +154,7 @@ fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<
     let last = scene.rsplit('/').next().unwrap_or(scene);
     let names = ["bin", "bin.zst", "bin.gz"].map(|end| [scene, last].map(|name| format!("{name}.{end}")));
     for name in names.into_iter().flatten() {
-        match folder.file(OsStr::new(&name), u64::MAX) {
+        match folder.open_file(OsStr::new(&name), u64::MAX) {
             Ok((file, _)) => match unpack(file, most)? {
                 Ok(trace) => return Ok((trace, None)),
                 Err(why) => passed_over = passed_over.or_else(|| Some(format!("{name} is passed over: {why}"))),

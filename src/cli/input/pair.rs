@@ -12,12 +12,12 @@ use anyhow::{Context, Result, anyhow, bail};
 /// # Errors
 ///
 /// Fails if the text is not such a pair.
-pub(in crate::cli) fn motion(word: &str, radii: Option<&str>) -> Result<PairMotion> {
+pub(in crate::cli) fn parse_motion(word: &str, radii: Option<&str>) -> Result<PairMotion> {
     let mut points = word.split(':').collect::<Vec<_>>();
     let word = points.remove(0);
     let kind = kind_of(word)?;
     let moving = |index: usize| parse_moving(points[index]);
-    let fixed = |index: usize| vector(points[index]);
+    let fixed = |index: usize| parse_vector(points[index]);
     let expect = |count: usize, what: &str| {
         if points.len() == count {
             return Ok(());
@@ -105,7 +105,7 @@ fn kind_of(word: &str) -> Result<PairKind> {
 fn parse_moving(word: &str) -> Result<PointMotion> {
     if let Some((start, end)) = word.split_once("..") {
         // The displacement is the difference of the ends, computed as in the course's code.
-        let (start, end) = (vector(start)?, vector(end)?);
+        let (start, end) = (parse_vector(start)?, parse_vector(end)?);
         return Ok(PointMotion { start, shift: end - start });
     }
     // A plus sign may also belong to a number or to its exponent: 1e+3,+2+4,1.
@@ -114,8 +114,10 @@ fn parse_moving(word: &str) -> Result<PointMotion> {
         before.contains(',') && before.ends_with(|c: char| c.is_ascii_digit() || c == '.')
     };
     match word.char_indices().filter(|&(_, c)| c == '+').find(separates) {
-        Some((place, _)) => Ok(PointMotion { start: vector(&word[..place])?, shift: vector(&word[place + 1..])? }),
-        None => Ok(PointMotion { start: vector(word)?, shift: Vec2::zeros() }),
+        Some((place, _)) => {
+            Ok(PointMotion { start: parse_vector(&word[..place])?, shift: parse_vector(&word[place + 1..])? })
+        }
+        None => Ok(PointMotion { start: parse_vector(word)?, shift: Vec2::zeros() }),
     }
 }
 
@@ -124,7 +126,7 @@ fn parse_moving(word: &str) -> Result<PointMotion> {
 /// # Errors
 ///
 /// Fails if the text is not a point with finite coordinates.
-fn vector(word: &str) -> Result<Vec2> {
+fn parse_vector(word: &str) -> Result<Vec2> {
     let advice = || format!("`{word}` is not a point; write X,Y as in 3,-1.5");
     let (x, y) = word.split_once(',').with_context(advice)?;
     Ok(Vec2::new(parse_number(x).with_context(advice)?, parse_number(y).with_context(advice)?))
@@ -181,7 +183,7 @@ mod tests {
 
     #[test]
     fn the_kind_of_pair_is_looked_at_before_the_radii_are_missed() {
-        let error = |word: &str| format!("{:#}", motion(word, None).unwrap_err());
+        let error = |word: &str| format!("{:#}", parse_motion(word, None).unwrap_err());
         assert!(error("xx:1").contains("`xx` is not a kind of pair"), "{}", error("xx:1"));
         assert!(error("particle-egde:1").ends_with("did you mean particle-edge?"), "{}", error("particle-egde:1"));
         assert!(error("pp:1,0").contains("pp takes 2 points"), "{}", error("pp:1,0"));
@@ -190,8 +192,8 @@ mod tests {
 
     #[test]
     fn each_kind_says_what_it_takes() {
-        assert!(motion("pe:3,1+4,1:5,9+2,6:5,3+5,8", Some("1,1")).is_ok());
-        assert!(motion("ph:0,1+0,-1:0,0:0,1", Some("0.25")).is_ok());
+        assert!(parse_motion("pe:3,1+4,1:5,9+2,6:5,3+5,8", Some("1,1")).is_ok());
+        assert!(parse_motion("ph:0,1+0,-1:0,0:0,1", Some("0.25")).is_ok());
         for (pair, radii, says) in [
             ("pe:3,1:5,9", "1,1", "pe takes 3 points (the particle's center and the ends of the edge), not 2"),
             ("pq:3,1:5,9", "1,1", "`pq` is not a kind of pair"),
@@ -199,7 +201,7 @@ mod tests {
             ("pp:3,1:5,9", "1,-1", "a radius is negative"),
             ("ph:3,1:0,0:0,0", "1", "the half-plane's normal is zero"),
         ] {
-            let error = format!("{:#}", motion(pair, Some(radii)).unwrap_err());
+            let error = format!("{:#}", parse_motion(pair, Some(radii)).unwrap_err());
             assert!(error.contains(says), "{error}");
         }
     }

@@ -45,11 +45,11 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
         Ok(LoadedScene { scene, warnings, .. }) => {
             // Embedded scenes need no warnings.
             if identity.is_some() {
-                console::remark(problems::warnings(&shown, &bytes, &warnings));
+                console::print_remark(problems::render_warnings(&shown, &bytes, &warnings));
             }
             Ok(SceneInput { name: shown, scene, identity })
         }
-        Err(refused) => bail!("{}", problems::errors(&shown, &bytes, &refused)),
+        Err(refused) => bail!("{}", problems::render_errors(&shown, &bytes, &refused)),
     }
 }
 

@@ -4,7 +4,7 @@ use super::{
     search,
 };
 use fosssim_oracle::{
-    num::vector::{Vec2, at, divide, length},
+    num::vector::{Vec2, divide, length, vector_at},
     scene::{Collision, Edge, HalfPlane, Particle, Scene},
     sim::{Detection, Impulse, Observer, Pass, RootSearch, Simulation, Stage, State, Zone},
 };
@@ -29,10 +29,10 @@ struct AfterImpulses {
 }
 
 impl Observer for AfterImpulses {
-    fn impulse(&mut self, _impulse: &Impulse) {
+    fn observe_impulse(&mut self, _impulse: &Impulse) {
         self.impulses += 1;
     }
-    fn synchronization(&mut self, state: &State) {
+    fn observe_synchronization(&mut self, state: &State) {
         self.state = state.clone();
     }
 }
@@ -47,12 +47,12 @@ fn impulses_conserve_momentum() {
             let before = simulation.state().clone();
             simulation.step(&mut seen).expect("an ordinary step");
             impulses.set(impulses.get() + seen.impulses);
-            let (start, old_size) = weighted(&scene, |index| at(&before.velocities, index));
-            let (end, size) = weighted(&scene, |index| at(&seen.state.velocities, index));
+            let (start, old_size) = weighted(&scene, |index| vector_at(&before.velocities, index));
+            let (end, size) = weighted(&scene, |index| vector_at(&seen.state.velocities, index));
             let room = 1e-14 * (size + old_size) * f64::from(seen.impulses + 1);
             prop_assert!(length(end - start) <= room, "{start:?} {end:?}");
             // Positions change by the step size times the change of velocity, so the center of mass goes straight on.
-            let way = |index| at(&seen.state.positions, index) - at(&before.positions, index);
+            let way = |index| vector_at(&seen.state.positions, index) - vector_at(&before.positions, index);
             let (moved, _) = weighted(&scene, way);
             prop_assert!(length(moved - start * TIME_STEP) <= room * 100.0, "{moved:?}");
             Ok(())
@@ -98,7 +98,7 @@ fn one_contact() -> impl Strategy<Value = Scene> {
 /// Kinetic energy.
 fn energy(scene: &Scene, state: &State) -> f64 {
     let energy = |(index, particle): (usize, &Particle)| {
-        let v = at(&state.velocities, index);
+        let v = vector_at(&state.velocities, index);
         0.5 * particle.mass * v.dot(&v)
     };
     scene.particles.iter().enumerate().map(energy).sum()
@@ -142,16 +142,16 @@ impl Observer for Geometric {
     fn begin_pass(&mut self, pass: Pass) {
         self.fresh = matches!(pass.stage, Stage::Geometric { .. });
     }
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         if std::mem::take(&mut self.fresh) {
             self.start = detection.q_start.to_vec();
             self.ends.push(detection.q_end.to_vec());
         }
     }
-    fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
+    fn observe_failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
         self.moved.push((self.ends.len(), zone.particles.to_vec(), zone.half_plane));
     }
-    fn zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
+    fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         self.zones.push(zones.iter().map(|zone| (zone.particles.to_vec(), zone.half_plane)).collect());
     }
 }
@@ -177,21 +177,22 @@ fn the_failsafe_moves_rigidly_and_conserves_momentum() {
             if *half_plane || members().any(|particle| scene.particles[particle].fixed) {
                 stopped.set(stopped.get() + 1);
                 for particle in members() {
-                    prop_assert_eq!(at(after, particle), at(&seen.start, particle));
+                    prop_assert_eq!(vector_at(after, particle), vector_at(&seen.start, particle));
                 }
                 continue;
             }
             moved.set(moved.get() + 1);
             let sum = |end: &[f64]| {
-                let way =
-                    |particle: usize| scene.particles[particle].mass * (at(end, particle) - at(&seen.start, particle));
+                let way = |particle: usize| {
+                    scene.particles[particle].mass * (vector_at(end, particle) - vector_at(&seen.start, particle))
+                };
                 members().map(way).sum::<Vec2>()
             };
             prop_assert!(
                 length(sum(after) - sum(before)) < 1e-13 * f64::from(u32::try_from(particles.len()).unwrap()) * 40.0
             );
             for (one, two) in members().flat_map(|one| members().map(move |two| (one, two))) {
-                let distance = |q: &[f64]| length(at(q, one) - at(q, two));
+                let distance = |q: &[f64]| length(vector_at(q, one) - vector_at(q, two));
                 prop_assert!((distance(after) - distance(&seen.start)).abs() < 1e-14, "{one} {two}");
             }
         }

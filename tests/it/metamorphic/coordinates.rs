@@ -38,14 +38,14 @@ impl Observer for Story {
     fn begin_step(&mut self, _step: u32) {
         *self = Self::default();
     }
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let hit = match detection.decision {
             Decision::Hit { time, normal } => Some((time, normal)),
             Decision::Miss { .. } => None,
         };
         self.detections.push((detection.pair, detection.polynomials.to_vec(), hit));
     }
-    fn synchronization(&mut self, state: &State) {
+    fn observe_synchronization(&mut self, state: &State) {
         self.middle = Some(state.clone());
     }
 }
@@ -170,7 +170,7 @@ impl Observer for Doubt {
     fn begin_step(&mut self, _step: u32) {
         self.any = false;
     }
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         if let Decision::Hit { normal, .. } = detection.decision {
             self.hits += 1;
             // Without a direction the response is no number (collisions.md 7).

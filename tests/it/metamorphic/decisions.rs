@@ -39,7 +39,7 @@ fn is_alone(polynomial: &Polynomial) -> bool {
 }
 
 impl Observer for Tally {
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let polynomials = detection.polynomials;
         if polynomials.is_empty() {
             return;

@@ -4,7 +4,7 @@
 use fosssim_oracle::{
     num::{
         polynomial::Polynomial,
-        vector::{Vec2, at},
+        vector::{Vec2, vector_at},
     },
     scene::Scene,
     sim::{Detection, Observer, Pair, PairKind, Steer},
@@ -26,8 +26,8 @@ impl Quadratics {
     /// Of particle `particle` and the edge between `ends`.
     pub fn of(q_start: &[f64], q_end: &[f64], particle: usize, ends: [usize; 2]) -> Self {
         let relative = |index, to| {
-            let start = at(q_start, index) - at(q_start, to);
-            [start, at(q_end, index) - at(q_end, to) - start]
+            let start = vector_at(q_start, index) - vector_at(q_start, to);
+            [start, vector_at(q_end, index) - vector_at(q_end, to) - start]
         };
         let (w, e) = (relative(particle, ends[0]), relative(ends[1], ends[0]));
         let cross = |a: Vec2, b: Vec2| a.x * b.y - a.y * b.x;
@@ -76,8 +76,8 @@ pub struct Mended<'s, O> {
 }
 
 impl<O: Observer> Observer for Mended<'_, O> {
-    fn detection(&mut self, detection: &Detection<'_>) {
-        self.inner.detection(detection);
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
+        self.inner.observe_detection(detection);
     }
     fn as_steer(&mut self) -> Option<&mut dyn Steer> {
         Some(self)

@@ -1,6 +1,6 @@
 //! Changes of coordinates and of names, of scenes and of what is simulated.
 use fosssim_oracle::{
-    num::vector::{Vec2, at, put},
+    num::vector::{Vec2, set_vector, vector_at},
     scene::{Collision, Edge, Force, HalfPlane, Particle, Scene},
     sim::State,
 };
@@ -101,8 +101,8 @@ impl Map {
     pub fn state(&self, state: &State) -> State {
         let mut mapped = state.clone();
         for index in 0..state.positions.len() / 2 {
-            put(&mut mapped.positions, index, self.point(at(&state.positions, index)));
-            put(&mut mapped.velocities, index, self.vector(at(&state.velocities, index)));
+            set_vector(&mut mapped.positions, index, self.point(vector_at(&state.positions, index)));
+            set_vector(&mut mapped.velocities, index, self.vector(vector_at(&state.velocities, index)));
         }
         mapped
     }

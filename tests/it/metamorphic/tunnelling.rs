@@ -6,7 +6,7 @@ use super::{
     transform::with_ends_exchanged,
 };
 use fosssim_oracle::{
-    num::vector::{Vec2, at, divide, length},
+    num::vector::{Vec2, divide, length, vector_at},
     scene::{Collision, Edge, HalfPlane, Particle, Scene},
     sim::{Decision, Detection, Observer, PairKind, RootSearch, Simulation},
 };
@@ -47,7 +47,7 @@ fn discs_do_not_pass_through_one_another() {
         // They leave along the normal at contact, on whose sides they were at the start: the way from start to end
         // nears no further than to contact.
         let end = end_of(&scene);
-        let new_way = at(&end, 1) - at(&end, 0) - apart;
+        let new_way = vector_at(&end, 1) - vector_at(&end, 0) - apart;
         prop_assert!(length(new_way) > 0.0 && length(new_way - way) > 1e-9, "no response");
         let contact = first_touch(apart, way, 0.5);
         let normal = apart + contact * way;
@@ -77,7 +77,7 @@ fn discs_do_not_pass_through_half_planes() {
         let crosses = start * free_end < 0.0;
         crossed.set(crossed.get() + u32::from(crosses));
         let scene = Scene { half_planes: vec![plane], ..scene(1, ELASTIC, vec![disc]) };
-        let end = height(at(&end_of(&scene), 0));
+        let end = height(vector_at(&end_of(&scene), 0));
         prop_assert!(start * end > 0.0 && end.abs() > 0.3 - 1e-9, "from {start} to {end}");
         Ok(())
     });
@@ -92,7 +92,7 @@ struct Crossings {
 }
 
 impl Observer for Crossings {
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         if detection.pair.kind != PairKind::ParticleEdge {
             return;
         }
@@ -154,7 +154,7 @@ fn discs_do_not_pass_through_edges_unseen() {
 struct Met(Option<bool>);
 
 impl Observer for Met {
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         if detection.pair.kind == PairKind::ParticleEdge {
             self.0 = Some(matches!(detection.decision, Decision::Hit { .. }));
         }

@@ -56,7 +56,7 @@ fn maps() -> [Map; 5] {
 /// Whether the program's trace is accepted; a program that never ends is not.
 fn is_accepted(scene: &Scene, id: Option<&str>) -> bool {
     let mistake = id.map(|id| student::find(id).expect("a row of the catalogue").mistake);
-    let Ok(trace) = student::trace(scene, Student::new(mistake)) else { return false };
+    let Ok(trace) = student::record_trace(scene, Student::new(mistake)) else { return false };
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let fair = judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
     fair.verdict == FairVerdict::Accepted

@@ -7,6 +7,7 @@ use std::{
 
 /// The most lines of code of each crate, and of the program (`src`), in hundreds: without tests, comments and blank
 /// lines. A crate that is not here may have none.
+// Names of functions became verbs, and names of constants say what they limit, so more calls take two lines.
 const HUNDREDS: [(&str, usize); 22] = [
     ("browser", 10),
     ("build.rs", 1),
@@ -26,7 +27,7 @@ const HUNDREDS: [(&str, usize); 22] = [
     // The worth of a mistake, and the smallest scenes that students see; nothing was removed for them here.
     ("mistakes", 62),
     // The least work of Newton's iterations; the search for near pairs without a contest went.
-    ("model", 89),
+    ("model", 90),
     ("num", 37),
     ("original", 9),
     ("render", 16),
@@ -35,21 +36,21 @@ const HUNDREDS: [(&str, usize); 22] = [
     // are templates. The step by hand; the templates of pages took 400 lines before. Impulses, rigid motions, systems
     // and penalty by hand; drawn scenes and the second thread of `shrink`, and a shell quoter went. Formulas and
     // letters by hand; tables of units in `shrink` went.
-    ("report", 78),
-    ("sandbox", 56),
+    ("report", 79),
+    ("sandbox", 57),
     // Extensions, removals and imports are not overwritten unseen, and uploads wait at a deadline; nothing went
     // instead. Classes have filters and equal programs, submissions a comparison, CSV points of groups, suites names;
     // the text of reports in pages, and the statement for changes between attempts went. Sign-in at a provider is new;
     // passwords went, with their digests and limits. Verdicts have words everywhere, and the home page and the log have
     // links; the list of verdicts in a template and the search for members in SQL went. A worker on the server's
     // machine gets its token by itself, and waiting has a reason; nothing went instead.
-    ("server", 153),
+    ("server", 154),
     ("shrink", 5),
     // The table of `--timings`.
     // The command `shrink`.
     // Defaults of a folder, the earlier grading and gzip; the comparison of --watch went.
     // Shells complete names; the static scripts, --sample and the sample's own search for names went.
-    ("src", 64),
+    ("src", 65),
     // Came out of `mistakes`.
     ("student", 56),
 ];

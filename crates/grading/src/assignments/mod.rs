@@ -6,10 +6,10 @@ use fosssim_model::assignments::{Assignment, Definition};
 #[path = "t2m3/timing.rs"]
 mod timing;
 
-pub use timing::{MadeScene, TIMING};
+pub use timing::{MadeScene, TIMING_SCENES};
 
 /// The part of the suite template before its groups: the settings, with comments.
-const SETTINGS: &str = include_str!("settings.toml");
+const SETTINGS_TEMPLATE: &str = include_str!("settings.toml");
 
 /// Returns a commented suite file to start from: the settings, and the groups of a built-in suite.
 #[must_use]
@@ -17,7 +17,7 @@ pub fn template(name: &str) -> Option<String> {
     let (assignment, Version { suite, .. }) = version(name)?;
     let groups = suite.split_once("rules = \"fair\"\n")?.1.trim_start();
     let Definition { key, title, .. } = assignment.definition();
-    Some(SETTINGS.replace("TITLE", title).replace("MILESTONE", key) + groups)
+    Some(SETTINGS_TEMPLATE.replace("TITLE", title).replace("MILESTONE", key) + groups)
 }
 
 /// A version of an assignment's suite. Additional scenes change the points of all scenes, so they need a new version;
@@ -39,7 +39,7 @@ impl Version {
 }
 
 /// The suite of the milestones before t2m2, under a name that existing servers and courses may still use.
-const EARLIER: Version = Version { suite: include_str!("earlier/suite.toml"), scenes: None };
+const EARLIER_VERSION: Version = Version { suite: include_str!("earlier/suite.toml"), scenes: None };
 
 /// The two versions in an assignment's folder.
 macro_rules! two_versions {
@@ -75,7 +75,7 @@ pub const fn versions(assignment: Assignment) -> &'static [Version] {
 #[must_use]
 pub fn version(name: &str) -> Option<(Assignment, Version)> {
     if matches!(name, "earlier" | "earlier@1") {
-        return Some((Assignment::T2M1, EARLIER));
+        return Some((Assignment::T2M1, EARLIER_VERSION));
     }
     let (key, number) = name.split_once('@').map_or((name, None), |(key, number)| (key, Some(number)));
     let assignment = Assignment::from_key(&key.to_ascii_lowercase())?;

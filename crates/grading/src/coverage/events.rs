@@ -9,7 +9,7 @@ use fosssim_model::{
 };
 use fosssim_num::{
     polynomial::Polynomial,
-    vector::{Vec2, at, divide},
+    vector::{Vec2, divide, vector_at},
 };
 
 /// The share of an edge's length, from each end, in which positions count as near the end.
@@ -142,8 +142,8 @@ pub(super) const fn ends(edge: &Edge) -> Ends {
 
 /// Returns a body's position at `time`, a fraction of the step.
 fn position(detection: &Detection<'_>, body: usize, time: f64) -> Vec2 {
-    let start = at(detection.q_start, body);
-    start + time * (at(detection.q_end, body) - start)
+    let start = vector_at(detection.q_start, body);
+    start + time * (vector_at(detection.q_end, body) - start)
 }
 
 pub(super) fn place(detection: &Detection<'_>, bodies: &[usize], time: f64) -> Place {
@@ -158,7 +158,7 @@ pub(super) fn place(detection: &Detection<'_>, bodies: &[usize], time: f64) -> P
 pub(super) fn edge_motion(detection: &Detection<'_>, bodies: &[usize]) -> EdgeMotion {
     let [two, three] = [1, 2].map(|index| {
         let body = bodies[index];
-        at(detection.q_end, body) - at(detection.q_start, body)
+        vector_at(detection.q_end, body) - vector_at(detection.q_start, body)
     });
     match (two, three) {
         (two, three) if two != three => EdgeMotion::Turned,
@@ -169,7 +169,7 @@ pub(super) fn edge_motion(detection: &Detection<'_>, bodies: &[usize]) -> EdgeMo
 
 pub(super) fn side(scene: &Scene, detection: &Detection<'_>) -> Side {
     let plane = &scene.half_planes[detection.pair.second as usize];
-    let offset = at(detection.q_start, detection.pair.first as usize) - plane.point;
+    let offset = vector_at(detection.q_start, detection.pair.first as usize) - plane.point;
     if offset.dot(&plane.normal) < 0.0 { Side::Behind } else { Side::Front }
 }
 
@@ -181,20 +181,20 @@ pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
 /// Returns the reason why a pair does not collide, from the signs of its polynomials at a few times of this step and
 /// the next.
 pub(super) fn miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Why {
-    const TIMES: u32 = 8;
+    const SAMPLE_TIMES: u32 = 8;
     let positive = |polynomial: &Polynomial, time: f64| polynomial.evaluate(time) > 0.0;
     let holds_but = |left_out: usize, range: std::ops::RangeInclusive<u32>| {
         range
-            .map(|time| f64::from(time) / f64::from(TIMES))
+            .map(|time| f64::from(time) / f64::from(SAMPLE_TIMES))
             .any(|time| polynomials.iter().enumerate().all(|(index, one)| positive(one, time) != (index == left_out)))
     };
     let approach = polynomials.len().saturating_sub(1);
     let is_edge = kind == PairKind::ParticleEdge;
     match () {
-        () if holds_but(approach, 0..=TIMES) => Why::Parting,
-        () if is_edge && holds_but(1, 0..=TIMES) => Why::BesideFirst,
-        () if is_edge && holds_but(2, 0..=TIMES) => Why::BesideSecond,
-        () if holds_but(polynomials.len(), TIMES + 1..=2 * TIMES) => Why::Late,
+        () if holds_but(approach, 0..=SAMPLE_TIMES) => Why::Parting,
+        () if is_edge && holds_but(1, 0..=SAMPLE_TIMES) => Why::BesideFirst,
+        () if is_edge && holds_but(2, 0..=SAMPLE_TIMES) => Why::BesideSecond,
+        () if holds_but(polynomials.len(), SAMPLE_TIMES + 1..=2 * SAMPLE_TIMES) => Why::Late,
         () => Why::Never,
     }
 }
@@ -203,7 +203,7 @@ pub(super) fn miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Why {
 /// of collisions.md 5: a zone that does not turn has exactly zero angular momentum.
 pub(super) fn zone_motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
     let mass = |particle: usize| scene.particles[particle].mass;
-    let moved = |particle| at(q_end, particle) - at(q_start, particle);
+    let moved = |particle| vector_at(q_end, particle) - vector_at(q_start, particle);
     if particles.iter().all(|&particle| moved(particle) == Vec2::zeros()) {
         return Motion::Rests;
     }
@@ -212,9 +212,9 @@ pub(super) fn zone_motion(scene: &Scene, particles: &[usize], q_start: &[f64], q
         let sum = particles.iter().fold(Vec2::zeros(), |sum, &particle| sum + mass(particle) * value(particle));
         divide(sum, total)
     };
-    let (center, shift) = (mean(&|particle| at(q_start, particle)), mean(&moved));
+    let (center, shift) = (mean(&|particle| vector_at(q_start, particle)), mean(&moved));
     let momentum = particles.iter().fold(0.0, |momentum, &particle| {
-        let (arm, relative) = (at(q_start, particle) - center, moved(particle) - shift);
+        let (arm, relative) = (vector_at(q_start, particle) - center, moved(particle) - shift);
         momentum + mass(particle) * (arm.x * relative.y - arm.y * relative.x)
     });
     if particles.len() == 1 || momentum == 0.0 { Motion::Shifts } else { Motion::Turns }

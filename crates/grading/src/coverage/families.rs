@@ -30,7 +30,7 @@ macro_rules! family {
         impl $type {
             pub(super) const FAMILY: Family = Family { name: $name, axes: &[$($axis::AXIS),+], never: $never };
 
-            pub(super) fn happening(self) -> Event {
+            pub(super) fn event(self) -> Event {
                 ($number, vec![$(self.$field as usize),+])
             }
         }

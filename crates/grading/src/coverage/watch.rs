@@ -59,7 +59,7 @@ impl<'a> Watch<'a> {
         match detection.pair.kind {
             PairKind::ParticleParticle => {
                 let (fixed, radii) = (events::fixed_of_two(scene, bodies), events::radii(scene, bodies, None));
-                ParticleContact { found, when, fixed, masses, radii, company, restitution, integrator }.happening()
+                ParticleContact { found, when, fixed, masses, radii, company, restitution, integrator }.event()
             }
             PairKind::ParticleEdge => {
                 let edge = &scene.edges[detection.pair.second as usize];
@@ -76,12 +76,12 @@ impl<'a> Watch<'a> {
                     restitution,
                     integrator,
                 };
-                contact.happening()
+                contact.event()
             }
             PairKind::ParticleHalfPlane => {
                 let fixed = events::fixed_one(scene, bodies);
                 let (side, normal) = (events::side(scene, detection), events::normal(scene, detection.pair));
-                HalfPlaneContact { found, when, fixed, side, normal, company, restitution, integrator }.happening()
+                HalfPlaneContact { found, when, fixed, side, normal, company, restitution, integrator }.event()
             }
         }
     }
@@ -201,7 +201,7 @@ impl Observer for Watch<'_> {
         (self.step.q_start, self.step.q_end) = (q_start.to_vec(), q_end.to_vec());
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let bodies = events::bodies(self.scene, detection.pair);
         match detection.decision {
             Decision::Hit { time, .. } => {
@@ -219,7 +219,7 @@ impl Observer for Watch<'_> {
                     found: events::place_of_stage(self.stage),
                     fixed: events::some_fixed(self.scene, &bodies),
                 };
-                self.coverage.note(&no_contact.happening());
+                self.coverage.note(&no_contact.event());
             }
         }
     }
@@ -231,16 +231,16 @@ impl Observer for Watch<'_> {
         }
     }
 
-    fn zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
+    fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         let known = |zone: &Zone<'_>| (zone.particles.iter().map(|&one| one as usize).collect(), zone.half_plane);
         self.step.before = std::mem::replace(&mut self.step.zones, zones.iter().map(known).collect());
     }
 
-    fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+    fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {
         self.step.rounds = round;
         let particles: Vec<usize> = zone.particles.iter().map(|&one| one as usize).collect();
         for zone in self.zone(&particles, zone.half_plane) {
-            self.coverage.note(&zone.happening());
+            self.coverage.note(&zone.event());
         }
     }
 
@@ -248,7 +248,7 @@ impl Observer for Watch<'_> {
         match self.scene.collision {
             Collision::Hybrid { max_iterations, stiffness, .. } => {
                 let step = self.hybrid_step(max_iterations, stiffness);
-                self.coverage.note(&step.happening());
+                self.coverage.note(&step.event());
             }
             Collision::ContinuousTime { .. } => {
                 let hits = match self.step.hits.first().copied().unwrap_or(0) {
@@ -258,7 +258,7 @@ impl Observer for Watch<'_> {
                 };
                 let (restitution, integrator) = (events::restitution(self.scene), events::integrator(self.scene));
                 let step = ContinuousStep { hits, restitution, forces: forces(&self.scene.forces), integrator };
-                self.coverage.note(&step.happening());
+                self.coverage.note(&step.event());
             }
             Collision::None | Collision::Simple { .. } | Collision::Penalty { .. } => {}
         }

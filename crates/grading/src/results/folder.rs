@@ -16,7 +16,7 @@ use std::{
 };
 
 /// The name of the journal file.
-pub const JOURNAL: &str = "journal.jsonl";
+pub const JOURNAL_NAME: &str = "journal.jsonl";
 
 /// The name of the file that an active grader keeps locked.
 pub const LOCK_FILE: &str = ".lock";
@@ -62,23 +62,23 @@ impl FolderResults {
             )),
             std::fs::TryLockError::Error(reason) => at(LOCK_FILE)(reason),
         })?;
-        let mut file = own_file(&opened, JOURNAL).map_err(at(JOURNAL))?;
-        let metadata = file.metadata().map_err(at(JOURNAL))?;
+        let mut file = own_file(&opened, JOURNAL_NAME).map_err(at(JOURNAL_NAME))?;
+        let metadata = file.metadata().map_err(at(JOURNAL_NAME))?;
         if metadata.len() > MAX_JOURNAL_BYTES && !fresh {
             let text = format!("the journal has more than {MAX_JOURNAL_BYTES} bytes; --fresh starts a new one");
-            return Err(at(JOURNAL)(io::Error::other(text)));
+            return Err(at(JOURNAL_NAME)(io::Error::other(text)));
         }
         let mut found = BTreeMap::new();
-        let sound = if fresh { 0 } else { read(&file, &mut found).map_err(at(JOURNAL))? };
+        let sound = if fresh { 0 } else { read(&file, &mut found).map_err(at(JOURNAL_NAME))? };
         if metadata.nlink() > 1 {
             // The journal has several names (hard links), from a backup or a student. Copy it, so that the other file
             // does not change.
-            file = copy(&file, sound, &opened).map_err(at(JOURNAL))?;
+            file = copy(&file, sound, &opened).map_err(at(JOURNAL_NAME))?;
         }
         // Remove the bytes after the last whole line, which a crash left.
-        file.set_len(sound).map_err(at(JOURNAL))?;
-        file.seek(io::SeekFrom::Start(sound)).map_err(at(JOURNAL))?;
-        let path = folder.join(JOURNAL);
+        file.set_len(sound).map_err(at(JOURNAL_NAME))?;
+        file.seek(io::SeekFrom::Start(sound)).map_err(at(JOURNAL_NAME))?;
+        let path = folder.join(JOURNAL_NAME);
         Ok(Self { journal: Mutex::new(Journal { path, file, found }), _lock: lock })
     }
 
@@ -140,7 +140,7 @@ pub fn for_each_line<E: From<io::Error>>(
 
 /// Creates a new journal with the first `length` bytes of another.
 fn copy(mut file: &File, length: u64, folder: &Folder) -> io::Result<File> {
-    let mut own = folder.replacement(OsStr::new(JOURNAL), None)?;
+    let mut own = folder.replacement(OsStr::new(JOURNAL_NAME), None)?;
     file.rewind()?;
     io::copy(&mut file.take(length), &mut own)?;
     own.finish_open()
@@ -230,7 +230,7 @@ mod tests {
         let journal = FolderResults::open(folder.path(), false).expect("journal");
         journal.keep(&key("a"), "sub", &result(Verdict::TimeLimit)).expect("kept");
         drop(journal);
-        let (path, backup) = (folder.path().join(JOURNAL), folder.path().join("backup"));
+        let (path, backup) = (folder.path().join(JOURNAL_NAME), folder.path().join("backup"));
         std::fs::hard_link(&path, &backup).expect("a backup");
         let before = std::fs::read(&backup).expect("bytes");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
@@ -246,7 +246,7 @@ mod tests {
     #[test]
     fn what_no_grader_writes_takes_no_memory_and_no_time() {
         let folder = tempfile::tempdir().expect("folder");
-        let path = folder.path().join(JOURNAL);
+        let path = folder.path().join(JOURNAL_NAME);
         let journal = File::create(&path).expect("a file");
         journal.set_len(MAX_JOURNAL_BYTES + 1).expect("a hole");
         let refused = FolderResults::open(folder.path(), false).expect_err("too large").to_string();

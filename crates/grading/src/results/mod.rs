@@ -5,7 +5,7 @@
 mod folder;
 
 pub use super::form::{Entry, format_line, read_line};
-pub use folder::{FolderResults, JOURNAL, LOCK_FILE, MAX_JOURNAL_BYTES, MAX_LINE_BYTES, for_each_line};
+pub use folder::{FolderResults, JOURNAL_NAME, LOCK_FILE, MAX_JOURNAL_BYTES, MAX_LINE_BYTES, for_each_line};
 
 use super::{key::Key, result::SceneResult};
 

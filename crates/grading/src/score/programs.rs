@@ -10,7 +10,7 @@ use crate::{
     plan::PlannedGroup,
     result::{Reason, RunEnd, SceneResult},
     score,
-    smallest::{DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, causes, shorten_limits},
+    smallest::{DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, group_causes, shorten_limits},
     staging::StagedProgram,
     verdict::Verdict,
 };
@@ -74,14 +74,14 @@ impl SubmissionGrading<'_> {
         reconcile_explanations(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
             // A panic in this part must not lose the grade.
-            grade.smallest = catch_panic(|| self.smallest(&grade, staged, describe)).unwrap_or_default();
+            grade.smallest = catch_panic(|| self.find_smallest(&grade, staged, describe)).unwrap_or_default();
         }
         grade
     }
 
     /// Returns the smallest scene for each cause. It is made from scenes that students see, if these show the cause, so
     /// that it reveals nothing of others.
-    fn smallest(&self, grade: &Grade, staged: &StagedProgram, tell: &DescribeSmallest<'_>) -> Vec<SmallestScene> {
+    fn find_smallest(&self, grade: &Grade, staged: &StagedProgram, tell: &DescribeSmallest<'_>) -> Vec<SmallestScene> {
         let plan = self.grader.plan;
         let is_visible = |name: &str| {
             let groups = grade.groups.iter().filter(|group| group.visibility == Visibility::Visible);
@@ -103,11 +103,11 @@ impl SubmissionGrading<'_> {
             limits: QUICK_LIMITS,
         };
         let mut found: Vec<SmallestScene> = Vec::new();
-        for (reason, mut tasks) in causes(&likely, &wrong).into_iter().take(MAX_CAUSES) {
+        for (reason, mut tasks) in group_causes(&likely, &wrong).into_iter().take(MAX_CAUSES) {
             if tasks.iter().any(|task| is_visible(&task.name)) {
                 tasks.retain(|task| is_visible(&task.name));
             }
-            let small = shrinker.smallest((reason, tasks)).ok().flatten();
+            let small = shrinker.shrink_cause((reason, tasks)).ok().flatten();
             let told = small.map(|small| tell(&small));
             found.extend(told.filter(|told| told.is_new(&found)));
         }

@@ -16,7 +16,7 @@ use fosssim_model::{
 ///
 /// # Errors
 /// Fails if a step has no result.
-pub fn borderline(scene: &Scene) -> Result<Vec<Borderline>, StepError> {
+pub fn find_borderline(scene: &Scene) -> Result<Vec<Borderline>, StepError> {
     let mut observer = BorderlineObserver { scene, step: 0, found: Vec::new() };
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     for _ in 0..scene.steps() {
@@ -36,7 +36,7 @@ impl Observer for BorderlineObserver<'_> {
         self.step = step;
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         if detection.polynomials.is_empty() {
             return;
         }
@@ -59,7 +59,7 @@ mod tests {
             r#"<scene><duration time="1"/><integrator type="explicit-euler" dt="0.5"/>
             <collision type="continuous-time" COR="1"/>{ball}<halfplane px="0" py="0" nx="0.3" ny="0.4"/></scene>"#
         );
-        borderline(&scene::read("scene", text.as_bytes()).expect("a scene").scene).expect("a run")
+        find_borderline(&scene::read("scene", text.as_bytes()).expect("a scene").scene).expect("a run")
     }
 
     #[test]

@@ -10,7 +10,7 @@ use fosssim_model::{assignments::CollisionType, sim::PairKind};
 
 /// Returns the reason why the two rule books differ about a trace; `None` if they agree, or one of them has no verdict.
 #[must_use]
-pub fn cause(outcome: &Outcome) -> Option<Cause> {
+pub fn find_cause(outcome: &Outcome) -> Option<Cause> {
     let fair = outcome.fair.as_deref()?;
     match (outcome.parity.overall, fair.verdict) {
         (Overall::Failed, FairVerdict::Accepted) => Some(too_strict(outcome, fair)),
@@ -96,16 +96,16 @@ fn is_mid_record(finding: &Finding, outcome: &Outcome) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::{self, BOUNCE, relog};
+    use crate::samples::{self, BOUNCE_SCENE, relog};
     use fosssim_model::trace::Frame;
 
     fn judge_by_both(trace: &[u8]) -> Outcome {
-        samples::judge_by_both(&samples::scene(BOUNCE), trace)
+        samples::judge_by_both(&samples::scene(BOUNCE_SCENE), trace)
     }
 
     /// Returns the reference trace with changed frames.
     fn changed_trace(change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
-        samples::changed_trace(&samples::scene(BOUNCE), change)
+        samples::changed_trace(&samples::scene(BOUNCE_SCENE), change)
     }
 
     /// Multiplies every coefficient.
@@ -117,9 +117,9 @@ mod tests {
 
     #[test]
     fn where_the_books_agree_there_is_no_cause() {
-        assert_eq!(cause(&judge_by_both(&changed_trace(|_| {}))), None);
-        assert_eq!(cause(&judge_by_both(&changed_trace(|frames| frames[2].impulses.clear()))), None);
-        assert_eq!(cause(&judge_by_both(&[])), None);
+        assert_eq!(find_cause(&judge_by_both(&changed_trace(|_| {}))), None);
+        assert_eq!(find_cause(&judge_by_both(&changed_trace(|frames| frames[2].impulses.clear()))), None);
+        assert_eq!(find_cause(&judge_by_both(&[])), None);
     }
 
     #[test]
@@ -140,17 +140,17 @@ mod tests {
             (both(|frame| frame.impulses[0].normal.x = f64::NAN), Cause::NotANumber),
         ] {
             let outcome = judge_by_both(&trace);
-            assert_eq!(cause(&outcome), Some(expected), "{:?}", outcome.fair);
+            assert_eq!(find_cause(&outcome), Some(expected), "{:?}", outcome.fair);
         }
     }
 
     #[test]
     fn large_numbers_are_the_originals_fault() {
         let outcome = judge_by_both(&changed_trace(|frames| scaled(frames, 1.0 + 1e-12)));
-        assert_eq!(cause(&outcome), None, "a small factor passes both");
+        assert_eq!(find_cause(&outcome), None, "a small factor passes both");
         // The factor determines whether the rescaling rounds the other way.
         let factors = [3.0, 7.0, 11.0, 13.0, 17.0, 19.0, 23.0, 29.0].map(|n| 1e12 / n);
-        let causes = factors.map(|factor| cause(&judge_by_both(&changed_trace(|frames| scaled(frames, factor)))));
+        let causes = factors.map(|factor| find_cause(&judge_by_both(&changed_trace(|frames| scaled(frames, factor)))));
         assert!(causes.contains(&Some(Cause::AbsoluteCoefficients)), "{causes:?}");
         assert!(Cause::AbsoluteCoefficients.to_string().contains("1e-10"));
     }

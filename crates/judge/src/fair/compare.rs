@@ -199,7 +199,7 @@ fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     if !(norm > 0.0 && norm.is_finite() && sum_of_moduli(expected).is_finite()) || is_round_off(expected) {
         return None;
     }
-    let scale = fit(expected, actual, 0).filter(|scale| *scale > 0.0)?;
+    let scale = fit_factor(expected, actual, 0).filter(|scale| *scale > 0.0)?;
     let mut share = 0.0_f64;
     for (r, s) in expected.iter().zip(actual) {
         let tolerance = UNIT_ROUNDOFF * scale * units(r, norm);
@@ -243,7 +243,7 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
         let mut matches = hints.iter().map(|&hint| judge(right, logged, missing, hint));
         matches.find_map(Result::ok).map(|share| Match { scale: None, share })
     };
-    let Some(fitted) = fit(right, logged, missing) else {
+    let Some(fitted) = fit_factor(right, logged, missing) else {
         // The remaining coefficients show no factor, so the factor is 1 for this polynomial.
         return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
     };
@@ -308,7 +308,7 @@ fn is_significant(r: &BoundedValue) -> bool {
 
 /// Returns the best factor, each coefficient weighted by its precision; `None` if all are round-off. If the factor is
 /// not positive or not finite, the polynomial is wrong.
-fn fit(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
+fn fit_factor(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
     let norm = norm(right);
     let (mut products, mut squares) = (0.0, 0.0);
     for (r, s) in right.iter().zip(logged).skip(missing) {
@@ -360,18 +360,19 @@ pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f6
     if held.iter().any(is_significant) {
         return None;
     }
-    let needed = held.iter().zip(actual).map(|(r, s)| if *s == 0.0 { 0.0 } else { s.abs() / (UNIT * r.bound) });
+    let needed =
+        held.iter().zip(actual).map(|(r, s)| if *s == 0.0 { 0.0 } else { s.abs() / (DOUBLE_TOLERANCE * r.bound) });
     let least = needed.fold(0.0, |most: f64, factor| if factor <= most { most } else { factor });
     let most = most_factor(dropped);
     (least.is_finite() && least <= most).then_some([least, most])
 }
 
 /// Twice the tolerance of a coefficient that is much larger than all others, in units of its bound.
-const UNIT: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
+const DOUBLE_TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
 /// Returns the largest factor with which the course's library drops all of `dropped`.
 fn most_factor(dropped: &[BoundedValue]) -> f64 {
-    LEADING_COEFFICIENT / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - UNIT * r.bound))
+    LEADING_COEFFICIENT / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - DOUBLE_TOLERANCE * r.bound))
 }
 
 /// Returns whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has
@@ -426,15 +427,15 @@ fn judge(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> 
 /// values cancel.
 fn share_within_step(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Option<f64> {
     /// The number of sample times, evenly spread: a polynomial of degree five is hardly larger between them.
-    const TIMES: u8 = 16;
+    const SAMPLE_TIMES: u8 = 16;
     let norm = norm(right);
     if !(scale > 0.0) {
         return None;
     }
     let tolerance = UNIT_ROUNDOFF * scale * FAIR_UNITS * norm;
     let mut share = 0.0_f64;
-    for time in 0..=TIMES {
-        let t = f64::from(time) / f64::from(TIMES);
+    for time in 0..=SAMPLE_TIMES {
+        let t = f64::from(time) / f64::from(SAMPLE_TIMES);
         let residual = right.iter().zip(logged).enumerate().fold(0.0, |sum, (k, (r, &s))| {
             let is_dropped = k < missing && check(r, s, norm, true, scale).is_ok();
             sum * t + if is_dropped { 0.0 } else { s - scale * r.value }

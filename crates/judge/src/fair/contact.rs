@@ -21,7 +21,7 @@ use fosssim_num::{
         FAIR_LOSS, FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_TIME, FAIR_UNITS, LEADING_COEFFICIENT,
         SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
     },
-    vector::{Vec2, at, length},
+    vector::{Vec2, length, vector_at},
 };
 
 fosssim_model::drops_leading!();
@@ -199,7 +199,7 @@ impl<'a> Tolerances<'a> {
     }
 
     fn add_sensitivity(&self, floor: f64, particle: usize, of: fn(&State) -> &Vec<f64>) -> f64 {
-        let known = self.sensitivity.map_or(0.0, |known| length(at(of(known), particle)));
+        let known = self.sensitivity.map_or(0.0, |known| length(vector_at(of(known), particle)));
         floor + FAIR_SENSITIVITY * known
     }
 }
@@ -215,21 +215,21 @@ pub(super) fn compare_states(
 ) {
     for particle in 0..own.positions.len() / 2 {
         let position_tolerance = tolerances.position(particle);
-        let (expected, actual) = (at(&own.positions, particle), at(&logged.positions, particle));
+        let (expected, actual) = (vector_at(&own.positions, particle), vector_at(&logged.positions, particle));
         let residual = distance(expected, actual);
         if !(residual <= position_tolerance) {
             let detail =
                 FindingDetail::Position { particle, expected: expected.into(), actual: actual.into(), residual };
-            judged.charge(Finding { step: judged.step, frame, detail });
+            judged.add_finding(Finding { step: judged.step, frame, detail });
             continue;
         }
         let velocity_tolerance = tolerances.velocity(particle);
-        let (expected, actual) = (at(&own.velocities, particle), at(&logged.velocities, particle));
+        let (expected, actual) = (vector_at(&own.velocities, particle), vector_at(&logged.velocities, particle));
         let velocity_residual = distance(expected, actual);
         if !(velocity_residual <= velocity_tolerance) {
             let (expected, actual, residual) = (expected.into(), actual.into(), velocity_residual);
             let detail = FindingDetail::Velocity { particle, expected, actual, residual };
-            judged.charge(Finding { step: judged.step, frame, detail });
+            judged.add_finding(Finding { step: judged.step, frame, detail });
             continue;
         }
         if residual > 0.0 {

@@ -63,7 +63,7 @@ impl Records<'_> {
     pub fn start_ordinarily(&self, context: &Context<'_>) -> bool {
         let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
         let mid = self.mid.filter(|_| is_hybrid);
-        context.ordinary.holds(self.before) && mid.is_none_or(|mid| context.ordinary.holds(&mid.state))
+        context.ordinary.contains(self.before) && mid.is_none_or(|mid| context.ordinary.contains(&mid.state))
     }
 
     /// Returns the start, mid and end states of the step.

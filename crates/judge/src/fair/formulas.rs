@@ -15,7 +15,7 @@ use fosssim_num::{
     decision::all_exact,
     polynomial::MAX_COEFFICIENTS,
     tolerances::{FAIR_MOMENT, FAIR_SENSITIVITY, FAIR_UNITS},
-    vector::{Vec2, at},
+    vector::{Vec2, vector_at},
 };
 
 /// The motion of a point in a step: its start position and displacement.
@@ -100,7 +100,7 @@ impl BoundedPairMotion {
     /// Returns the pair's motion in a step.
     pub fn for_pair(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
-        let places = |particle| [at(q_start, particle), at(q_end, particle)];
+        let places = |particle| [vector_at(q_start, particle), vector_at(q_end, particle)];
         let size = |particles: &[usize]| {
             let all = particles.iter().flat_map(|&particle| places(particle));
             all.fold(0.0_f64, |most, place| most.max(extent(place)))
@@ -306,7 +306,7 @@ mod tests {
     fn values_are_those_of_the_reference() {
         struct Compare<'a>(&'a Scene, usize);
         impl fosssim_model::sim::Observer for Compare<'_> {
-            fn detection(&mut self, detection: &fosssim_model::sim::Detection<'_>) {
+            fn observe_detection(&mut self, detection: &fosssim_model::sim::Detection<'_>) {
                 let motion = BoundedPairMotion::for_pair(self.0, detection.pair, detection.q_start, detection.q_end);
                 let expected = motion.polynomials();
                 for (number, polynomial) in detection.polynomials.iter().enumerate() {
@@ -339,8 +339,8 @@ mod tests {
         assert_eq!(differing, [2]);
         // -q(2 q' g - q g')/2 with q = e x w, g = e.e (numerics.md 1.2), evaluated at a time by differences of points.
         let at_time = |t: f64| {
-            let place = |p: usize| at(&q_start, p) + t * (at(&q_end, p) - at(&q_start, p));
-            let speed = |p: usize| at(&q_end, p) - at(&q_start, p);
+            let place = |p: usize| vector_at(&q_start, p) + t * (vector_at(&q_end, p) - vector_at(&q_start, p));
+            let speed = |p: usize| vector_at(&q_end, p) - vector_at(&q_start, p);
             let (w, e) = (place(0) - place(1), place(2) - place(1));
             let (dw, de) = (speed(0) - speed(1), speed(2) - speed(1));
             let q = e.x * w.y - e.y * w.x;

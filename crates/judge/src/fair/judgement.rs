@@ -49,7 +49,7 @@ impl Judging {
     /// Adds a step, in the order of the steps.
     pub(crate) fn add(&mut self, step: &StepJudgement) {
         for finding in &step.findings {
-            self.charge(*finding);
+            self.add_finding(*finding);
         }
         self.said.findings.counts += step.more;
         self.said.decisions += step.decisions;
@@ -68,7 +68,7 @@ impl Judging {
                 self.said.form = form;
             } else if self.said.form != form {
                 is_wrong = true;
-                self.charge(Finding {
+                self.add_finding(Finding {
                     step: step.step,
                     frame: step.frame,
                     detail: FindingDetail::MixedForms { place },
@@ -111,7 +111,7 @@ impl Judging {
     }
 
     /// Adds a finding to the judgement.
-    pub(crate) fn charge(&mut self, finding: Finding) {
+    pub(crate) fn add_finding(&mut self, finding: Finding) {
         self.said.findings.counts.add(finding.kind(), 1);
         self.said.findings.keep_first(&finding);
     }
@@ -133,7 +133,7 @@ impl Judging {
             self.said.findings.wrong_steps += u64::from(!is_wrong && finding.step != last_wrong);
             last_wrong = finding.step;
             // In a step, the findings about polynomials come before those about decisions.
-            if self.said.findings.first_divergence.is_some_and(|first| follows(&first, &finding)) {
+            if self.said.findings.first_divergence.is_some_and(|first| is_consequence(&first, &finding)) {
                 self.said.findings.first_divergence = None;
             }
             if let Some(place) = self.said.findings.examples.iter().position(|known| known.kind() == finding.kind())
@@ -141,7 +141,7 @@ impl Judging {
             {
                 self.said.findings.examples.remove(place);
             }
-            self.charge(finding);
+            self.add_finding(finding);
             self.said.findings.counts.add(finding.kind(), polynomials.count - 1);
         }
     }
@@ -190,7 +190,7 @@ impl Judging {
 }
 
 /// Returns whether a finding is a consequence of the finding about a polynomial.
-fn follows(finding: &Finding, polynomial: &Finding) -> bool {
+fn is_consequence(finding: &Finding, polynomial: &Finding) -> bool {
     let is_decision = matches!(finding.kind(), FindingKind::TrimmedDecision);
     finding.step > polynomial.step || finding.step == polynomial.step && is_decision
 }

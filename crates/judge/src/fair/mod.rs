@@ -49,8 +49,8 @@ mod step_judgement;
 mod tests;
 mod unapplied;
 
-pub use borderline::borderline;
-pub use cause::cause;
+pub use borderline::find_borderline;
+pub use cause::find_cause;
 pub use contact::decides;
 pub(super) use context::{Context, Records};
 pub use fosssim_findings::{
@@ -58,7 +58,7 @@ pub use fosssim_findings::{
     fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
 };
 pub(super) use judgement::Judging;
-pub(super) use probe::{RUNS as PERTURBED_RUNS, perturb};
+pub(super) use probe::{PERTURBED_RUNS, perturb};
 pub(super) use reach::Reach;
 pub(super) use step::{judge, judge_initial};
 pub(super) use step_judgement::StepJudgement;

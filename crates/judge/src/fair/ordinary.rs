@@ -3,7 +3,7 @@ use super::formulas::extent;
 use fosssim_model::{scene::Scene, sim::State};
 use fosssim_num::{
     tolerances::FAIR_REACH,
-    vector::{Vec2, at},
+    vector::{Vec2, vector_at},
 };
 
 /// The range of ordinary states of a scene.
@@ -30,7 +30,7 @@ impl OrdinaryRange {
     }
 
     /// Returns whether every value of the state is in the range.
-    pub fn holds(&self, state: &State) -> bool {
+    pub fn contains(&self, state: &State) -> bool {
         self.find_outside(state).is_none()
     }
 
@@ -39,8 +39,8 @@ impl OrdinaryRange {
         let particles = state.positions.len() / 2;
         let is_far = |value: f64, most: f64| !(value <= FAIR_REACH * most);
         let far = (0..particles).find(|&particle| {
-            is_far(extent(at(&state.positions, particle)), self.position)
-                || is_far(extent(at(&state.velocities, particle)), self.velocity)
+            is_far(extent(vector_at(&state.positions, particle)), self.position)
+                || is_far(extent(vector_at(&state.velocities, particle)), self.velocity)
         });
         far.or_else(|| (spread(places(state)) * FAIR_REACH < self.spread).then_some(0))
     }
@@ -54,12 +54,12 @@ impl OrdinaryRange {
 }
 
 fn places(state: &State) -> impl Iterator<Item = Vec2> {
-    (0..state.positions.len() / 2).map(|particle| at(&state.positions, particle))
+    (0..state.positions.len() / 2).map(|particle| vector_at(&state.positions, particle))
 }
 
 /// Returns the size of the largest vector, for axes of any direction.
 pub(super) fn largest(vectors: &[f64]) -> f64 {
-    let all = (0..vectors.len() / 2).map(|index| extent(at(vectors, index)));
+    let all = (0..vectors.len() / 2).map(|index| extent(vector_at(vectors, index)));
     all.fold(0.0, f64::max)
 }
 

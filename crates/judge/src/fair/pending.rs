@@ -3,7 +3,7 @@ use fosssim_findings::{Finding, fair::Form};
 use fosssim_model::sim::PairKind;
 
 /// The empty range of factors, for a polynomial that is right only in the other form.
-pub(super) const NONE: [f64; 2] = [f64::INFINITY, 0.0];
+pub(super) const NO_FACTORS: [f64; 2] = [f64::INFINITY, 0.0];
 
 /// Polynomials of one kind, form and claim state. The polynomials are right if the program's factor for their kind is
 /// within the bounds.

@@ -3,7 +3,7 @@
 use super::{
     compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
     formulas::ExpectedPolynomials,
-    pending::{NONE, Pending},
+    pending::{NO_FACTORS, Pending},
     step_judgement::StepJudgement,
 };
 use crate::finding::{Finding, FindingDetail, PolynomialPlace};
@@ -68,7 +68,7 @@ impl StepJudgement {
         let own = expected.polynomial(number);
         let add_pending = |judged: &mut Self, form: Form, expected: &[BoundedValue], factors: Option<[f64; 2]>| {
             if is_known {
-                judged.add_pending(logged, (form, false), expected, factors.unwrap_or(NONE));
+                judged.add_pending(logged, (form, false), expected, factors.unwrap_or(NO_FACTORS));
             }
             PolynomialJudgement::Hangs
         };

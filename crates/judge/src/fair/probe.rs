@@ -17,7 +17,7 @@ use fosssim_num::{
 };
 
 /// The number of perturbed repetitions.
-pub(crate) const RUNS: u64 = 8;
+pub(crate) const PERTURBED_RUNS: u64 = 8;
 
 /// The measured sensitivity of a step: the largest deviations, component by component.
 #[derive(Debug, Clone)]
@@ -45,7 +45,7 @@ pub(super) fn probe(
     let mut sensitivity = Sensitivity { passes: Vec::new(), mid: still.clone(), end: still, flipped: Vec::new() };
     let Some(base) = run(context, simulation, records, decisions, 0) else { return sensitivity };
     sensitivity.passes = base.passes.iter().map(|q| vec![0.0; q.len()]).collect();
-    for seed in 1..=RUNS {
+    for seed in 1..=PERTURBED_RUNS {
         let Some(other) = run(context, simulation, records, decisions, seed) else { continue };
         widen_state(&mut sensitivity.mid, &base.mid, &other.mid);
         widen_state(&mut sensitivity.end, &base.end, &other.end);
@@ -166,7 +166,7 @@ impl Observer for PerturbedRun<'_> {
         self.stale = true;
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         if self.stale {
             self.run.passes.resize(self.pass + 1, Vec::new());
             self.run.passes[self.pass].clear();
@@ -188,7 +188,7 @@ impl Steer for PerturbedRun<'_> {
 
     /// Changes a matrix by rounding errors of its largest entries, wherever it has an entry. A solver's solution is
     /// exact for such a matrix, so the matrix's condition determines the effect (Wilkinson, J. ACM 8(3), 1961).
-    fn system(&mut self, matrix: &mut [f64]) {
+    fn observe_system(&mut self, matrix: &mut [f64]) {
         let squares: f64 = matrix.iter().map(|entry| entry * entry).sum();
         let size = (squares / (matrix.len() as f64).sqrt()).sqrt();
         let mut signs = Signs::from_seed(self.seed);
@@ -235,7 +235,7 @@ mod tests {
             let mut signs = Signs::from_seed(seed);
             std::array::from_fn::<_, 100, _>(|_| signs.next() > 0.0)
         };
-        for seed in 1..=RUNS {
+        for seed in 1..=PERTURBED_RUNS {
             let ups = of(seed).iter().filter(|is_up| **is_up).count();
             assert!((30..=70).contains(&ups), "{ups} of 100 with seed {seed}");
             assert!((1..seed).all(|other| of(other) != of(seed)), "{seed}");

@@ -14,7 +14,7 @@ use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation},
 };
-use fosssim_num::vector::at;
+use fosssim_num::vector::vector_at;
 
 /// Compares states with the reference's own run, which is simulated only up to the needed step, and not at all for
 /// ordinary states.
@@ -80,7 +80,7 @@ impl<'a> Reach<'a> {
     fn beyond_reach(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {
             let particle = self.range.find_outside(state)?;
-            let (position, velocity) = (at(&state.positions, particle), at(&state.velocities, particle));
+            let (position, velocity) = (vector_at(&state.positions, particle), vector_at(&state.velocities, particle));
             Some(FindingDetail::BeyondReach { particle, position: position.into(), velocity: velocity.into() })
         })
     }

@@ -44,7 +44,7 @@ pub(crate) fn judge_initial(context: &Context<'_>, frame: &LenientFrame) -> Step
     contact::compare_states(&mut judged, 0, &state, &frame.state, &Tolerances::from_context(context, &state, None));
     if !frame.impulses.is_empty() || !frame.polynomials.is_empty() {
         let part = if frame.impulses.is_empty() { RecordPart::Polynomials } else { RecordPart::Impulses };
-        judged.charge(Finding { step: 0, frame: 0, detail: FindingDetail::RecordsDiffer { part } });
+        judged.add_finding(Finding { step: 0, frame: 0, detail: FindingDetail::RecordsDiffer { part } });
     }
     judged
 }
@@ -95,7 +95,7 @@ fn follow(
 /// library cannot have written.
 fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut StepJudgement) {
     let Records { step, frame, mid, end, .. } = records;
-    let mut charge = |detail| judged.charge(Finding { step, frame, detail });
+    let mut charge = |detail| judged.add_finding(Finding { step, frame, detail });
     if is_impossible(end) || mid.is_some_and(is_impossible) {
         charge(FindingDetail::ImpossibleLog);
     }

@@ -55,7 +55,7 @@ impl StepJudgement {
     }
 
     /// Adds a finding to the judgement.
-    pub(super) fn charge(&mut self, finding: Finding) {
+    pub(super) fn add_finding(&mut self, finding: Finding) {
         if self.findings.iter().any(|first| first.kind() == finding.kind()) {
             self.more.add(finding.kind(), 1);
         } else {
@@ -66,7 +66,7 @@ impl StepJudgement {
     /// Returns the judgement with one more finding.
     pub fn with_finding(mut self, records: Records<'_>, detail: FindingDetail) -> Self {
         (self.step, self.frame) = (records.step, records.frame);
-        self.charge(Finding { step: self.step, frame: self.frame, detail });
+        self.add_finding(Finding { step: self.step, frame: self.frame, detail });
         self
     }
 

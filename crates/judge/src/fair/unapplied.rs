@@ -12,7 +12,7 @@ use fosssim_model::{
     scene::{Collision, CollisionDetection, Integrator, Scene},
     sim::{Pair, PairKind, PenaltyTerms, State},
 };
-use fosssim_num::vector::{Vec2, at, length, put};
+use fosssim_num::vector::{Vec2, length, set_vector, vector_at};
 use std::collections::BTreeSet;
 
 /// The maximum number of pairs per particle; all choices of omitted and doubled pairs among them are tried.
@@ -85,11 +85,11 @@ pub(super) fn explain(
         }
         for &(particle, change) in candidate.changes() {
             let change = excess * change;
-            let velocity = at(&faulty.velocities, particle) + change;
-            put(&mut faulty.velocities, particle, velocity);
+            let velocity = vector_at(&faulty.velocities, particle) + change;
+            set_vector(&mut faulty.velocities, particle, velocity);
             if moves {
-                let position = at(&faulty.positions, particle) + h * change;
-                put(&mut faulty.positions, particle, position);
+                let position = vector_at(&faulty.positions, particle) + h * change;
+                set_vector(&mut faulty.positions, particle, position);
             }
         }
     }
@@ -121,8 +121,9 @@ impl NearPairs {
             None => PenaltyTerms::for_scene(scene)?,
         };
         let particles = scene.particles.len();
-        let mut rest: Vec<Vec2> =
-            (0..particles).map(|index| at(&logged.velocities, index) - at(&own.velocities, index)).collect();
+        let mut rest: Vec<Vec2> = (0..particles)
+            .map(|index| vector_at(&logged.velocities, index) - vector_at(&own.velocities, index))
+            .collect();
         let is_settled = |rest: &[Vec2], particle: usize| length(rest[particle]) <= tolerances.velocity(particle);
         let wrong: Vec<bool> = (0..particles).map(|particle| !is_settled(&rest, particle)).collect();
         let mut near: Vec<NearPair> = Vec::new();

@@ -22,7 +22,7 @@ fn crowd() -> Scene {
 /// Memory: a batch holds as many records as fit, whatever their lists hold.
 #[test]
 fn a_batch_counts_all_lists() {
-    let scene = crate::samples::scene(crate::samples::BOUNCE);
+    let scene = crate::samples::scene(crate::samples::BOUNCE_SCENE);
     let scene = Scene { duration: 100.0, ..scene };
     let impulse = LoggedImpulse { kind: 2, first: 0, second: 0, normal: Vec2::zeros(), time: 0.5 };
     for (impulses, polynomials) in [(40_000, 0), (0, 200_000)] {
@@ -43,7 +43,7 @@ fn a_batch_counts_all_lists() {
 /// As many contacts as fit into a record are told apart without comparing each with all others.
 #[test]
 fn a_crowd_of_contacts_is_judged() {
-    let scene = crate::samples::scene(crate::samples::BOUNCE);
+    let scene = crate::samples::scene(crate::samples::BOUNCE_SCENE);
     let of = |second| LoggedImpulse { kind: 9, first: 0, second, normal: Vec2::zeros(), time: 0.5 };
     let trace = changed_trace(&scene, |frames| {
         for frame in &mut frames[1..3] {
@@ -92,7 +92,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
 /// States from which no next one follows are wrong answers: the rest of the trace is read and judged by the fair rules.
 #[test]
 fn a_step_without_result_ends_nothing_but_the_originals_rules() {
-    let scene = crate::samples::scene(crate::samples::ZONES);
+    let scene = crate::samples::scene(crate::samples::ZONES_SCENE);
     let trace = changed_trace(&scene, |frames| {
         let layout = Layout::for_scene(&scene);
         frames[usize::try_from(layout.end_record(1)).expect("small")].state.positions[4] = f64::NAN;

@@ -172,7 +172,7 @@ fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>)
         let frame = shape.layout.end_record(*step);
         let mid = shape.layout.has_polynomials.then_some(&*mid);
         let records = Records { step: *step, frame, before, mid, end };
-        *is_extraordinary = !records.states().all(|state| context.ordinary.holds(state));
+        *is_extraordinary = !records.states().all(|state| context.ordinary.contains(state));
         *is_deferred = *is_extraordinary && !records.start_ordinarily(context);
         if !*is_deferred {
             *judged = fair::judge(context, &mut worker.simulation, records, result.identical);

@@ -3,7 +3,7 @@ use super::{StepResult, sum_of_moduli};
 use crate::{
     finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, RescaledCoefficient},
     progress::Remark,
-    wrong_coefficients::{differing, factor},
+    wrong_coefficients::{differing_powers, find_factor},
 };
 use fosssim_num::{
     polynomial::{MAX_COEFFICIENTS, Polynomial},
@@ -94,9 +94,9 @@ fn wrong_coefficient(
     actual: &Polynomial,
 ) -> FindingDetail {
     let (own, logged) = (expected.coefficients(), actual.coefficients());
-    let factor = factor(own, logged);
+    let factor = find_factor(own, logged);
     // If only the original's bound rejects a coefficient, its power is the original's.
-    let power = differing(own, logged, factor).first().copied().unwrap_or(rescaled.power);
+    let power = differing_powers(own, logged, factor).first().copied().unwrap_or(rescaled.power);
     let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
     let (right, wrong) = (factor * of(own), of(logged));
     FindingDetail::Coefficient {

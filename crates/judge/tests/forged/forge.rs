@@ -69,7 +69,7 @@ pub struct Stage {
 struct Note<'a>(&'a Scene, Vec<Known>);
 
 impl Observer for Note<'_> {
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let &Detection { pair, q_start, q_end, .. } = detection;
         let expected = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();
         self.1.extend((0..pair.kind.polynomials()).map(|number| Known { pair, number, expected }));

@@ -5,7 +5,7 @@
 //! explanation reports a mistake of a correct variant.
 #![forbid(unsafe_code)]
 use anyhow::Context;
-use fosssim_lab::runs::{WatchedScene, judge, trace};
+use fosssim_lab::runs::{WatchedScene, judge, record_trace};
 use fosssim_oracle::{
     diagnose::{Explanation, explain_together, find_known},
     student::{CATALOGUE, Row, RowKind, Student},
@@ -121,7 +121,7 @@ fn count_together(wrong: &[(&Row, &Vec<ExplainedTrace>)]) {
 }
 
 fn explain(watched: &WatchedScene, row: &Row) -> ExplainedTrace {
-    let trace = trace(&watched.scene, Student::new(Some(row.mistake)));
+    let trace = record_trace(&watched.scene, Student::new(Some(row.mistake)));
     if trace == watched.right {
         return (Outcome::Same, Duration::ZERO, Vec::new());
     }

@@ -6,7 +6,7 @@
 //! catches every catchable mistake. It exits with status 1 if a mistake changes no trace (so that no rule book could
 //! find it), if the fair rules miss a mistake, or if they reject a correct variant.
 #![forbid(unsafe_code)]
-use fosssim_lab::runs::{WatchedScene, is_accepted, judge, trace};
+use fosssim_lab::runs::{WatchedScene, is_accepted, judge, record_trace};
 use fosssim_oracle::{
     judge::{FindingKind, Outcome, Overall},
     student::{CATALOGUE, Row, RowKind, Student},
@@ -37,16 +37,16 @@ enum Answer {
 const RULE_BOOKS: [&str; 2] = ["parity", "fair"];
 
 /// The index of the rule book that must catch every mistake and accept every correct variant.
-const FAIR: usize = 1;
+const FAIR_BOOK: usize = 1;
 
 /// The answers of all rule books.
 type MatrixCell = [Answer; RULE_BOOKS.len()];
 
-fn parity(outcome: &Outcome) -> Answer {
+fn parity_answer(outcome: &Outcome) -> Answer {
     if outcome.parity.overall == Overall::Passed { Answer::Accepted } else { Answer::Refused }
 }
 
-fn fair(outcome: &Outcome) -> Answer {
+fn fair_answer(outcome: &Outcome) -> Answer {
     match &outcome.fair {
         _ if is_accepted(outcome) => Answer::Accepted,
         Some(fair)
@@ -66,19 +66,19 @@ fn main() -> anyhow::Result<ExitCode> {
     let rows: Vec<&Row> =
         CATALOGUE.iter().filter(|row| row.kind != RowKind::Hostile && row.id.contains(&part)).collect();
     let matrix: Vec<Vec<MatrixCell>> =
-        rows.par_iter().map(|row| cases.iter().map(|case| cell(case, row)).collect()).collect();
+        rows.par_iter().map(|row| cases.iter().map(|case| compute_cell(case, row)).collect()).collect();
     for (book, name) in RULE_BOOKS.iter().enumerate() {
         print_book(name, book, &rows, &cases, &matrix);
     }
     let invisible: Vec<&str> = rows
         .iter()
         .zip(&matrix)
-        .filter(|(row, cells)| row.kind == RowKind::Wrong && cells.iter().all(|cell| cell[FAIR] == Answer::Same))
+        .filter(|(row, cells)| row.kind == RowKind::Wrong && cells.iter().all(|cell| cell[FAIR_BOOK] == Answer::Same))
         .map(|(row, _)| row.id)
         .collect();
     print_list("mistakes that change no trace (must be none)", &invisible);
-    let uncaught = mistakes(&rows, &matrix, FAIR, false).len();
-    let accuses = !find_rejected(FAIR, &rows, &cases, &matrix).is_empty();
+    let uncaught = mistakes(&rows, &matrix, FAIR_BOOK, false).len();
+    let accuses = !find_rejected(FAIR_BOOK, &rows, &cases, &matrix).is_empty();
     Ok(ExitCode::from(u8::from(!invisible.is_empty() || uncaught > 0 || accuses)))
 }
 
@@ -107,13 +107,13 @@ fn find_rejected<'a>(
         .collect()
 }
 
-fn cell(case: &WatchedScene, row: &Row) -> MatrixCell {
-    let trace = trace(&case.scene, Student::new(Some(row.mistake)));
+fn compute_cell(case: &WatchedScene, row: &Row) -> MatrixCell {
+    let trace = record_trace(&case.scene, Student::new(Some(row.mistake)));
     if trace == case.right {
         return [Answer::Same; RULE_BOOKS.len()];
     }
     let outcome = judge(&case.scene, &trace);
-    [parity(&outcome), fair(&outcome)]
+    [parity_answer(&outcome), fair_answer(&outcome)]
 }
 
 /// Returns whether a rule book rejects the trace.
@@ -151,8 +151,10 @@ fn print_book(name: &str, book: usize, rows: &[&Row], cases: &[WatchedScene], ma
     }
     let accused: Vec<String> = scenes.iter().map(|(id, scenes)| format!("{id}: {}", scenes.join(", "))).collect();
     print_list("correct variants that a scene rejects", &accused);
-    let subset: Vec<&str> =
-        sufficient(book, rows, cases.len(), matrix).into_iter().map(|index| cases[index].name.as_str()).collect();
+    let subset: Vec<&str> = sufficient_scenes(book, rows, cases.len(), matrix)
+        .into_iter()
+        .map(|index| cases[index].name.as_str())
+        .collect();
     print_list("scenes that together catch all of these mistakes", &subset);
 }
 
@@ -166,7 +168,7 @@ fn print_list(title: &str, names: &[impl Display]) {
 
 /// Returns a small set of scenes that catches every catchable mistake. Scenes with the most new mistakes are added
 /// first; superfluous scenes are removed at the end.
-fn sufficient(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<MatrixCell>]) -> BTreeSet<usize> {
+fn sufficient_scenes(book: usize, rows: &[&Row], scenes: usize, matrix: &[Vec<MatrixCell>]) -> BTreeSet<usize> {
     let caught = |scene: usize| -> BTreeSet<usize> {
         (0..rows.len())
             .filter(|&row| rows[row].kind == RowKind::Wrong && is_rejected(&matrix[row][scene], book))

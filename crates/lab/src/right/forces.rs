@@ -4,7 +4,7 @@ use fosssim_model::{
     scene::{Collision, CollisionDetection, Force, Scene},
     sim::{PairKind, PenaltyPairs},
 };
-use fosssim_num::vector::{Vec2, at, divide, length};
+use fosssim_num::vector::{Vec2, divide, length, vector_at};
 use nalgebra::DMatrix;
 
 /// The forces of a scene, in the order and arithmetic of one program.
@@ -30,7 +30,7 @@ impl<'a> ForceTerms<'a> {
     }
 
     /// Returns the force on every particle at positions `x` and velocities `v`.
-    pub(super) fn at(&mut self, x: &[f64], v: &[f64]) -> Vec<f64> {
+    pub(super) fn evaluate_at(&mut self, x: &[f64], v: &[f64]) -> Vec<f64> {
         let mut terms = Vec::new();
         for force in &self.scene.forces {
             self.add_terms(force, x, v, &mut terms);
@@ -75,28 +75,28 @@ impl<'a> ForceTerms<'a> {
         match *force {
             Force::Spring { edge, stiffness, rest_length, damping } => {
                 let (a, b) = (self.scene.edges[edge].first, self.scene.edges[edge].second);
-                let (d, w) = (at(x, b) - at(x, a), at(v, b) - at(v, a));
+                let (d, w) = (vector_at(x, b) - vector_at(x, a), vector_at(v, b) - vector_at(v, a));
                 let l = length(d);
                 both(a, b, stiffness * (1.0 - rest_length / l) * d);
                 both(a, b, damping * self.dot(d, w) / (l * l) * d);
             }
             Force::Gravitation { first, second, constant } => {
-                let d = at(x, second) - at(x, first);
+                let d = vector_at(x, second) - vector_at(x, first);
                 let r = length(d);
                 both(first, second, constant * mass(self.scene, first) * mass(self.scene, second) / (r * r * r) * d);
             }
             Force::Vortex { first, second, strength, coupling } => {
-                let d = at(x, second) - at(x, first);
+                let d = vector_at(x, second) - vector_at(x, first);
                 let r = length(d);
                 let swirl = strength / r * Vec2::new(-d.y, d.x);
-                both(first, second, coupling / (r * r) * (at(v, second) - at(v, first) - swirl));
+                both(first, second, coupling / (r * r) * (vector_at(v, second) - vector_at(v, first) - swirl));
             }
             Force::SimpleGravity { acceleration } => {
                 terms.extend(particles.map(|particle| (particle, mass(self.scene, particle) * acceleration)));
             }
             Force::Constant { force } => terms.extend(particles.map(|particle| (particle, force))),
             Force::Drag { coefficient } => {
-                terms.extend(particles.map(|particle| (particle, -coefficient * at(v, particle))));
+                terms.extend(particles.map(|particle| (particle, -coefficient * vector_at(v, particle))));
             }
         }
     }
@@ -112,17 +112,17 @@ impl<'a> ForceTerms<'a> {
         };
         near.visit(x, |pair| {
             let (one, other) = (pair.first as usize, pair.second as usize);
-            let (place, radius) = (at(x, one), scene.particles[one].radius);
+            let (place, radius) = (vector_at(x, one), scene.particles[one].radius);
             match pair.kind {
                 PairKind::ParticleParticle => {
-                    let n = at(x, other) - place;
+                    let n = vector_at(x, other) - place;
                     if let Some(force) = push(n, radius + scene.particles[other].radius) {
                         terms.extend([(one, force), (other, -1.0 * force)]);
                     }
                 }
                 PairKind::ParticleEdge => {
                     let edge = scene.edges[other];
-                    let (x2, x3) = (at(x, edge.first), at(x, edge.second));
+                    let (x2, x3) = (vector_at(x, edge.first), vector_at(x, edge.second));
                     let along = x3 - x2;
                     let alpha = ((place - x2).dot(&along) / along.dot(&along)).clamp(0.0, 1.0);
                     let n = (1.0 - alpha) * x2 + alpha * x3 - place;
@@ -160,7 +160,8 @@ impl<'a> ForceTerms<'a> {
             match *force {
                 Force::Spring { edge, stiffness, rest_length, damping } => {
                     let ends = [scene.edges[edge].first, scene.edges[edge].second];
-                    let (d, w) = (at(x, ends[1]) - at(x, ends[0]), at(v, ends[1]) - at(v, ends[0]));
+                    let (d, w) =
+                        (vector_at(x, ends[1]) - vector_at(x, ends[0]), vector_at(v, ends[1]) - vector_at(v, ends[0]));
                     let l = length(d);
                     let cube = l * l * l;
                     add_block(&mut matrix, ends, |r, c| {
@@ -174,7 +175,7 @@ impl<'a> ForceTerms<'a> {
                     });
                 }
                 Force::Gravitation { first, second, constant } => {
-                    let d = at(x, second) - at(x, first);
+                    let d = vector_at(x, second) - vector_at(x, first);
                     let square = d.dot(&d);
                     let scale = constant * mass(scene, first) * mass(scene, second) / (square * length(d));
                     add_block(&mut matrix, [first, second], |r, c| {

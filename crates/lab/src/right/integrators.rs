@@ -39,7 +39,7 @@ pub(super) fn advance(
         Integrator::LinearizedImplicitEuler => {
             let mut x = state.x.clone();
             add(&mut x, &state.v);
-            let force = forces.at(&x, &state.v);
+            let force = forces.evaluate_at(&x, &state.v);
             let right = clear_fixed(scene, force.iter().map(|force| h * force).collect());
             let change = solve(arithmetic.solver, forces.system(&x, &state.v)?, right)?;
             state.v.iter_mut().zip(&change).for_each(|(v, change)| *v += change);
@@ -52,7 +52,7 @@ pub(super) fn advance(
             for _ in 0..NEWTON_LIMIT {
                 let mut x = state.x.clone();
                 add(&mut x, &v);
-                let force = forces.at(&x, &v);
+                let force = forces.evaluate_at(&x, &v);
                 let right = (0..v.len()).map(|k| h * force[k] - mass(scene, k / 2) * (v[k] - state.v[k])).collect();
                 let change = solve(arithmetic.solver, forces.system(&x, &v)?, clear_fixed(scene, right))?;
                 v.iter_mut().zip(&change).for_each(|(v, change)| *v += change);
@@ -73,7 +73,7 @@ pub(super) fn advance(
 }
 
 fn accelerations(scene: &Scene, forces: &mut ForceTerms<'_>, state: &State) -> Vec<f64> {
-    let force = forces.at(&state.x, &state.v);
+    let force = forces.evaluate_at(&state.x, &state.v);
     clear_fixed(scene, (0..force.len()).map(|k| force[k] / mass(scene, k / 2)).collect())
 }
 

@@ -46,7 +46,7 @@ impl OpenTrace {
 }
 
 /// Returns the symptoms of a trace without the refuted statements.
-pub(super) fn symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bool) -> Vec<Symptom> {
+pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&String) -> bool) -> Vec<Symptom> {
     let of_one = |one: &Explanation| {
         if is_refuted(&one.key) && find(&one.key).is_none() {
             return None;
@@ -98,7 +98,7 @@ impl Support<'_> {
     }
 }
 
-fn evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
+fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     let mut all: BTreeMap<&str, Support<'_>> = BTreeMap::new();
     for (number, trace) in open.iter().enumerate() {
         for (place, symptom) in trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.one.is_vote()) {
@@ -147,8 +147,8 @@ fn contradicts(one: &Explanation, told: &Explanation) -> bool {
 /// Returns the likeliest mistake behind the open symptoms, which is the mistake that most traces allow. On a tie,
 /// mistakes of the catalogue come first, then the mistake that is more often the first explanation, then the earlier
 /// one.
-pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
-    let all = evidence(open);
+pub(super) fn find_likeliest(open: &[OpenTrace]) -> Option<Explanation> {
+    let all = collect_evidence(open);
     let is_known = |word: &str| find(word).is_some();
     let is_likely = |(word, one): &(&&str, &Support<'_>)| !one.is_denied() && (one.told.is_some() || is_known(word));
     let (&word, best) = all.iter().filter(is_likely).max_by(|(word, a), (other, b)| {
@@ -167,12 +167,12 @@ pub(super) fn likeliest(open: &[OpenTrace]) -> Option<Explanation> {
         let &(trace, place) = best.symptoms.first()?;
         return Some(as_row(&open[trace].symptoms[place].one, find(word)?, same_as));
     };
-    Some(Explanation { same_as, ..unite(told, open) })
+    Some(Explanation { same_as, ..merge_explanations(told, open) })
 }
 
 /// Returns an explanation with the polynomials of all traces that report the same mistake, and only the exact forms
 /// that all of them allow.
-fn unite(told: &Explanation, open: &[OpenTrace]) -> Explanation {
+fn merge_explanations(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let mut told = told.clone();
     let said = told.statement();
     // Nothing of a contradicting trace is reproduced.

@@ -3,7 +3,7 @@
 use super::{
     Detail, Explanation, Guess, ListGuess,
     about::{About, OfPolynomials},
-    evidence::{OpenTrace, Symptom, likeliest, symptoms},
+    evidence::{OpenTrace, Symptom, collect_symptoms, find_likeliest},
     explain::is_formula,
     fault::StepStage,
     known::is_empty_stage,
@@ -36,7 +36,7 @@ pub fn explain_together<'a>(
     let is_refuted = |key: &String| refuted.contains(key) || denied.contains(key);
     let mut open: Vec<OpenTrace> = traces
         .iter()
-        .map(|list| OpenTrace { symptoms: symptoms(list, &is_refuted), is_covered: false })
+        .map(|list| OpenTrace { symptoms: collect_symptoms(list, &is_refuted), is_covered: false })
         .filter(|trace| !trace.symptoms.is_empty())
         .collect();
     let mut wrong: Vec<Vec<Explanation>> =
@@ -45,7 +45,7 @@ pub fn explain_together<'a>(
     keep_earliest_stage(&mut open);
     let (mut found, mut empty): (Vec<Explanation>, Vec<Explanation>) = (Vec::new(), Vec::new());
     while found.len() + usize::from(!empty.is_empty()) < MAX_MISTAKES {
-        let Some(next) = likeliest(&open) else { break };
+        let Some(next) = find_likeliest(&open) else { break };
         let said = next.statement();
         let is_empty = find(&next.key).is_some_and(is_empty_stage);
         let is_told = if is_empty {
@@ -80,7 +80,7 @@ pub fn explain_together<'a>(
         found.retain(|one| !one.is_of_stage());
         found.insert(0, head);
     }
-    near::unite(&mut found, &traces);
+    near::merge_explanations(&mut found, &traces);
     let end = not_finite(&traces).filter(|one| !refuted.contains(&one.key));
     unite_unfinished(empty).into_iter().chain(found).chain(end).collect()
 }

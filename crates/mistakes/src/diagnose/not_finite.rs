@@ -29,7 +29,7 @@ pub(super) fn find_in_trace(scene: &Scene, source: Source<'_>) -> Vec<Explanatio
         (StepReader::new(scene, source), Reference::new(scene), FirstNotFinite::default());
     first.begin(&steps.frames);
     while let Some(step) = steps.next() {
-        first.step(&mut reference, scene, step, &steps.frames);
+        first.examine_step(&mut reference, scene, step, &steps.frames);
     }
     first.explanation().into_iter().collect()
 }
@@ -53,7 +53,13 @@ impl FirstNotFinite {
 
     /// Examines a step: whether it is the first one with a value that is not finite, and whether values are finite
     /// again.
-    pub(super) fn step(&mut self, reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) {
+    pub(super) fn examine_step(
+        &mut self,
+        reference: &mut Reference<'_>,
+        scene: &Scene,
+        step: u32,
+        frames: &StepFrames,
+    ) {
         if self.is_found {
             let is_finite = || ![&frames.before, &frames.mid, &frames.end].into_iter().any(is_wild);
             if let Some(told) = &mut self.told

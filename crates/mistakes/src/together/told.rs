@@ -127,7 +127,7 @@ mod tests {
     fn what_is_told_of_a_trace_grows_with_the_hints_and_holds_no_value_below_full() {
         let (_, scene) = probe_scenes(Assignment::DEFAULT).swap_remove(0);
         let row = CATALOGUE.iter().find(|row| row.kind == RowKind::Wrong).expect("a mistake");
-        let trace = student::trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+        let trace = student::record_trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
         let options = replay::Options { fair: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
         let all = |rules| Disclosure::from_outcome(&judged, rules);

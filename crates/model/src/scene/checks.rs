@@ -22,9 +22,9 @@ const MAX_PAIRS: usize = 4_000_000;
 /// Checks the scene as a whole.
 pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report) {
     check_steps(parts, report);
-    size(document, parts, report);
+    check_size(document, parts, report);
     check_methods(parts, report);
-    normals(parts, report);
+    check_normals(parts, report);
     check_fixed_and_moving(parts, report);
     check_lengths_of_edges(parts, report);
     check_directions_of_forces(parts, report);
@@ -36,7 +36,7 @@ pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report:
 }
 
 /// Returns an error or warning about an element.
-fn about(tag: &Tag<'_>, message: String, help: &str) -> Problem {
+fn problem_at(tag: &Tag<'_>, message: String, help: &str) -> Problem {
     Problem::from_element(tag.rule.name, &tag.span, message).help(help)
 }
 
@@ -49,16 +49,16 @@ fn check_steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
     let steps = (time / time_step).ceil();
     if time == 0.0 {
-        report.warning(|| about(duration.tag, "the duration is zero".into(), "there are no steps"));
+        report.warning(|| problem_at(duration.tag, "the duration is zero".into(), "there are no steps"));
     } else if steps > f64::from(i32::MAX) {
         let help = "at most 2147483647 steps are possible; the original would run none";
         report.error(|| {
-            about(duration.tag, format!("{time:?} seconds in steps of {time_step:?} are {steps:e} steps"), help)
+            problem_at(duration.tag, format!("{time:?} seconds in steps of {time_step:?} are {steps:e} steps"), help)
         });
     }
 }
 
-fn size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report) {
     let count = parts.particles.len();
     if count == 0 && !report.has_errors() {
         let span = document.scene.clone().unwrap_or(0..0);
@@ -68,7 +68,7 @@ fn size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut Report
         && count > MAX_IMPLICIT
     {
         report.error(|| {
-            about(
+            problem_at(
                 part.tag,
                 format!("{count} particles are too many for an implicit integrator"),
                 "at most 4096: it solves a dense system of twice that size in every step",
@@ -89,7 +89,7 @@ fn check_methods(parts: &SceneParts<'_, '_>, report: &mut Report) {
         for part in parts.forces.iter().filter(|part| part.tag.rule.name == "vortexforce") {
             report.error(|| {
                 let help = "it has no Hessian; the original stops at the first step";
-                about(part.tag, "a `vortexforce` with an implicit integrator".into(), help)
+                problem_at(part.tag, "a `vortexforce` with an implicit integrator".into(), help)
             });
         }
     }
@@ -97,18 +97,18 @@ fn check_methods(parts: &SceneParts<'_, '_>, report: &mut Report) {
     if penalty && matches!(integrator.value, Some((Integrator::ImplicitEuler, _))) {
         report.warning(|| {
             let help = "its Hessian is missing, so Newton's method may never converge";
-            about(integrator.tag, "`implicit-euler` with a penalty force".into(), help)
+            problem_at(integrator.tag, "`implicit-euler` with a penalty force".into(), help)
         });
     }
 }
 
-fn normals(parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_normals(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for (number, part) in parts.half_planes.iter().enumerate() {
         let Some(HalfPlane { normal, .. }) = part.value else { continue };
         if normal.dot(&normal) == 0.0 {
             report.error(|| {
                 let help = "`nx` and `ny` must not both be zero or so small that their squares vanish";
-                about(part.tag, format!("the normal of halfplane {number} has no length"), help)
+                problem_at(part.tag, format!("the normal of halfplane {number} has no length"), help)
             });
         }
     }
@@ -127,7 +127,11 @@ fn check_fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
         if part.value.as_ref().is_some_and(|particle| particle.fixed && particle.velocity != Vec2::zeros()) {
             report.warning(|| {
                 let help = "the response to half-planes does not check whether a particle is fixed";
-                about(part.tag, format!("particle {number} is fixed but moves, and half-planes will reflect it"), help)
+                problem_at(
+                    part.tag,
+                    format!("particle {number} is fixed but moves, and half-planes will reflect it"),
+                    help,
+                )
             });
         }
     }
@@ -144,7 +148,7 @@ fn check_lengths_of_edges(parts: &SceneParts<'_, '_>, report: &mut Report) {
         if in_one_place(parts, first, second) {
             report.error(|| {
                 let help = "an edge without length has no direction; a spring on it is not a number";
-                about(
+                problem_at(
                     part.tag,
                     format!("edge {number} joins particles {first} and {second}, which start at one position"),
                     help,
@@ -163,7 +167,7 @@ fn check_directions_of_forces(parts: &SceneParts<'_, '_>, report: &mut Report) {
             let name = part.tag.rule.name;
             report.error(|| {
                 let message = format!("`{name}` between particles {first} and {second}, which start at one position");
-                about(part.tag, message, "at distance zero it is not a number")
+                problem_at(part.tag, message, "at distance zero it is not a number")
             });
         }
     }
@@ -199,10 +203,10 @@ impl ContactRule {
     fn report(&self, tag: &Tag<'_>, report: &mut Report, message: impl FnOnce() -> String) {
         if self.penalty {
             let help = "the penalty force between them has no direction and is not a number; move one of them";
-            report.error(|| about(tag, message(), help));
+            report.error(|| problem_at(tag, message(), help));
         } else {
             let help = "a contact there has no direction and would not be a number";
-            report.warning(|| about(tag, message(), help));
+            report.warning(|| problem_at(tag, message(), help));
         }
     }
 }

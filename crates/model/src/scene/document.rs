@@ -40,7 +40,7 @@ pub(super) fn read<'t>(text: &'t str, report: &mut Report) -> Document<'t> {
         wrong_ends: 0,
         stray: false,
     };
-    reading.all()
+    reading.read_all()
 }
 
 /// An element that has not been closed.
@@ -64,7 +64,7 @@ struct DocumentReader<'t, 'r> {
 }
 
 impl<'t> DocumentReader<'t, '_> {
-    fn all(mut self) -> Document<'t> {
+    fn read_all(mut self) -> Document<'t> {
         // The reader drops a byte order mark without counting it.
         let skipped = if self.text.starts_with('\u{feff}') { 3 } else { 0 };
         let mut reader = quick_xml::Reader::from_str(&self.text[skipped..]);

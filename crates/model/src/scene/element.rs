@@ -12,7 +12,7 @@ impl Element {
     }
 
     /// Adds an attribute whose value needs no character references.
-    pub(super) fn with(mut self, name: &str, value: impl fmt::Display) -> Self {
+    pub(super) fn with_attribute(mut self, name: &str, value: impl fmt::Display) -> Self {
         self.0 += &format!(r#" {name}="{value}""#);
         self
     }
@@ -20,7 +20,7 @@ impl Element {
     /// Adds a number in its shortest form, with an exponent if that is shorter.
     pub(super) fn number(self, name: &str, value: f64) -> Self {
         let written = format!("{value:?}");
-        self.with(name, written.strip_suffix(".0").unwrap_or(&written))
+        self.with_attribute(name, written.strip_suffix(".0").unwrap_or(&written))
     }
 
     /// Adds two numbers.
@@ -35,12 +35,12 @@ impl Element {
 
     /// Adds the index of an edge.
     pub(super) fn edge(self, name: &str, index: usize) -> Self {
-        self.with(name, index)
+        self.with_attribute(name, index)
     }
 
     /// Adds the index of a particle.
     pub(super) fn particle(self, name: &str, index: usize) -> Self {
-        self.with(name, index)
+        self.with_attribute(name, index)
     }
 
     /// Adds any text. White space other than the space is written as references, because line feeds vanish in the
@@ -58,7 +58,7 @@ impl Element {
                 _ => value.push(c),
             }
         }
-        self.with(name, value)
+        self.with_attribute(name, value)
     }
 }
 

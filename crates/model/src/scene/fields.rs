@@ -47,32 +47,32 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
 
     /// Reports an error about an attribute's value: `NAME of WHO MESSAGE`.
     pub(super) fn error(&mut self, name: &str, message: &str, help: impl Into<String>) {
-        self.complain(Severity::Error, name, || (message.to_owned(), help.into()));
+        self.report_problem(Severity::Error, name, || (message.to_owned(), help.into()));
     }
 
     /// Reports a warning about an attribute's value: `NAME of WHO MESSAGE`.
     pub(super) fn warn(&mut self, name: &str, message: &str, help: impl Into<String>) {
-        self.complain(Severity::Warning, name, || (message.to_owned(), help.into()));
+        self.report_problem(Severity::Warning, name, || (message.to_owned(), help.into()));
     }
 
     /// Reports an error about an attribute's value, which is shown as written.
     pub(super) fn report_bad(&mut self, name: &str, help: impl Into<String>) {
         let written = self.raw(name).map_or("", |attribute| attribute.value);
-        self.complain(Severity::Error, name, || (format!("is `{}`", quote(written)), help.into()));
+        self.report_problem(Severity::Error, name, || (format!("is `{}`", quote(written)), help.into()));
     }
 
     /// Reports a warning about an attribute's value, which is shown as written.
     pub(super) fn warn_bad(&mut self, name: &str, help: impl Into<String>) {
         let written = self.raw(name).map_or("", |attribute| attribute.value);
-        self.complain(Severity::Warning, name, || (format!("is `{}`", quote(written)), help.into()));
+        self.report_problem(Severity::Warning, name, || (format!("is `{}`", quote(written)), help.into()));
     }
 
     /// Reports a problem, whose text is created only if the report has room for it.
-    fn complain(&mut self, severity: Severity, name: &str, words: impl FnOnce() -> (String, String)) {
+    fn report_problem(&mut self, severity: Severity, name: &str, words: impl FnOnce() -> (String, String)) {
         let (span, tag, number) = (self.span(name), self.tag, self.number);
         self.report.add(severity, || {
             let (message, help) = words();
-            Problem::from_element(tag.rule.name, &span, format!("`{name}` of {} {message}", who(tag, number)))
+            Problem::from_element(tag.rule.name, &span, format!("`{name}` of {} {message}", describe_tag(tag, number)))
                 .attribute(name)
                 .help(help)
         });
@@ -152,7 +152,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             return index;
         }
         if of.certain || index.is_none() {
-            self.complain(Severity::Error, name, || {
+            self.report_problem(Severity::Error, name, || {
                 let help = match of.count {
                     0 => format!("there is no {}", of.what),
                     count => format!("allowed is 0 to {}; numbering starts at 0", count - 1),
@@ -203,9 +203,13 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         if attribute.is_none() && !self.tag.broken && !self.tag.meant.contains(name) {
             let (tag, number) = (self.tag, self.number);
             self.report.error(|| {
-                Problem::from_element(tag.rule.name, &tag.span, format!("{} has no `{name}`", who(tag, number)))
-                    .attribute(name)
-                    .help(format!("required: {what}"))
+                Problem::from_element(
+                    tag.rule.name,
+                    &tag.span,
+                    format!("{} has no `{name}`", describe_tag(tag, number)),
+                )
+                .attribute(name)
+                .help(format!("required: {what}"))
             });
         }
         attribute
@@ -267,13 +271,13 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     fn report_number<T>(&mut self, name: &str, text: &str, error: NumberError) -> Option<T> {
-        self.complain(Severity::Error, name, || describe_error(text, &error));
+        self.report_problem(Severity::Error, name, || describe_error(text, &error));
         None
     }
 }
 
 /// Returns the name of an element for messages, such as `particle 3` or `integrator`.
-fn who(tag: &Tag<'_>, number: Option<usize>) -> String {
+fn describe_tag(tag: &Tag<'_>, number: Option<usize>) -> String {
     match number {
         Some(number) => format!("{} {number}", tag.rule.name),
         None => tag.rule.name.to_owned(),

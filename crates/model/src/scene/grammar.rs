@@ -6,7 +6,7 @@ const fn element(name: &'static str, attributes: &'static [&'static str]) -> Rul
 }
 
 /// Every element that a scene may have, except those of forces.
-static OTHERS: [Rule; 19] = [
+static ELEMENT_RULES: [Rule; 19] = [
     element("simtype", &["type"]),
     element("duration", &["time"]),
     element("maxsimfreq", &["max"]),
@@ -30,7 +30,7 @@ static OTHERS: [Rule; 19] = [
 ];
 
 fn rules() -> impl Iterator<Item = &'static Rule> {
-    OTHERS.iter().chain(forces::RULES)
+    ELEMENT_RULES.iter().chain(forces::RULES)
 }
 
 /// Returns the rule for the element `name`.
@@ -44,7 +44,7 @@ pub(super) fn similar_element(name: &str) -> Option<&'static str> {
 }
 
 /// Names that many people write instead of a name of the format.
-const HABITS: [(&str, &str); 8] = [
+const COMMON_MISSPELLINGS: [(&str, &str); 8] = [
     ("mass", "m"),
     ("x", "px"),
     ("y", "py"),
@@ -64,7 +64,7 @@ pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
         return None;
     }
     let plain = to_plain(word);
-    let habit = HABITS.iter().find(|(habit, _)| *habit == plain).map(|(_, name)| *name);
+    let habit = COMMON_MISSPELLINGS.iter().find(|(habit, _)| *habit == plain).map(|(_, name)| *name);
     candidates
         .filter(|candidate| candidate.len() <= MAX_LETTERS)
         .filter_map(|candidate| {

@@ -27,9 +27,9 @@ pub(super) enum NumberError {
 /// Returns a finite 64-bit float, and whether a nonzero number became zero.
 pub(super) fn scalar(text: &str) -> Result<(f64, bool), NumberError> {
     let text = text.trim_ascii();
-    let length = shape(text);
+    let length = number_length(text);
     if length < text.len() || text.is_empty() {
-        return Err(flaw(text, length));
+        return Err(number_error(text, length));
     }
     let value: f64 = text.parse().map_err(|_| NumberError::NoNumber)?;
     if value.is_infinite() {
@@ -53,7 +53,7 @@ pub(super) fn integer(text: &str) -> Result<i32, NumberError> {
     })
 }
 
-fn flaw(text: &str, length: usize) -> NumberError {
+fn number_error(text: &str, length: usize) -> NumberError {
     let bare = text.strip_prefix(['+', '-']).unwrap_or(text).to_ascii_lowercase();
     if text.is_empty() {
         NumberError::Empty
@@ -63,7 +63,7 @@ fn flaw(text: &str, length: usize) -> NumberError {
         NumberError::NoNumber
     } else {
         let with_point = text.replacen(',', ".", 1);
-        if text[length..].starts_with(',') && shape(&with_point) == text.len() {
+        if text[length..].starts_with(',') && number_length(&with_point) == text.len() {
             NumberError::Comma(with_point)
         } else {
             NumberError::Trailing(text[..length].to_owned())
@@ -72,7 +72,7 @@ fn flaw(text: &str, length: usize) -> NumberError {
 }
 
 /// Returns the number of leading bytes that have the form of a number; 0 without digits.
-fn shape(text: &str) -> usize {
+fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let Some(end) = mantissa(bytes) else { return 0 };
     if matches!(bytes.get(end), Some(b'e' | b'E')) {

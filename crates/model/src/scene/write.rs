@@ -17,10 +17,10 @@ pub fn write(scene: &Scene) -> String {
     let mut all = Vec::new();
     all.extend(scene.description.as_deref().map(|text| Element::new("description").text("text", text)));
     all.push(Element::new("duration").number("time", scene.duration));
-    all.push(integrator(scene));
-    all.extend(collision(scene.collision));
+    all.push(build_integrator(scene));
+    all.extend(build_collision(scene.collision));
     if let Collision::Penalty { detection: CollisionDetection::Contest, .. } = scene.collision {
-        all.push(Element::new("collisiondetection").with("type", "contest"));
+        all.push(Element::new("collisiondetection").with_attribute("type", "contest"));
     }
     all.extend(display.max_frequency.map(|max| Element::new("maxsimfreq").number("max", max)));
     let viewport =
@@ -28,7 +28,7 @@ pub fn write(scene: &Scene) -> String {
     all.extend(viewport);
     all.extend(display.background.map(|color| Element::new("backgroundcolor").color(color)));
     all.extend(display.tag.as_deref().map(|tag| Element::new("scenetag").text("tag", tag)));
-    all.extend(scene.particles.iter().map(particle));
+    all.extend(scene.particles.iter().map(particle_element));
     for edge in &scene.edges {
         let ends = Element::new("edge").particle("i", edge.first).particle("j", edge.second);
         all.push(ends.number("radius", edge.radius));
@@ -42,7 +42,7 @@ pub fn write(scene: &Scene) -> String {
         ("edgecolor", &display.edge_colors),
         ("halfplanecolor", &display.half_plane_colors),
     ] {
-        all.extend(colors.iter().map(|(index, color)| Element::new(name).with("i", index).color(*color)));
+        all.extend(colors.iter().map(|(index, color)| Element::new(name).with_attribute("i", index).color(*color)));
     }
     for path in &display.paths {
         let trail = Element::new("particlepath").particle("i", path.particle).number("duration", path.duration);
@@ -52,9 +52,9 @@ pub fn write(scene: &Scene) -> String {
     format!("<scene>\n{lines}</scene>\n")
 }
 
-fn particle(particle: &Particle) -> Element {
+fn particle_element(particle: &Particle) -> Element {
     let moves = Element::new("particle").vector("px", "py", particle.position).vector("vx", "vy", particle.velocity);
-    let fixed = moves.number("m", particle.mass).with("fixed", u8::from(particle.fixed));
+    let fixed = moves.number("m", particle.mass).with_attribute("fixed", u8::from(particle.fixed));
     let whole = fixed.number("radius", particle.radius);
     match &particle.tag {
         Some(tag) => whole.text("tag", tag),
@@ -62,13 +62,13 @@ fn particle(particle: &Particle) -> Element {
     }
 }
 
-fn integrator(scene: &Scene) -> Element {
-    Element::new("integrator").with("type", scene.integrator.name()).number("dt", scene.time_step)
+fn build_integrator(scene: &Scene) -> Element {
+    Element::new("integrator").with_attribute("type", scene.integrator.name()).number("dt", scene.time_step)
 }
 
 /// Returns the element of a collision handling; `None` without one.
-fn collision(collision: Collision) -> Option<Element> {
-    let element = Element::new("collision").with("type", collision.kind().name());
+fn build_collision(collision: Collision) -> Option<Element> {
+    let element = Element::new("collision").with_attribute("type", collision.kind().name());
     Some(match collision {
         Collision::None => return None,
         Collision::Simple { restitution } | Collision::ContinuousTime { restitution } => {
@@ -78,7 +78,7 @@ fn collision(collision: Collision) -> Option<Element> {
             element.number("k", stiffness).number("thickness", thickness)
         }
         Collision::Hybrid { restitution, max_iterations, stiffness, thickness } => {
-            let impulses = element.number("COR", restitution).with("maxiters", max_iterations);
+            let impulses = element.number("COR", restitution).with_attribute("maxiters", max_iterations);
             impulses.number("k", stiffness).number("thickness", thickness)
         }
     })
@@ -87,13 +87,13 @@ fn collision(collision: Collision) -> Option<Element> {
 /// Returns the element of a scene's integrator and time step.
 #[must_use]
 pub fn integrator_element(scene: &Scene) -> String {
-    integrator(scene).to_string()
+    build_integrator(scene).to_string()
 }
 
 /// Returns the element of a scene's collision handling; empty without one.
 #[must_use]
 pub fn collision_element(handling: Collision) -> String {
-    collision(handling).map_or_else(String::new, |element| element.to_string())
+    build_collision(handling).map_or_else(String::new, |element| element.to_string())
 }
 
 /// The element as written in a file.

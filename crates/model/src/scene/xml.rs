@@ -66,9 +66,9 @@ pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> O
     if reading.is_rigid() {
         return None;
     }
-    let particles = reading.check_repeated("particle", particle);
+    let particles = reading.check_repeated("particle", read_particle);
     let of_particles = reading.count("particle", "particle", particles.len());
-    let edges = reading.check_repeated("edge", |fields| edge(fields, of_particles));
+    let edges = reading.check_repeated("edge", |fields| read_edge(fields, of_particles));
     let of_edges = reading.count("edge", "edge", edges.len());
     let half_planes = reading.check_repeated("halfplane", |fields| {
         let (point, normal) = (fields.vector("px", "py"), fields.vector("nx", "ny"));
@@ -77,10 +77,10 @@ pub(super) fn read<'d, 't>(document: &'d Document<'t>, report: &mut Report) -> O
     let of_half_planes = reading.count("halfplane", "half-plane", half_planes.len());
     Some(SceneParts {
         forces: reading.forces(of_particles, of_edges),
-        integrator: reading.require("integrator", "type=\"...\" dt=\"...\"", integrator),
-        duration: reading.require("duration", "time=\"...\"", duration),
+        integrator: reading.require("integrator", "type=\"...\" dt=\"...\"", read_integrator),
+        duration: reading.require("duration", "time=\"...\"", read_duration),
         collision: reading.collision(),
-        description: reading.optional("description", |fields| fields.text("text", "a text")),
+        description: reading.optional_of_kind("description", |fields| fields.text("text", "a text")),
         display: reading.display(of_particles, of_edges, of_half_planes),
         particles,
         edges,
@@ -128,7 +128,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     }
 
     /// Returns a single optional element; the outer `None` means unreadable.
-    fn optional<T>(
+    fn optional_of_kind<T>(
         &mut self,
         name: &str,
         read: impl FnOnce(&mut TagFields<'d, 't, '_>) -> Option<T>,
@@ -195,8 +195,8 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
 
     /// Returns the collision handling, with the detection that its penalty force uses.
     fn collision(&mut self) -> Option<Collision> {
-        let read = self.first_of_kind("collision", collision).map_or(Some(Collision::None), |part| part.value);
-        let Some(part) = self.first_of_kind("collisiondetection", detection) else { return read };
+        let read = self.first_of_kind("collision", read_collision).map_or(Some(Collision::None), |part| part.value);
+        let Some(part) = self.first_of_kind("collisiondetection", read_detection) else { return read };
         match read? {
             Collision::Penalty { stiffness, thickness, .. } => {
                 Some(Collision::Penalty { stiffness, thickness, detection: part.value? })
@@ -212,13 +212,13 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     }
 
     fn display(&mut self, particles: Count, edges: Count, half_planes: Count) -> Option<Display> {
-        let max_frequency = self.optional("maxsimfreq", |fields| fields.scalar("max"));
-        let viewport = self.optional("viewport", |fields| {
+        let max_frequency = self.optional_of_kind("maxsimfreq", |fields| fields.scalar("max"));
+        let viewport = self.optional_of_kind("viewport", |fields| {
             let (center, size) = (fields.vector("cx", "cy"), fields.scalar("size"));
             Some(Viewport { center: center?, size: size? })
         });
-        let background = self.optional("backgroundcolor", |fields| fields.color());
-        let tag = self.optional("scenetag", |fields| fields.text("tag", "a text"));
+        let background = self.optional_of_kind("backgroundcolor", |fields| fields.color());
+        let tag = self.optional_of_kind("scenetag", |fields| fields.text("tag", "a text"));
         let mut colors = |name: &str, of: Count| {
             values(self.check_repeated(name, |fields| {
                 let (index, color) = (fields.index("i", of), fields.color());
@@ -242,7 +242,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
     }
 }
 
-fn duration(fields: &mut TagFields<'_, '_, '_>) -> Option<f64> {
+fn read_duration(fields: &mut TagFields<'_, '_, '_>) -> Option<f64> {
     let duration = fields.scalar("time")?;
     if duration < 0.0 {
         fields.report_bad("time", "the simulated time cannot be negative");
@@ -250,7 +250,7 @@ fn duration(fields: &mut TagFields<'_, '_, '_>) -> Option<f64> {
     Some(duration)
 }
 
-fn integrator(fields: &mut TagFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
+fn read_integrator(fields: &mut TagFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
     let (integrator, time_step) =
         (fields.choice("type", &Integrator::ALL.map(|one| (one.name(), one))), fields.scalar("dt"));
     if time_step.is_some_and(|time_step| time_step <= 0.0) {
@@ -259,11 +259,11 @@ fn integrator(fields: &mut TagFields<'_, '_, '_>) -> Option<(Integrator, f64)> {
     Some((integrator?, time_step?))
 }
 
-fn detection(fields: &mut TagFields<'_, '_, '_>) -> Option<CollisionDetection> {
+fn read_detection(fields: &mut TagFields<'_, '_, '_>) -> Option<CollisionDetection> {
     fields.choice("type", &[("all-pairs", CollisionDetection::AllPairs), ("contest", CollisionDetection::Contest)])
 }
 
-fn collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
+fn read_collision(fields: &mut TagFields<'_, '_, '_>) -> Option<Collision> {
     let types = CollisionType::ALL.map(|kind| (kind.name(), kind));
     let restitution = fields.scalar_or("COR", 1.0);
     if restitution.is_some_and(|value| !(0.0..=1.0).contains(&value)) {
@@ -322,19 +322,19 @@ fn max_iterations(fields: &mut TagFields<'_, '_, '_>) -> Option<i32> {
     Some(iterations)
 }
 
-fn particle(fields: &mut TagFields<'_, '_, '_>) -> Option<Particle> {
+fn read_particle(fields: &mut TagFields<'_, '_, '_>) -> Option<Particle> {
     let (position, velocity) = (fields.vector("px", "py"), fields.vector("vx", "vy"));
     let mass = fields.scalar("m");
     if mass.is_some_and(|mass| mass <= 0.0) {
         fields.report_bad("m", "a mass must be positive; the original divides by it");
     }
     let fixed = fields.boolean("fixed");
-    let radius = radius(fields, 0.1);
+    let radius = read_radius(fields, 0.1);
     let tag = fields.optional_text("tag");
     Some(Particle { position: position?, velocity: velocity?, mass: mass?, fixed: fixed?, radius: radius?, tag: tag? })
 }
 
-fn radius(fields: &mut TagFields<'_, '_, '_>, default: f64) -> Option<f64> {
+fn read_radius(fields: &mut TagFields<'_, '_, '_>, default: f64) -> Option<f64> {
     let radius = fields.scalar_or("radius", default)?;
     if radius < 0.0 {
         fields.report_bad("radius", "a radius cannot be negative");
@@ -342,21 +342,21 @@ fn radius(fields: &mut TagFields<'_, '_, '_>, default: f64) -> Option<f64> {
     Some(radius)
 }
 
-fn edge(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<Edge> {
-    let (pair, radius) = (pair(fields, particles), radius(fields, 0.015));
+fn read_edge(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<Edge> {
+    let (pair, radius) = (read_pair(fields, particles), read_radius(fields, 0.015));
     let (first, second) = pair?;
     Some(Edge { first, second, radius: radius? })
 }
 
 /// Returns the two different particles in `i` and `j`.
-fn pair(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
+fn read_pair(fields: &mut TagFields<'_, '_, '_>, particles: Count) -> Option<(usize, usize)> {
     let first = fields.index("i", particles);
-    let second = other(fields, first, particles);
+    let second = read_other_particle(fields, first, particles);
     Some((first?, second?))
 }
 
 /// Returns the particle in `j`, which must differ from the one in `i`.
-fn other(fields: &mut TagFields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
+fn read_other_particle(fields: &mut TagFields<'_, '_, '_>, first: Option<usize>, particles: Count) -> Option<usize> {
     let second = fields.index("j", particles)?;
     if first == Some(second) {
         fields.error("j", "is the same particle as `i`", "two different particles are needed");
@@ -384,7 +384,7 @@ impl Source for ForceFields<'_, '_, '_, '_> {
 
     fn particle(&mut self, name: &'static str) -> Result<usize, ()> {
         if name == "j" {
-            return other(self.fields, self.first, self.particles).ok_or(());
+            return read_other_particle(self.fields, self.first, self.particles).ok_or(());
         }
         self.first = self.fields.index(name, self.particles);
         self.first.ok_or(())

@@ -32,19 +32,19 @@ pub trait Observer {
         None
     }
     /// Observes the test of a pair.
-    fn detection(&mut self, _detection: &Detection<'_>) {}
+    fn observe_detection(&mut self, _detection: &Detection<'_>) {}
     /// Observes a pair that collides, right after `detection`, which some observers do not request.
-    fn hit(&mut self, _pair: Pair) {}
+    fn observe_hit(&mut self, _pair: Pair) {}
     /// Observes the end of a pass in which `hits` pairs collide.
     fn end_pass(&mut self, _pass: Pass, _hits: usize) {}
     /// Observes an applied response.
-    fn impulse(&mut self, _impulse: &Impulse) {}
+    fn observe_impulse(&mut self, _impulse: &Impulse) {}
     /// Observes the synchronization point with the state of the mid record, before the state may be replaced.
-    fn synchronization(&mut self, _state: &State) {}
+    fn observe_synchronization(&mut self, _state: &State) {}
     /// Observes the impact zones after the merge of geometric round `round` (0: before the first failsafe).
-    fn zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
+    fn observe_zones(&mut self, _round: u32, _zones: &[Zone<'_>]) {}
     /// Observes a zone before the rigid failsafe moves it.
-    fn failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {}
+    fn observe_failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {}
     /// Observes the end of a step with its state.
     fn end_step(&mut self, _step: u32, _state: &State) {}
 }
@@ -52,18 +52,18 @@ pub trait Observer {
 /// Steers a step, which continues with the values that it sets. By default the methods change nothing.
 pub trait Steer {
     /// Receives the trimmed polynomials of a pair before the search for a time of impact. They may be replaced; search,
-    /// decision and [`Observer::detection`] then use the replacements. Not called by `simple`, which has no
+    /// decision and [`Observer::observe_detection`] then use the replacements. Not called by `simple`, which has no
     /// polynomials.
     fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
     /// Receives the system matrix of an implicit integrator, column by column, before each solve of a step. The step
     /// continues with the modified entries.
-    fn system(&mut self, _matrix: &mut [f64]) {}
+    fn observe_system(&mut self, _matrix: &mut [f64]) {}
     /// Returns the decision about a pair with which the step continues.
     fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
         decision
     }
-    /// Receives the synchronization point, after [`Observer::synchronization`]. The step continues with the values
-    /// written here; the returned value selects the state from which the geometric part of `hybrid` starts.
+    /// Receives the synchronization point, after [`Observer::observe_synchronization`]. The step continues with the
+    /// values written here; the returned value selects the state from which the geometric part of `hybrid` starts.
     fn synchronize(&mut self, _state: &mut State) -> Resume {
         Resume::Own
     }
@@ -81,7 +81,7 @@ impl<S: Steer> Observer for Steering<S> {
 
 /// Passes the state of the synchronization point to an observer, and lets it steer.
 pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> Resume {
-    observer.synchronization(state);
+    observer.observe_synchronization(state);
     observer.as_steer().map_or(Resume::Own, |steer| steer.synchronize(state))
 }
 
@@ -110,13 +110,13 @@ macro_rules! forward_all {
         fn begin_step(&mut $self, step: u32) { $($to.begin_step(step);)+ }
         fn begin_pass(&mut $self, pass: Pass) { $($to.begin_pass(pass);)+ }
         fn pass_positions(&mut $self, q_start: &[f64], q_end: &[f64]) { $($to.pass_positions(q_start, q_end);)+ }
-        fn detection(&mut $self, detection: &Detection<'_>) { $($to.detection(detection);)+ }
-        fn hit(&mut $self, pair: Pair) { $($to.hit(pair);)+ }
+        fn observe_detection(&mut $self, detection: &Detection<'_>) { $($to.observe_detection(detection);)+ }
+        fn observe_hit(&mut $self, pair: Pair) { $($to.observe_hit(pair);)+ }
         fn end_pass(&mut $self, pass: Pass, hits: usize) { $($to.end_pass(pass, hits);)+ }
-        fn impulse(&mut $self, impulse: &Impulse) { $($to.impulse(impulse);)+ }
-        fn synchronization(&mut $self, state: &State) { $($to.synchronization(state);)+ }
-        fn zones(&mut $self, round: u32, zones: &[Zone<'_>]) { $($to.zones(round, zones);)+ }
-        fn failsafe(&mut $self, round: u32, zone: &Zone<'_>) { $($to.failsafe(round, zone);)+ }
+        fn observe_impulse(&mut $self, impulse: &Impulse) { $($to.observe_impulse(impulse);)+ }
+        fn observe_synchronization(&mut $self, state: &State) { $($to.observe_synchronization(state);)+ }
+        fn observe_zones(&mut $self, round: u32, zones: &[Zone<'_>]) { $($to.observe_zones(round, zones);)+ }
+        fn observe_failsafe(&mut $self, round: u32, zone: &Zone<'_>) { $($to.observe_failsafe(round, zone);)+ }
         fn end_step(&mut $self, step: u32, state: &State) { $($to.end_step(step, state);)+ }
     };
 }

@@ -200,7 +200,7 @@ mod tests {
             self.0.push(Vec::new());
         }
 
-        fn detection(&mut self, detection: &Detection<'_>) {
+        fn observe_detection(&mut self, detection: &Detection<'_>) {
             self.0.last_mut().expect("a pass").push((detection.pair, detection.polynomials.len()));
         }
     }

@@ -92,14 +92,14 @@ impl PolynomialBytes {
             place.copy_from_slice(&coefficient.to_le_bytes());
             largest = if coefficient.abs() > largest { coefficient.abs() } else { largest };
         }
-        self.room(MAX_BYTES)[..MAX_BYTES].copy_from_slice(&polynomial);
+        self.reserve(MAX_BYTES)[..MAX_BYTES].copy_from_slice(&polynomial);
         self.largest = largest;
         self.count_added(4 + 8 * coefficients.len(), 1);
     }
 
     /// Returns at least `bytes` bytes of room after the list.
     #[inline]
-    pub(super) fn room(&mut self, bytes: usize) -> &mut [u8] {
+    pub(super) fn reserve(&mut self, bytes: usize) -> &mut [u8] {
         if self.bytes.len() - self.used < bytes {
             self.grow(bytes);
         }

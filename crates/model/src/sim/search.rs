@@ -40,7 +40,7 @@ impl SearchCounts {
     }
 
     /// Combines the counts of two objects with `made`.
-    fn with(self, other: Self, made: fn(u64, u64) -> u64) -> Self {
+    fn combine(self, other: Self, made: fn(u64, u64) -> u64) -> Self {
         Self {
             calls: made(self.calls, other.calls),
             searched: made(self.searched, other.searched),
@@ -54,7 +54,7 @@ impl SearchCounts {
 
 impl std::ops::AddAssign for SearchCounts {
     fn add_assign(&mut self, other: Self) {
-        *self = self.with(other, |one, more| one + more);
+        *self = self.combine(other, |one, more| one + more);
     }
 }
 
@@ -62,7 +62,7 @@ impl std::ops::AddAssign for SearchCounts {
 impl std::ops::Sub for SearchCounts {
     type Output = Self;
     fn sub(self, before: Self) -> Self {
-        self.with(before, |all, earlier| all - earlier)
+        self.combine(before, |all, earlier| all - earlier)
     }
 }
 

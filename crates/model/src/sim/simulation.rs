@@ -146,7 +146,7 @@ mod tests {
         fn begin_pass(&mut self, pass: Pass) {
             self.lines.push(format!("pass {} {:?}", pass.index, pass.stage));
         }
-        fn detection(&mut self, detection: &Detection<'_>) {
+        fn observe_detection(&mut self, detection: &Detection<'_>) {
             self.polynomials += detection.polynomials.len();
             self.lines.push(match detection.decision {
                 Decision::Hit { time, .. } => format!("hit at {time}"),
@@ -157,19 +157,19 @@ mod tests {
         fn end_pass(&mut self, _pass: Pass, hits: usize) {
             self.lines.push(format!("{hits} hits"));
         }
-        fn impulse(&mut self, impulse: &Impulse) {
+        fn observe_impulse(&mut self, impulse: &Impulse) {
             self.lines.push(format!("impulse {} {}", impulse.normal.x, impulse.normal.y));
         }
         fn as_steer(&mut self) -> Option<&mut dyn Steer> {
             Some(self)
         }
-        fn synchronization(&mut self, _state: &State) {
+        fn observe_synchronization(&mut self, _state: &State) {
             self.lines.push("synchronize".to_owned());
         }
-        fn zones(&mut self, round: u32, zones: &[Zone<'_>]) {
+        fn observe_zones(&mut self, round: u32, zones: &[Zone<'_>]) {
             self.lines.push(format!("zones {round} {:?}", zones.iter().map(|z| z.particles).collect::<Vec<_>>()));
         }
-        fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+        fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {
             self.lines.push(format!("failsafe {round} {:?}", zone.particles));
         }
         fn end_step(&mut self, step: u32, _state: &State) {

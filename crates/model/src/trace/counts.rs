@@ -95,7 +95,7 @@ impl Observer for EventCounts {
         WantedPairs::Nothing
     }
 
-    fn hit(&mut self, pair: Pair) {
+    fn observe_hit(&mut self, pair: Pair) {
         self.hits[pair.kind] += 1;
     }
 
@@ -106,15 +106,15 @@ impl Observer for EventCounts {
         }
     }
 
-    fn impulse(&mut self, _impulse: &Impulse) {
+    fn observe_impulse(&mut self, _impulse: &Impulse) {
         self.impulses += 1;
     }
 
-    fn zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
+    fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         self.most_zones = self.most_zones.max(zones.len() as u64);
     }
 
-    fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
+    fn observe_failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
         self.failsafes += 1;
         self.largest_zone = self.largest_zone.max(zone.particles.len() as u64);
     }
@@ -164,12 +164,12 @@ mod tests {
         for round in 0..2 {
             let pass = Pass { stage: Stage::Geometric { round }, index: round };
             counts.begin_pass(pass);
-            counts.hit(Pair { kind: PairKind::ParticleEdge, first: 2, second: 0 });
+            counts.observe_hit(Pair { kind: PairKind::ParticleEdge, first: 2, second: 0 });
             counts.end_pass(pass, 1);
         }
         let zone = Zone { particles: &[0, 1, 2], half_plane: false };
-        counts.zones(0, &[zone]);
-        counts.failsafe(0, &zone);
+        counts.observe_zones(0, &[zone]);
+        counts.observe_failsafe(0, &zone);
         counts.end_step(1, &State::default());
         assert_eq!((counts.geometric_passes, counts.geometric_steps, counts.passes()), (2, 1, 2));
         assert_eq!((counts.calls, counts.hits), ([6, 2, 0].into(), [0, 2, 0].into()));

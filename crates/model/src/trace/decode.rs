@@ -4,7 +4,7 @@
 use super::{
     encode::IMPULSE_BYTES,
     frame::{LoggedImpulse, PolynomialLog},
-    source::{Source, WINDOW},
+    source::{Source, WINDOW_BYTES},
 };
 use crate::sim::State;
 use fosssim_num::{
@@ -20,52 +20,53 @@ crate::drops_leading!();
 const POLYNOMIAL_MEMORY: usize = size_of::<usize>();
 
 /// The number of polynomials for which memory is reserved at a time.
-const TOGETHER: usize = 64;
+const RESERVED_POLYNOMIALS: usize = 64;
 
 /// The memory of a decoded impulse, in bytes.
 pub(crate) const IMPULSE_MEMORY: usize = size_of::<LoggedImpulse>();
 
 #[inline]
-fn number(bytes: &[u8]) -> f64 {
+fn decode_number(bytes: &[u8]) -> f64 {
     f64::from_le_bytes(bytes.try_into().expect("eight bytes"))
 }
 
 #[inline]
-fn integer(bytes: &[u8]) -> i32 {
+fn decode_integer(bytes: &[u8]) -> i32 {
     i32::from_le_bytes(bytes.try_into().expect("four bytes"))
 }
 
 /// Replaces `out` by the next `count` numbers, or fewer if the source ends. An incomplete number stays in the source.
-pub(crate) fn numbers<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<f64>) -> bool {
+pub(crate) fn decode_numbers<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<f64>) -> bool {
     out.clear();
     while out.len() < count {
-        let wanted = (8 * (count - out.len())).min(WINDOW);
+        let wanted = (8 * (count - out.len())).min(WINDOW_BYTES);
         let whole = source.ensure(wanted).min(wanted) / 8 * 8;
         if whole == 0 {
             return false;
         }
-        out.extend(source.window()[..whole].chunks_exact(8).map(number));
+        out.extend(source.window()[..whole].chunks_exact(8).map(decode_number));
         source.consume(whole);
     }
     true
 }
 
 /// Replaces `state` by the next record's. Returns false if the source ends first.
-pub(crate) fn state<R: Read>(source: &mut Source<R>, particles: usize, state: &mut State) -> bool {
-    numbers(source, 2 * particles, &mut state.positions) && numbers(source, 2 * particles, &mut state.velocities)
+pub(crate) fn decode_state<R: Read>(source: &mut Source<R>, particles: usize, state: &mut State) -> bool {
+    decode_numbers(source, 2 * particles, &mut state.positions)
+        && decode_numbers(source, 2 * particles, &mut state.velocities)
 }
 
 /// Appends up to `count` impulses from the window, and returns their number; 0 only at the end of the source.
-pub(crate) fn impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<LoggedImpulse>) -> usize {
-    let wanted = count.min(WINDOW / IMPULSE_BYTES) * IMPULSE_BYTES;
+pub(crate) fn decode_impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut Vec<LoggedImpulse>) -> usize {
+    let wanted = count.min(WINDOW_BYTES / IMPULSE_BYTES) * IMPULSE_BYTES;
     let whole = source.ensure(wanted).min(wanted) / IMPULSE_BYTES;
     let bytes = &source.window()[..whole * IMPULSE_BYTES];
     out.extend(bytes.chunks_exact(IMPULSE_BYTES).map(|b| LoggedImpulse {
-        kind: integer(&b[0..4]),
-        first: integer(&b[4..8]),
-        second: integer(&b[8..12]),
-        normal: Vec2::new(number(&b[12..20]), number(&b[20..28])),
-        time: number(&b[28..36]),
+        kind: decode_integer(&b[0..4]),
+        first: decode_integer(&b[4..8]),
+        second: decode_integer(&b[8..12]),
+        normal: Vec2::new(decode_number(&b[12..20]), decode_number(&b[20..28])),
+        time: decode_number(&b[28..36]),
     }));
     source.consume(whole * IMPULSE_BYTES);
     whole
@@ -74,7 +75,7 @@ pub(crate) fn impulses<R: Read>(source: &mut Source<R>, count: usize, out: &mut 
 /// Returns the size of an ordinary polynomial (0 to 6 coefficients, completely in `bytes`), and the bytes after its
 /// size.
 #[inline(always)]
-fn ordinary(bytes: &[u8]) -> Option<(usize, &[u8])> {
+fn decode_ordinary(bytes: &[u8]) -> Option<(usize, &[u8])> {
     let (head, rest) = bytes.split_first_chunk::<4>()?;
     let size = u32::from_le_bytes(*head) as usize;
     (size <= MAX_COEFFICIENTS && 8 * size <= rest.len()).then_some((size, rest))
@@ -85,22 +86,26 @@ pub(crate) fn has_ordinary<R: Read>(source: &mut Source<R>) -> bool {
     if source.ensure(4) < 4 {
         return false;
     }
-    usize::try_from(integer(&source.window()[..4]))
+    usize::try_from(decode_integer(&source.window()[..4]))
         .is_ok_and(|size| size <= MAX_COEFFICIENTS && source.ensure(4 + 8 * size) >= 4 + 8 * size)
 }
 
 /// Appends ordinary polynomials until the first other one, at most `most`. Returns the number of bytes used, the number
 /// of polynomials, and, with `TRIM`, whether any leading coefficient was dropped.
-pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut PolynomialLog) -> (usize, u64, bool) {
+pub(crate) fn decode_polynomials<const TRIM: bool>(
+    bytes: &[u8],
+    most: u64,
+    log: &mut PolynomialLog,
+) -> (usize, u64, bool) {
     let (mut at, mut done, mut trimmed) = (0, 0, false);
     let PolynomialLog { coefficients, ends } = log;
     let mut used = coefficients.len();
     while done < most
-        && let Some((size, rest)) = ordinary(&bytes[at..])
+        && let Some((size, rest)) = decode_ordinary(&bytes[at..])
     {
         // A copy of constant length, of which a part counts, is fastest; memory is reserved for many at a time.
         if coefficients.len() < used + MAX_COEFFICIENTS {
-            let more = usize::try_from(most - done).unwrap_or(usize::MAX).min(TOGETHER);
+            let more = usize::try_from(most - done).unwrap_or(usize::MAX).min(RESERVED_POLYNOMIALS);
             coefficients.resize(used + more * MAX_COEFFICIENTS, 0.0);
         }
         let places = &mut coefficients[used..used + MAX_COEFFICIENTS];
@@ -125,11 +130,11 @@ pub(crate) fn polynomials<const TRIM: bool>(bytes: &[u8], most: u64, log: &mut P
     (at, done, trimmed)
 }
 
-/// Skips ordinary polynomials, and returns the same as [`polynomials`]; nothing is dropped.
+/// Skips ordinary polynomials, and returns the same as [`decode_polynomials`]; nothing is dropped.
 pub(crate) fn skip_ordinary(bytes: &[u8], most: u64) -> (usize, u64, bool) {
     let (mut at, mut done) = (0, 0);
     while done < most
-        && let Some((size, _)) = ordinary(&bytes[at..])
+        && let Some((size, _)) = decode_ordinary(&bytes[at..])
     {
         at += 4 + 8 * size;
         done += 1;
@@ -138,6 +143,6 @@ pub(crate) fn skip_ordinary(bytes: &[u8], most: u64) -> (usize, u64, bool) {
 }
 
 /// Returns the memory of the log's content, in bytes.
-pub(crate) fn memory(log: &PolynomialLog) -> usize {
+pub(crate) fn memory_bytes(log: &PolynomialLog) -> usize {
     8 * log.coefficients.len() + POLYNOMIAL_MEMORY * log.ends.len()
 }

@@ -36,7 +36,7 @@ pub(crate) fn count(out: &mut Vec<u8>, count: usize) {
 
 /// Appends one impulse.
 #[inline]
-pub(crate) fn impulse(out: &mut Vec<u8>, impulse: &LoggedImpulse) {
+pub(crate) fn encode_impulse(out: &mut Vec<u8>, impulse: &LoggedImpulse) {
     let mut bytes = [0; IMPULSE_BYTES];
     bytes[0..4].copy_from_slice(&impulse.kind.to_le_bytes());
     bytes[4..8].copy_from_slice(&impulse.first.to_le_bytes());
@@ -48,7 +48,7 @@ pub(crate) fn impulse(out: &mut Vec<u8>, impulse: &LoggedImpulse) {
 }
 
 /// Appends one polynomial, highest power first.
-pub(crate) fn polynomial(out: &mut Vec<u8>, coefficients: &[f64]) {
+pub(crate) fn encode_polynomial(out: &mut Vec<u8>, coefficients: &[f64]) {
     count(out, coefficients.len());
     append_numbers(out, coefficients);
 }
@@ -60,17 +60,17 @@ mod tests {
     #[test]
     fn a_polynomial_is_its_size_and_its_coefficients() {
         let mut bytes = Vec::new();
-        polynomial(&mut bytes, &[-0.25, 0.25]);
+        encode_polynomial(&mut bytes, &[-0.25, 0.25]);
         assert_eq!(bytes, [2, 0, 0, 0, 0, 0, 0, 0, 0, 0, 0xd0, 0xbf, 0, 0, 0, 0, 0, 0, 0xd0, 0x3f]);
         bytes.clear();
-        polynomial(&mut bytes, &[]);
+        encode_polynomial(&mut bytes, &[]);
         assert_eq!(bytes, [0, 0, 0, 0]);
     }
 
     #[test]
     fn long_polynomials_are_encoded_like_short_ones() {
         let mut bytes = Vec::new();
-        polynomial(&mut bytes, &[1.0; 9]);
+        encode_polynomial(&mut bytes, &[1.0; 9]);
         assert_eq!(bytes.len(), 4 + 72);
         assert_eq!(bytes[0], 9);
         assert_eq!(bytes[4..12], 1.0_f64.to_le_bytes());

@@ -21,7 +21,7 @@ pub struct Label {
 /// A submission's list has the same labels as long as it has the same length. Empty if the step has no result, or if
 /// the number of particles in `before` differs from the scene's.
 #[must_use]
-pub fn labels(scene: &Scene, before: &State) -> Vec<Label> {
+pub fn collect_labels(scene: &Scene, before: &State) -> Vec<Label> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let state = simulation.state_mut();
     if state.positions.len() != before.positions.len() || state.velocities.len() != before.velocities.len() {
@@ -38,7 +38,7 @@ pub fn labels(scene: &Scene, before: &State) -> Vec<Label> {
 struct Labels(Vec<Label>);
 
 impl Observer for Labels {
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let &Detection { pass, pair, .. } = detection;
         self.0.extend((0..detection.polynomials.len()).map(|number| Label { pass, pair, number }));
     }
@@ -57,11 +57,11 @@ mod tests {
             <edge i="0" j="1"/></scene>"#;
         let scene = original::read(xml).unwrap().scene;
         let before = Simulation::new(&scene, RootSearch::WhereNeeded).state().clone();
-        let labels = labels(&scene, &before);
+        let labels = collect_labels(&scene, &before);
         // Three pairs of particles with two polynomials each, one particle near the edge with four.
         assert_eq!(labels.len(), 10);
         let edge: Vec<_> = labels.iter().filter(|label| label.pair.kind == PairKind::ParticleEdge).collect();
         assert_eq!(edge.iter().map(|label| label.number).collect::<Vec<_>>(), [0, 1, 2, 3]);
-        assert_eq!(super::labels(&scene, &State::default()), []);
+        assert_eq!(super::collect_labels(&scene, &State::default()), []);
     }
 }

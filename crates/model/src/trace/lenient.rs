@@ -25,11 +25,11 @@ use std::io::Read;
 crate::drops_leading!();
 
 /// The maximum memory of the lists of one record in any scene, in bytes.
-const LIMIT: usize = 256 * 1024 * 1024;
+const MAX_RECORD_BYTES: usize = 256 * 1024 * 1024;
 
 /// The memory that the lists may take in every scene, in bytes. With a lower limit, excessively padded impulse lists
 /// would be rejected before the original runs out of memory.
-const FLOOR: usize = 32 * 1024 * 1024;
+const MIN_RECORD_BYTES: usize = 32 * 1024 * 1024;
 
 /// The memory of the longest polynomial that a detection logs, in bytes.
 const POLYNOMIAL_MEMORY: usize = size_of::<f64>() * MAX_COEFFICIENTS + size_of::<usize>();
@@ -47,7 +47,7 @@ pub fn record_memory(scene: &Scene) -> usize {
     let of_edges = particles.saturating_mul(4 * scene.edges.len());
     let of_half_planes = particles.saturating_mul(2 * scene.half_planes.len());
     let pass = of_particles.saturating_add(of_edges).saturating_add(of_half_planes);
-    pass.saturating_mul(most_passes(scene)).saturating_mul(POLYNOMIAL_MEMORY).clamp(FLOOR, LIMIT)
+    pass.saturating_mul(most_passes(scene)).saturating_mul(POLYNOMIAL_MEMORY).clamp(MIN_RECORD_BYTES, MAX_RECORD_BYTES)
 }
 
 /// Returns the maximum number of detection passes in a step.
@@ -173,7 +173,7 @@ impl<R: Read> Lenient<R> {
     /// Creates a reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
         let (source, notes) = (Source::new(stream), Vec::new());
-        Self { source, layout, record: 0, begin: 0, failed: false, notes, limit: LIMIT, strict: false }
+        Self { source, layout, record: 0, begin: 0, failed: false, notes, limit: MAX_RECORD_BYTES, strict: false }
     }
 
     /// Lets the first damage stop the reading.
@@ -250,7 +250,7 @@ impl<R: Read> Lenient<R> {
 
     /// Returns whether the polynomials fill the allowed memory.
     fn is_full(&self, frame: &LenientFrame) -> bool {
-        decode::memory(&frame.polynomials) > self.limit
+        decode::memory_bytes(&frame.polynomials) > self.limit
     }
 
     /// Returns the notes about the last record.
@@ -266,7 +266,7 @@ impl<R: Read> Lenient<R> {
     }
 
     /// Notes damage that the original ignores and the strict reader reports.
-    fn damage(&mut self, offset: u64, what: Malformation) -> Result<(), ReadStop> {
+    fn note_damage(&mut self, offset: u64, what: Malformation) -> Result<(), ReadStop> {
         if self.strict {
             return Err(self.stop(Unreadable::State, offset, what));
         }
@@ -303,7 +303,7 @@ impl<R: Read> Lenient<R> {
     fn read_state(&mut self, state: &mut State) -> Result<(), ReadStop> {
         // The original took the previous record for complete, although the bytes ended in it.
         let whole = self.record - u64::from(self.failed && self.record > 0);
-        self.failed = self.failed || !decode::state(&mut self.source, self.layout.particles, state);
+        self.failed = self.failed || !decode::decode_state(&mut self.source, self.layout.particles, state);
         if !self.failed {
             return Ok(());
         }
@@ -320,7 +320,7 @@ impl<R: Read> Lenient<R> {
             return Err(self.stop(Unreadable::Impulses, offset, Malformation::CountCut { list, left: begin - offset }));
         }
         if count < 0 {
-            self.damage(offset, Malformation::NegativeCount { list, count })?;
+            self.note_damage(offset, Malformation::NegativeCount { list, count })?;
         }
         let entries = usize::try_from(count).unwrap_or(0);
         while impulses.len() < entries {
@@ -328,7 +328,7 @@ impl<R: Read> Lenient<R> {
                 let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
                 return Err(self.stop(Unreadable::Limit, offset, what));
             }
-            if decode::impulses(&mut self.source, entries - impulses.len(), impulses) == 0 {
+            if decode::decode_impulses(&mut self.source, entries - impulses.len(), impulses) == 0 {
                 let left = self.source.offset() - begin + self.source.ensure(1) as u64;
                 let needs = entries as u64 * list.entry_bytes();
                 let cause = if entries > STORABLE_IMPULSES { Unreadable::Memory } else { Unreadable::Impulses };
@@ -344,9 +344,9 @@ impl<R: Read> Lenient<R> {
         let begin = self.source.offset();
         if self.failed {
             frame.plain = false;
-            self.damage(offset, Malformation::CountCut { list, left: begin - offset })?;
+            self.note_damage(offset, Malformation::CountCut { list, left: begin - offset })?;
         } else if count < 0 {
-            self.damage(offset, Malformation::NegativeCount { list, count })?;
+            self.note_damage(offset, Malformation::NegativeCount { list, count })?;
         }
         let entries = u64::try_from(count).unwrap_or(0);
         let mut done = 0;
@@ -355,9 +355,9 @@ impl<R: Read> Lenient<R> {
             let (used, ordinary, trimmed) = if self.is_full(frame) {
                 decode::skip_ordinary(window, most)
             } else if self.strict {
-                decode::polynomials::<false>(window, most, &mut frame.polynomials)
+                decode::decode_polynomials::<false>(window, most, &mut frame.polynomials)
             } else {
-                decode::polynomials::<true>(window, most, &mut frame.polynomials)
+                decode::decode_polynomials::<true>(window, most, &mut frame.polynomials)
             };
             self.source.consume(used);
             self.check_room(frame, offset)?;
@@ -379,7 +379,7 @@ impl<R: Read> Lenient<R> {
             let what = Malformation::CountBeyondEnd { list, count, needs: 4 * entries, left };
             return Err(self.stop(Unreadable::Memory, offset, what));
         }
-        let room = self.limit.saturating_sub(decode::memory(&frame.polynomials)) / size_of::<usize>();
+        let room = self.limit.saturating_sub(decode::memory_bytes(&frame.polynomials)) / size_of::<usize>();
         let log = &mut frame.polynomials;
         let empty = usize::try_from(missing).unwrap_or(usize::MAX).min(room);
         log.ends.resize(log.ends.len() + empty, log.coefficients.len());
@@ -392,7 +392,7 @@ impl<R: Read> Lenient<R> {
         let offset = self.source.offset();
         let written = self.integer();
         if self.failed {
-            self.damage(offset, Malformation::PolynomialCut { polynomial: number, count })?;
+            self.note_damage(offset, Malformation::PolynomialCut { polynomial: number, count })?;
         } else if written < 0 {
             self.note(offset, Malformation::NegativeSize { polynomial: number, size: written });
         }
@@ -438,7 +438,7 @@ impl<R: Read> Lenient<R> {
         frame.plain &= !self.failed && written >= 0;
         if whole && self.failed {
             let left = self.source.offset() - begin;
-            self.damage(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left })?;
+            self.note_damage(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left })?;
         }
         Ok(())
     }

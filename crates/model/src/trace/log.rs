@@ -44,7 +44,7 @@ impl Log {
     /// Appends an impulse, if the trace logs it.
     pub(super) fn impulse(&mut self, impulse: &Impulse) {
         if self.logs_impulses {
-            encode::impulse(&mut self.impulses, &LoggedImpulse::from(*impulse));
+            encode::encode_impulse(&mut self.impulses, &LoggedImpulse::from(*impulse));
         }
     }
 

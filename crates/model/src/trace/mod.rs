@@ -23,7 +23,7 @@ pub use counts::EventCounts;
 pub use digest::{Digests, Sha, ShortDigest};
 pub use error::{List, Malformation, TraceError};
 pub use frame::{Frame, ImpulsePair, LoggedImpulse, PolynomialLog};
-pub use labels::{Label, labels};
+pub use labels::{Label, collect_labels};
 pub use layout::Layout;
 pub use lenient::{Lenient, LenientFrame, ReadStop, Unreadable, record_memory};
 pub use reader::{Reader, TRAILING_LIMIT};

@@ -74,15 +74,15 @@ impl<W: Write> Observer for Recorder<W> {
         WantedPairs::Bytes(&mut self.log.polynomials)
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         self.log.detection(detection);
     }
 
-    fn impulse(&mut self, impulse: &Impulse) {
+    fn observe_impulse(&mut self, impulse: &Impulse) {
         self.log.impulse(impulse);
     }
 
-    fn synchronization(&mut self, state: &State) {
+    fn observe_synchronization(&mut self, state: &State) {
         if self.layout.records_per_step() == 2 {
             self.writer.record(state, &self.log);
         }
@@ -116,7 +116,7 @@ mod tests {
         recorder.begin_pass(pass);
         let polynomials = [Polynomial::trimmed(&[1.0, 2.0, 3.0]), Polynomial::trimmed(&[])];
         let decision = Decision::Miss { time: Time::Excluded };
-        recorder.detection(&Detection {
+        recorder.observe_detection(&Detection {
             pass,
             pair: PAIR,
             polynomials: &polynomials,
@@ -126,7 +126,7 @@ mod tests {
             velocities: &[],
         });
         recorder.end_pass(pass, 1);
-        recorder.impulse(&IMPULSE);
+        recorder.observe_impulse(&IMPULSE);
     }
 
     #[test]
@@ -134,7 +134,7 @@ mod tests {
         let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
         recorder.begin_step(1);
         pass(&mut recorder, Stage::ContinuousTime);
-        recorder.synchronization(&state(1.0));
+        recorder.observe_synchronization(&state(1.0));
         recorder.end_step(1, &state(1.0));
         let (bytes, written) = recorder.finish().unwrap();
         assert_eq!(bytes.len(), 40 + 2 * (40 + 36 + 28 + 4));
@@ -150,7 +150,7 @@ mod tests {
         let mut recorder = Recorder::start(Vec::new(), layout(), &state(0.0));
         recorder.begin_step(1);
         pass(&mut recorder, Stage::Impulses { round: 0 });
-        recorder.synchronization(&state(1.0));
+        recorder.observe_synchronization(&state(1.0));
         pass(&mut recorder, Stage::Geometric { round: 0 });
         recorder.end_step(1, &state(2.0));
         let (bytes, _) = recorder.finish().unwrap();
@@ -200,7 +200,7 @@ mod tests {
             recorder.begin_step(step);
             let polynomials = if step <= 2 { 3_500 } else { 40 };
             (0..polynomials).for_each(|_| recorder.log.polynomials.push(&[1.0, 2.0, 3.0]));
-            recorder.synchronization(&state(1.0));
+            recorder.observe_synchronization(&state(1.0));
             recorder.end_step(step, &state(1.0));
             let kept = recorder.log.polynomials.all().len();
             assert!(kept < 400_000, "{kept} bytes are kept in step {step}");
@@ -215,7 +215,7 @@ mod tests {
             if step == 1 {
                 pass(&mut recorder, Stage::ContinuousTime);
             }
-            recorder.synchronization(&state(1.0));
+            recorder.observe_synchronization(&state(1.0));
             recorder.end_step(step, &state(1.0));
         }
         let (bytes, _) = recorder.finish().unwrap();

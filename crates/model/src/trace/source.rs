@@ -6,7 +6,7 @@ use std::io::{self, Read};
 
 /// Size of the buffer, and of the largest piece that [`Source::ensure`] can provide in one call. A larger buffer does
 /// not make reading faster, because its pages must be created and it does not fit the cache.
-pub(crate) const WINDOW: usize = 64 * 1024;
+pub(crate) const WINDOW_BYTES: usize = 64 * 1024;
 
 #[derive(Debug)]
 pub(crate) struct Source<R> {
@@ -69,9 +69,9 @@ impl<R: Read> Source<R> {
     /// the end.
     ///
     /// # Panics
-    /// Panics if `wanted` exceeds [`WINDOW`] bytes.
+    /// Panics if `wanted` exceeds [`WINDOW_BYTES`] bytes.
     pub(crate) fn ensure(&mut self, wanted: usize) -> usize {
-        assert!(wanted <= WINDOW, "the window is smaller");
+        assert!(wanted <= WINDOW_BYTES, "the window is smaller");
         if self.end - self.start < wanted && !self.ended {
             self.fill(wanted);
         }
@@ -112,12 +112,14 @@ impl<R: Read> Source<R> {
         if self.buffer.is_empty() {
             // Small traces get a small buffer; one more byte shows the end of the stream in the same call. Unused
             // memory is never touched.
-            let size = self.length.map_or(WINDOW as u64, |length| length.saturating_add(1).clamp(64, WINDOW as u64));
-            self.buffer = vec![0; usize::try_from(size).unwrap_or(WINDOW)];
+            let size = self
+                .length
+                .map_or(WINDOW_BYTES as u64, |length| length.saturating_add(1).clamp(64, WINDOW_BYTES as u64));
+            self.buffer = vec![0; usize::try_from(size).unwrap_or(WINDOW_BYTES)];
         }
         self.buffer.copy_within(self.start..self.end, 0);
         if self.buffer.len() < wanted {
-            self.buffer.resize(WINDOW, 0);
+            self.buffer.resize(WINDOW_BYTES, 0);
         }
         self.end -= self.start;
         self.start = 0;

@@ -112,29 +112,30 @@ impl Summary {
 }
 
 /// Returns a count with its unit, such as `1 particle` or `2 particles`.
-fn number(count: impl Into<u64>, thing: &str) -> String {
+fn format_count(count: impl Into<u64>, thing: &str) -> String {
     let count = count.into();
     format!("{count} {thing}{}", if count == 1 { "" } else { "s" })
 }
 
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let steps = number(self.layout.steps, "step");
-        let particles = number(self.layout.particles as u64, "particle");
-        let (edges, planes) = (number(self.edges as u64, "edge"), number(self.half_planes as u64, "half-plane"));
+        let steps = format_count(self.layout.steps, "step");
+        let particles = format_count(self.layout.particles as u64, "particle");
+        let (edges, planes) =
+            (format_count(self.edges as u64, "edge"), format_count(self.half_planes as u64, "half-plane"));
         writeln!(f, "scene          {}, {steps}, {particles}, {edges}, {planes}", self.collision)?;
         let Digests { bytes, records, trailing, unread, stopped, sha256, .. } = &self.trace;
-        let bytes = number(*bytes, "byte");
+        let bytes = format_count(*bytes, "byte");
         let more = if *unread { "more than " } else { "" };
-        writeln!(f, "trace          {more}{bytes}, {records} of {}", number(self.layout.records(), "record"))?;
+        writeln!(f, "trace          {more}{bytes}, {records} of {}", format_count(self.layout.records(), "record"))?;
         if let Some(error) = stopped {
             writeln!(f, "damage         {error}")?;
         }
         if *trailing > 0 {
-            writeln!(f, "trailing       {more}{}", number(*trailing, "byte"))?;
+            writeln!(f, "trailing       {more}{}", format_count(*trailing, "byte"))?;
         }
         if let (count, Some(first)) = &self.notes {
-            writeln!(f, "odd            {}, the first: {first}", number(*count, "value"))?;
+            writeln!(f, "odd            {}, the first: {first}", format_count(*count, "value"))?;
         }
         if self.layout.has_impulses {
             writeln!(f, "impulses       {}", self.impulses)?;

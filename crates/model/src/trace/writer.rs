@@ -11,14 +11,14 @@ use std::{
 };
 
 /// The size in bytes at which collected bytes are written.
-const PIECE: usize = 256 * 1024;
+const PIECE_BYTES: usize = 256 * 1024;
 
 /// The size in bytes from which a list is not copied; for a shorter list, a separate part would cost the system more
 /// than a copy.
-const LONG: usize = 1024;
+const LONG_LIST_BYTES: usize = 1024;
 
 /// The maximum number of long lists that are collected.
-const LISTS: usize = 128;
+const MAX_LISTS: usize = 128;
 
 /// The numbers of bytes and records written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -49,8 +49,8 @@ impl<W: Write> Writer<W> {
         Self {
             stream,
             layout,
-            buffer: Vec::with_capacity(2 * PIECE),
-            lists: Vec::with_capacity(LISTS),
+            buffer: Vec::with_capacity(2 * PIECE_BYTES),
+            lists: Vec::with_capacity(MAX_LISTS),
             listed: 0,
             written: WrittenTrace::default(),
             error: None,
@@ -63,12 +63,12 @@ impl<W: Write> Writer<W> {
         if self.layout.has_impulses {
             encode::count(&mut self.buffer, frame.impulses.len());
             for impulse in &frame.impulses {
-                encode::impulse(&mut self.buffer, impulse);
+                encode::encode_impulse(&mut self.buffer, impulse);
             }
         }
         if self.layout.has_polynomials {
             encode::count(&mut self.buffer, frame.polynomials.len());
-            frame.polynomials.iter().for_each(|polynomial| encode::polynomial(&mut self.buffer, polynomial));
+            frame.polynomials.iter().for_each(|polynomial| encode::encode_polynomial(&mut self.buffer, polynomial));
         }
         self.written.records += 1;
         if self.is_full() {
@@ -82,7 +82,7 @@ impl<W: Write> Writer<W> {
         log.write_head(&mut self.buffer, self.layout, state);
         if self.layout.has_polynomials {
             let polynomials = log.polynomials.bytes();
-            if polynomials.len() < LONG {
+            if polynomials.len() < LONG_LIST_BYTES {
                 self.buffer.extend_from_slice(polynomials);
             } else {
                 self.lists.push((self.buffer.len(), log.polynomials.range()));
@@ -94,7 +94,7 @@ impl<W: Write> Writer<W> {
 
     /// Returns whether enough is collected to be written.
     pub(super) fn is_full(&self) -> bool {
-        self.buffer.len() + self.listed >= PIECE || self.lists.len() + 2 > LISTS
+        self.buffer.len() + self.listed >= PIECE_BYTES || self.lists.len() + 2 > MAX_LISTS
     }
 
     /// Returns whether polynomials of the log have not been written.
@@ -134,7 +134,7 @@ impl<W: Write> Writer<W> {
     pub(super) fn write_collected(&mut self, polynomials: &[u8]) {
         let bytes = (self.buffer.len() + self.listed) as u64;
         if self.error.is_none() && bytes > 0 {
-            let mut parts = [IoSlice::new(&[]); 2 * LISTS + 1];
+            let mut parts = [IoSlice::new(&[]); 2 * MAX_LISTS + 1];
             let (mut count, mut begin) = (0, 0);
             for (end, list) in &self.lists {
                 parts[count] = IoSlice::new(&self.buffer[begin..*end]);
@@ -232,7 +232,7 @@ mod tests {
     #[test]
     fn an_error_of_the_stream_is_kept_until_the_end() {
         let mut writer = Writer::new(Full(40), layout());
-        for _ in 0..3 * PIECE / 32 {
+        for _ in 0..3 * PIECE_BYTES / 32 {
             writer.write_frame(&frame());
         }
         assert!(writer.has_failed());

@@ -48,14 +48,14 @@ fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
 pub fn never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let small = is_small(a);
     let vanishing = b.is_zero() & c.is_zero();
-    let whole = (vanishing | parabola(a, b, c)) & !small;
+    let whole = (vanishing | parabola_is_excluded(a, b, c)) & !small;
     if small.any() { whole | (small & never_positive_line(b, c)) } else { whole }
 }
 
 /// Tests parabolas whose leading coefficient is not dropped: whether they have no real zero, or are below zero with a
 /// margin.
 #[inline(always)]
-fn parabola<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
+fn parabola_is_excluded<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let product = 4.0 * a * c;
     let misses = a.below(0.0)
         & (b * b).lt(PARABOLA_COMPLEX * product)

@@ -18,7 +18,7 @@
 //! It remains to decide two lists without errors. `range` rejects them by signs and by Bernstein coefficients, `pieces`
 //! by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, section
 //! 3.3; Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and the rest is decided
-//! by integer arithmetic ([`exact`]), which always has a result.
+//! by integer arithmetic ([`decide_exactly`]), which always has a result.
 //!
 //! The rules, and their differences from the original, are as follows. Zeros at which a polynomial only touches zero
 //! from above do not interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11);
@@ -149,7 +149,7 @@ fn without_errors(problem: &Problem, search: &Search, units: f64) -> CertifiedDe
     match search.answer {
         Answer::Reached(time) => yes([search.from, time], units + problem.slack_of_yes(time), Level::Subdivision),
         Answer::Never => no(Level::Subdivision, units + search.slack),
-        Answer::Unknown => match exact(problem) {
+        Answer::Unknown => match decide_exactly(problem) {
             ExactAnswer::First { time, .. } => yes(time, units, Level::Exact),
             ExactAnswer::Never | ExactAnswer::NotFinite => no(Level::Exact, units),
         },
@@ -164,18 +164,18 @@ fn by_integers(
     upper_hits: bool,
     lower_misses: bool,
 ) -> CertifiedDecision {
-    let ExactAnswer::First { time: first, .. } = exact(upper) else {
+    let ExactAnswer::First { time: first, .. } = decide_exactly(upper) else {
         debug_assert!(!upper_hits, "the subdivision has proved a hit");
         return no(Level::Exact, units);
     };
-    if !lower_misses && let ExactAnswer::First { time: [_, to], .. } = exact(lower) {
+    if !lower_misses && let ExactAnswer::First { time: [_, to], .. } = decide_exactly(lower) {
         return yes([first[0], to], units, Level::Exact);
     }
     borderline(Some(first), Level::Exact)
 }
 
 /// Decides like [`exact_first`], for a problem's coefficients.
-fn exact(problem: &Problem) -> ExactAnswer {
+fn decide_exactly(problem: &Problem) -> ExactAnswer {
     let lists = problem.highest_first();
     let mut slices = [&[] as &[f64]; MAX_POLYNOMIALS];
     for (slice, (list, length)) in slices.iter_mut().zip(&lists) {

@@ -21,7 +21,7 @@ const MIN_WIDTH: f64 = 1.0 / (1_u64 << 50) as f64;
 const MAX_PIECES: u32 = 5_000;
 
 /// The multiple of its rounding below which a coefficient is noise, so that halving shows no more.
-const NOISE: f64 = 2.0;
+const NOISE_FACTOR: f64 = 2.0;
 
 /// The result of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -206,7 +206,7 @@ impl Sign {
             Self::Negative(-most - control.error)
         } else if least > control.error {
             Self::Positive
-        } else if -least > NOISE * control.error || most > NOISE * control.error {
+        } else if -least > NOISE_FACTOR * control.error || most > NOISE_FACTOR * control.error {
             Self::Mixed
         } else {
             Self::Noise

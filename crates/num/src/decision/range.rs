@@ -16,15 +16,15 @@ pub(crate) enum Ends {
 }
 
 /// More than the total effect of underflow on a sum or a convex combination of six numbers, fifty times in a row.
-const UNDERFLOW: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
+const UNDERFLOW_BOUND: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
 
 /// The bound on the error of the Bernstein coefficients, in units of the sum of the moduli of the power coefficients.
-const CONVERSION: f64 = 16.0 * UNIT_ROUNDOFF;
+const CONVERSION_BOUND: f64 = 16.0 * UNIT_ROUNDOFF;
 
 /// The number of roundings up to a Bernstein coefficient: of a weight, of a product, of all sums except the first, and
 /// of the sum of moduli. The proof allows for twice as many.
-const ROUNDINGS: usize = 1 + 1 + (MAX_COEFFICIENTS - 1) + 1;
-const _: () = assert!(CONVERSION >= 2.0 * ROUNDINGS as f64 * UNIT_ROUNDOFF, "the margin of the proof");
+const ROUNDING_COUNT: usize = 1 + 1 + (MAX_COEFFICIENTS - 1) + 1;
+const _: () = assert!(CONVERSION_BOUND >= 2.0 * ROUNDING_COUNT as f64 * UNIT_ROUNDOFF, "the margin of the proof");
 
 /// A polynomial without errors.
 #[derive(Debug, Clone, Copy)]
@@ -194,7 +194,7 @@ impl ExactPolynomial {
             greatest += value.max(0.0);
             size += value.abs();
         }
-        let distance = -greatest - CONVERSION * size;
+        let distance = -greatest - CONVERSION_BOUND * size;
         if distance > 0.0 || none_positive { Some(slack(distance, self.bound)) } else { None }
     }
 
@@ -224,7 +224,7 @@ impl ExactPolynomial {
             _ => self.convert([1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
         };
         let size: f64 = self.coefficients.iter().map(|value| value.abs()).sum();
-        Control { values, length: self.length, error: CONVERSION * size + UNDERFLOW, index: 0 }
+        Control { values, length: self.length, error: CONVERSION_BOUND * size + UNDERFLOW_BOUND, index: 0 }
     }
 
     /// Returns the Bernstein coefficients on `[0, end]`, for an end that is a power of two between `2^-150` and 1:
@@ -267,6 +267,6 @@ impl ExactPolynomial {
             value = value * t + coefficient;
             size = size * t + coefficient.abs();
         }
-        (value, CONVERSION * size + UNDERFLOW)
+        (value, CONVERSION_BOUND * size + UNDERFLOW_BOUND)
     }
 }

@@ -1,12 +1,12 @@
 //! `e^x = 2^(k/128) e^r` with `|r| <= ln 2 / 256` (Tang, ACM TOMS 15, 1989; with a table of 128 powers).
-use super::{multiply_add, tables::POWERS};
+use super::{multiply_add, tables::POWER_TABLE};
 
 /// The number 128 / ln 2.
-const PARTS: f64 = f64::from_bits(0x4067_1547_652b_82fe);
+const STEPS_PER_E: f64 = f64::from_bits(0x4067_1547_652b_82fe);
 /// The number -ln 2 / 128 in two parts; a product of the first with a small integer is exact.
-const MINUS_PART: [f64; 2] = [f64::from_bits(0xbf76_2e42_fefa_0000), f64::from_bits(0xbd0c_f79a_bc9e_3b3a)];
+const MINUS_STEP: [f64; 2] = [f64::from_bits(0xbf76_2e42_fefa_0000), f64::from_bits(0xbd0c_f79a_bc9e_3b3a)];
 /// The constant that, added to a number, rounds it to an integer in the lowest bits of the sum.
-const ROUNDS: f64 = f64::from_bits(0x4338_0000_0000_0000);
+const ROUNDING_SHIFT: f64 = f64::from_bits(0x4338_0000_0000_0000);
 /// The coefficients of `e^r - 1 - r` from `r^2` on.
 const SERIES: [f64; 4] = [
     f64::from_bits(0x3fdf_ffff_ffff_fdbd),
@@ -15,31 +15,31 @@ const SERIES: [f64; 4] = [
     f64::from_bits(0x3f81_1111_67a4_d017),
 ];
 /// The exponents of 2^-54, 512 and 1024 in a number's bits.
-const TINY: u64 = 0x3c9;
-const LARGE: u64 = 0x408;
+const TINY_EXPONENT: u64 = 0x3c9;
+const LARGE_EXPONENT: u64 = 0x408;
 const TOO_LARGE: u64 = 0x409;
 
 /// Returns `e^x`; infinite above 709.78, zero below -745.13.
 #[must_use]
 pub fn exp(x: f64) -> f64 {
     let exponent = x.to_bits() >> 52 & 0x7ff;
-    if exponent < TINY || exponent == 0x7ff {
+    if exponent < TINY_EXPONENT || exponent == 0x7ff {
         return if x == f64::NEG_INFINITY { 0.0 } else { 1.0 + x };
     }
     if exponent >= TOO_LARGE {
         return if x < 0.0 { 0.0 } else { f64::INFINITY };
     }
-    let shifted = multiply_add(x, PARTS, ROUNDS);
+    let shifted = multiply_add(x, STEPS_PER_E, ROUNDING_SHIFT);
     let k = shifted.to_bits();
-    let parts = shifted - ROUNDS;
-    let r = multiply_add(parts, MINUS_PART[1], multiply_add(parts, MINUS_PART[0], x));
+    let parts = shifted - ROUNDING_SHIFT;
+    let r = multiply_add(parts, MINUS_STEP[1], multiply_add(parts, MINUS_STEP[0], x));
     let row = 2 * (k & 127) as usize;
-    let tail = f64::from_bits(POWERS[row]);
-    let power = POWERS[row + 1].wrapping_add(k << 45);
+    let tail = f64::from_bits(POWER_TABLE[row]);
+    let power = POWER_TABLE[row + 1].wrapping_add(k << 45);
     let square = r * r;
     let low = multiply_add(multiply_add(r, SERIES[1], SERIES[0]), square, r + tail);
     let more = multiply_add(square * square, multiply_add(r, SERIES[3], SERIES[2]), low);
-    if exponent < LARGE {
+    if exponent < LARGE_EXPONENT {
         let power = f64::from_bits(power);
         return multiply_add(power, more, power);
     }

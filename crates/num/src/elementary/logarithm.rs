@@ -1,5 +1,5 @@
 //! `ln x = k ln 2 + ln c + ln(z/c)` for `x = 2^k z` with a `c` close to `z` from a table (Tang, ACM TOMS 16, 1990).
-use super::{multiply_add, tables::LOGARITHMS};
+use super::{multiply_add, tables::LOGARITHM_TABLE};
 
 /// The number ln 2 in two parts; a product of the first with an exponent is exact.
 const LN_2: [f64; 2] = [f64::from_bits(0x3fe6_2e42_fefa_3800), f64::from_bits(0x3d2e_f357_93c7_6730)];
@@ -26,12 +26,12 @@ const SERIES_AT_ONE: [f64; 11] = [
     f64::from_bits(0xbfb5_5213_75d1_45cd),
 ];
 /// The bits of 0.6875, where the table begins.
-const FIRST: u64 = 0x3fe6_0000_0000_0000;
+const TABLE_START_BITS: u64 = 0x3fe6_0000_0000_0000;
 /// The bits of `1 - 2^-4`, and the number of the following numbers that are close to one.
 const AT_ONE: u64 = 0x3fee_0000_0000_0000;
 const NUMBERS_AT_ONE: u64 = 0x0003_0900_0000_0000;
 /// The number 2^27, for half of a number's bits.
-const HALF: f64 = 134_217_728.0;
+const HALF_BITS_FACTOR: f64 = 134_217_728.0;
 
 /// Returns the natural logarithm; `-inf` at zero, NaN below.
 #[must_use]
@@ -49,11 +49,11 @@ pub fn ln(x: f64) -> f64 {
     if x < f64::MIN_POSITIVE {
         bits = (x * f64::from_bits((1023 + 52) << 52)).to_bits().wrapping_sub(52 << 52);
     }
-    let place = bits.wrapping_sub(FIRST);
+    let place = bits.wrapping_sub(TABLE_START_BITS);
     let row = 2 * (place >> 45 & 127) as usize;
     let exponent = f64::from((place.cast_signed() >> 52) as i32);
     let z = f64::from_bits(bits.wrapping_sub(place & 0xfff << 52));
-    let [reciprocal, logarithm] = [LOGARITHMS[row], LOGARITHMS[row + 1]].map(f64::from_bits);
+    let [reciprocal, logarithm] = [LOGARITHM_TABLE[row], LOGARITHM_TABLE[row + 1]].map(f64::from_bits);
     let r = multiply_add(z, reciprocal, -1.0);
     let high = multiply_add(exponent, LN_2[0], logarithm);
     let sum = high + r;
@@ -77,7 +77,7 @@ fn at_one(x: f64) -> f64 {
     let second = multiply_add(square, b[6], multiply_add(r, b[5], b[4]));
     let third = multiply_add(cube, b[10], multiply_add(square, b[9], multiply_add(r, b[8], b[7])));
     let inner = multiply_add(multiply_add(third, cube, second), cube, first);
-    let high = multiply_add(-HALF, r, multiply_add(r, HALF, r));
+    let high = multiply_add(-HALF_BITS_FACTOR, r, multiply_add(r, HALF_BITS_FACTOR, r));
     let low = r - high;
     let sum = multiply_add(high * high, b[0], r);
     let rest = multiply_add(high * high, b[0], r - sum);

@@ -12,24 +12,24 @@ pub(super) struct ReducedAngle {
 }
 
 /// The number π/2 in two parts.
-pub(super) const QUARTER: [f64; 2] = [f64::from_bits(0x3ff9_21fb_5444_2d18), f64::from_bits(0x3c91_a626_3314_5c07)];
+pub(super) const HALF_PI: [f64; 2] = [f64::from_bits(0x3ff9_21fb_5444_2d18), f64::from_bits(0x3c91_a626_3314_5c07)];
 /// The number 2/π.
 const TO_QUARTERS: f64 = f64::from_bits(0x3fe4_5f30_6dc9_c883);
 /// The constant that, added to a number, rounds it to an integer in the lowest bits of the sum.
-const ROUNDS: f64 = f64::from_bits(0x4338_0000_0000_0000);
+const ROUNDING_SHIFT: f64 = f64::from_bits(0x4338_0000_0000_0000);
 /// The constant that rounds to multiples of four.
-const ROUNDS_TO_TURNS: f64 = f64::from_bits(0x4358_0000_0000_0000);
+const TURN_ROUNDING_SHIFT: f64 = f64::from_bits(0x4358_0000_0000_0000);
 /// The number π/2 in four parts; products of the first three with the quarters of a near angle are exact.
-const PIECES: [f64; 4] = [
+const HALF_PI_PARTS: [f64; 4] = [
     f64::from_bits(0x3ff9_21fb_5800_0000),
     f64::from_bits(0xbe4d_de97_3c00_0000),
     f64::from_bits(0xbc8c_b3b3_9800_0000),
     f64::from_bits(0xbacd_747f_23e3_2ed7),
 ];
 /// The number π/2 in two parts of half of a number's bits.
-const HALVES: [f64; 2] = [PIECES[0], f64::from_bits(0xbe4d_de97_4000_0000)];
+const HALF_PI_HALVES: [f64; 2] = [HALF_PI_PARTS[0], f64::from_bits(0xbe4d_de97_4000_0000)];
 /// The factor 2^27 + 1 that splits a number into two halves of its bits.
-const SPLITS: f64 = 134_217_729.0;
+const SPLIT_FACTOR: f64 = 134_217_729.0;
 
 /// Returns a power of two.
 const fn power(exponent: i32) -> f64 {
@@ -38,19 +38,20 @@ const fn power(exponent: i32) -> f64 {
 
 /// Reduces an angle below 1.05e8.
 pub(super) fn reduce_small(x: f64) -> ReducedAngle {
-    let shifted = multiply_add(x, TO_QUARTERS, ROUNDS);
-    let quarters = shifted - ROUNDS;
-    let first = multiply_add(-quarters, PIECES[1], multiply_add(-quarters, PIECES[0], x));
-    let second = multiply_add(-quarters, PIECES[2], first);
-    let angle = multiply_add(-quarters, PIECES[3], second);
-    let rest = multiply_add(-quarters, PIECES[2], first - second) + multiply_add(-quarters, PIECES[3], second - angle);
+    let shifted = multiply_add(x, TO_QUARTERS, ROUNDING_SHIFT);
+    let quarters = shifted - ROUNDING_SHIFT;
+    let first = multiply_add(-quarters, HALF_PI_PARTS[1], multiply_add(-quarters, HALF_PI_PARTS[0], x));
+    let second = multiply_add(-quarters, HALF_PI_PARTS[2], first);
+    let angle = multiply_add(-quarters, HALF_PI_PARTS[3], second);
+    let rest = multiply_add(-quarters, HALF_PI_PARTS[2], first - second)
+        + multiply_add(-quarters, HALF_PI_PARTS[3], second - angle);
     ReducedAngle { quarters: shifted.to_bits() as u32 & 3, angle, rest }
 }
 
 /// Reduces any finite angle from there on.
 pub(super) fn reduce_large(x: f64) -> ReducedAngle {
     let x = x * power(-600);
-    let scaled = x * SPLITS;
+    let scaled = x * SPLIT_FACTOR;
     let high = scaled - (scaled - x);
     let [first, second] = [high, x - high].map(quarters_of);
     let mut whole = first.whole + second.whole;
@@ -69,12 +70,12 @@ pub(super) fn reduce_large(x: f64) -> ReducedAngle {
     }
     let sum = part + (rest + first.rest + second.rest);
     rest = ((part - sum) + rest) + (first.rest + second.rest);
-    let scaled = sum * SPLITS;
+    let scaled = sum * SPLIT_FACTOR;
     let high = scaled - (scaled - sum);
     let low = sum - high;
-    let product = sum * QUARTER[0];
-    let more = (((high * HALVES[0] - product) + high * HALVES[1]) + low * HALVES[0])
-        + (low * HALVES[1] + sum * QUARTER[1] + rest * QUARTER[0]);
+    let product = sum * HALF_PI[0];
+    let more = (((high * HALF_PI_HALVES[0] - product) + high * HALF_PI_HALVES[1]) + low * HALF_PI_HALVES[0])
+        + (low * HALF_PI_HALVES[1] + sum * HALF_PI[1] + rest * HALF_PI[0]);
     let angle = product + more;
     ReducedAngle { quarters: (whole as i32 & 3).cast_unsigned(), angle, rest: (product - angle) + more }
 }
@@ -100,16 +101,16 @@ fn quarters_of(half: f64) -> Quarters {
     }
     let mut whole = 0.0;
     for digit in &mut digits[..3] {
-        let rounded = (*digit + ROUNDS) - ROUNDS;
+        let rounded = (*digit + ROUNDING_SHIFT) - ROUNDING_SHIFT;
         whole += rounded;
         *digit -= rounded;
     }
     let sum = digits.iter().rev().fold(0.0, |sum, digit| sum + digit);
     let lost = digits[1..].iter().fold(digits[0] - sum, |lost, digit| lost + digit);
-    let rounded = (sum + ROUNDS) - ROUNDS;
+    let rounded = (sum + ROUNDING_SHIFT) - ROUNDING_SHIFT;
     whole += rounded;
     let left = sum - rounded;
     let part = left + lost;
-    whole -= (whole + ROUNDS_TO_TURNS) - ROUNDS_TO_TURNS;
+    whole -= (whole + TURN_ROUNDING_SHIFT) - TURN_ROUNDING_SHIFT;
     Quarters { whole, part, rest: (left - part) + lost }
 }

@@ -5,7 +5,7 @@
 
 /// For `i` in 0..128: the relative rounding error of the double nearest to 2^(i/128), then that double's bits minus `i
 /// << 45`.
-pub(super) const POWERS: [u64; 256] = [
+pub(super) const POWER_TABLE: [u64; 256] = [
     0x0000000000000000, 0x3ff0000000000000, 0x3c9b3b4f1a88bf6e, 0x3feff63da9fb3335, 0xbc7160139cd8dc5d,
     0x3fefec9a3e778061, 0xbc905e7a108766d1, 0x3fefe315e86e7f85, 0x3c8cd2523567f613, 0x3fefd9b0d3158574,
     0xbc8bce8023f98efa, 0x3fefd06b29ddf6de, 0x3c60f74e61e6c861, 0x3fefc74518759bc8, 0x3c90a3e45b33d399,
@@ -62,7 +62,7 @@ pub(super) const POWERS: [u64; 256] = [
 
 /// For each of 128 intervals of `[0.6875, 1.375)`: a number close to `1/c` and one close to `ln c`, for a `c` near the
 /// interval's middle.
-pub(super) const LOGARITHMS: [u64; 256] = [
+pub(super) const LOGARITHM_TABLE: [u64; 256] = [
     0x3ff734f0c3e0de9f, 0xbfd7cc7f79e69000, 0x3ff713786a2ce91f, 0xbfd76feec20d0000, 0x3ff6f26008fab5a0,
     0xbfd713e31351e000, 0x3ff6d1a61f138c7d, 0xbfd6b85b38287800, 0x3ff6b1490bc5b4d1, 0xbfd65d5590807800,
     0x3ff69147332f0cba, 0xbfd602d076180000, 0x3ff6719f18224223, 0xbfd5a8ca86909000, 0x3ff6524f99a51ed9,
@@ -118,7 +118,7 @@ pub(super) const LOGARITHMS: [u64; 256] = [
 ];
 
 /// For `i` in 0..110: the sine and the cosine of `i/128`, each with the rounding error of its nearest double.
-pub(super) const ANGLES: [u64; 440] = [
+pub(super) const ANGLE_TABLE: [u64; 440] = [
     0x0000000000000000, 0x0000000000000000, 0x3ff0000000000000, 0x0000000000000000,
     0x3f7fffeaaaaeeeef, 0xbc1e45e2ec67b77c, 0x3fefffc000155552, 0x3c8f4a01a0196dae,
     0x3f8fffaaaaeeeed5, 0xbc02ab639a9f0777, 0x3fefff000155549f, 0x3c828a28a03a5ef3,

@@ -2,8 +2,8 @@
 //! Bachelis, ACM TOMS 17, 1991). An angle beyond the table is first reduced to one near zero.
 use super::{
     multiply_add,
-    reduction::{QUARTER, ReducedAngle, reduce_large, reduce_small},
-    tables::ANGLES,
+    reduction::{HALF_PI, ReducedAngle, reduce_large, reduce_small},
+    tables::ANGLE_TABLE,
 };
 
 /// The high words of the angles at which the next method begins.
@@ -11,13 +11,13 @@ const SINE_IS_ANGLE: u32 = 0x3e50_0000;
 const COSINE_IS_ONE: u32 = 0x3e40_0000;
 const TABLE_ENDS: u32 = 0x3feb_6000;
 const QUARTER_ENDS: u32 = 0x4003_68fd;
-const NEAR_ENDS: u32 = 0x4199_21fb;
+const NEAR_LIMIT_BITS: u32 = 0x4199_21fb;
 /// The constant that, added to an angle, rounds it to 1/128; the number of the step is in the lowest bits of the sum.
-const ROUNDS: f64 = f64::from_bits(0x42c8_0000_0000_0000);
+const ROUNDING_SHIFT: f64 = f64::from_bits(0x42c8_0000_0000_0000);
 /// The angle below which Taylor's series is used without the table.
-const TAYLOR_ENDS: f64 = f64::from_bits(0x3fc0_20c4_9ba5_e354);
+const TAYLOR_LIMIT: f64 = f64::from_bits(0x3fc0_20c4_9ba5_e354);
 /// Taylor's series of the sine from `x^3` on.
-const TAYLOR: [f64; 5] = [
+const TAYLOR_COEFFICIENTS: [f64; 5] = [
     f64::from_bits(0xbfc5_5555_5555_5555),
     f64::from_bits(0x3f81_1111_1111_0ece),
     f64::from_bits(0xbf2a_01a0_19db_08b8),
@@ -25,8 +25,9 @@ const TAYLOR: [f64; 5] = [
     f64::from_bits(0xbe5a_ddff_c2fc_df59),
 ];
 /// The sine's terms in `x^3` and `x^5` between two angles of the table, and the terms of one less the cosine.
-const SINE: [f64; 2] = [f64::from_bits(0xbfc5_5555_5555_5515), f64::from_bits(0x3f81_1110_e829_872f)];
-const COSINE: [f64; 3] = [0.5, f64::from_bits(0xbfa5_5555_5555_5535), f64::from_bits(0x3f56_c16b_edd9_e239)];
+const SINE_COEFFICIENTS: [f64; 2] = [f64::from_bits(0xbfc5_5555_5555_5515), f64::from_bits(0x3f81_1110_e829_872f)];
+const COSINE_COEFFICIENTS: [f64; 3] =
+    [0.5, f64::from_bits(0xbfa5_5555_5555_5535), f64::from_bits(0x3f56_c16b_edd9_e239)];
 
 /// Returns the sine of an angle in radians; NaN for infinity.
 #[must_use]
@@ -34,7 +35,7 @@ pub fn sin(angle: f64) -> f64 {
     match high_word(angle) {
         word if word < SINE_IS_ANGLE => angle,
         word if word < TABLE_ENDS => sine(angle, 0.0),
-        word if word < QUARTER_ENDS => cosine(QUARTER[0] - angle.abs(), QUARTER[1]).copysign(angle),
+        word if word < QUARTER_ENDS => cosine(HALF_PI[0] - angle.abs(), HALF_PI[1]).copysign(angle),
         word => reduce(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 0)),
     }
 }
@@ -46,9 +47,9 @@ pub fn cos(angle: f64) -> f64 {
         word if word < COSINE_IS_ONE => 1.0,
         word if word < TABLE_ENDS => cosine(angle, 0.0),
         word if word < QUARTER_ENDS => {
-            let rest = QUARTER[0] - angle.abs();
-            let sum = rest + QUARTER[1];
-            sine(sum, (rest - sum) + QUARTER[1])
+            let rest = HALF_PI[0] - angle.abs();
+            let sum = rest + HALF_PI[1];
+            sine(sum, (rest - sum) + HALF_PI[1])
         }
         word => reduce(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 1)),
     }
@@ -62,7 +63,7 @@ fn high_word(angle: f64) -> u32 {
 fn reduce(angle: f64, word: u32) -> Option<ReducedAngle> {
     match word {
         _ if !angle.is_finite() => None,
-        word if word < NEAR_ENDS => Some(reduce_small(angle)),
+        word if word < NEAR_LIMIT_BITS => Some(reduce_small(angle)),
         _ => Some(reduce_large(angle)),
     }
 }
@@ -76,22 +77,28 @@ fn at_quarter(ReducedAngle { quarters, angle, rest }: ReducedAngle, more: u32) -
 
 /// Returns the nearest angle of the table, whose index is in the sum's lowest bits, and the difference from it.
 fn nearest_angle(modulus: f64) -> ([f64; 4], f64) {
-    let sum = ROUNDS + modulus;
+    let sum = ROUNDING_SHIFT + modulus;
     let row = 4 * (sum.to_bits() as u32) as usize;
-    (std::array::from_fn(|i| f64::from_bits(ANGLES[row + i])), modulus - (sum - ROUNDS))
+    (std::array::from_fn(|i| f64::from_bits(ANGLE_TABLE[row + i])), modulus - (sum - ROUNDING_SHIFT))
 }
 
 /// Returns the sine of `x + dx` for `|x|` up to 0.86 and a `dx` that is small compared with it.
 fn sine(x: f64, dx: f64) -> f64 {
-    if x.abs() < TAYLOR_ENDS {
+    if x.abs() < TAYLOR_LIMIT {
         let square = x * x;
-        let series = TAYLOR.iter().rev().copied().reduce(|sum, next| multiply_add(sum, square, next)).unwrap_or(0.0);
+        let series = TAYLOR_COEFFICIENTS
+            .iter()
+            .rev()
+            .copied()
+            .reduce(|sum, next| multiply_add(sum, square, next))
+            .unwrap_or(0.0);
         return x + multiply_add(square, multiply_add(series, x, -(0.5 * dx)), dx);
     }
     let ([sine, sine_rest, cosine, cosine_rest], difference) = nearest_angle(x.abs());
     let dx = if x <= 0.0 { -dx } else { dx };
     let square = difference * difference;
-    let s = difference + multiply_add(difference * square, multiply_add(SINE[1], square, SINE[0]), dx);
+    let s = difference
+        + multiply_add(difference * square, multiply_add(SINE_COEFFICIENTS[1], square, SINE_COEFFICIENTS[0]), dx);
     let c = multiply_add(difference, dx, square * cosine_complement(square));
     let rest = multiply_add(-c, sine, multiply_add(s, cosine_rest, sine_rest));
     (sine + multiply_add(s, cosine, rest)).copysign(x)
@@ -102,7 +109,8 @@ fn cosine(x: f64, dx: f64) -> f64 {
     let ([sine, sine_rest, cosine, cosine_rest], difference) = nearest_angle(x.abs());
     let difference = difference + if x < 0.0 { -dx } else { dx };
     let square = difference * difference;
-    let s = multiply_add(difference * square, multiply_add(SINE[1], square, SINE[0]), difference);
+    let s =
+        multiply_add(difference * square, multiply_add(SINE_COEFFICIENTS[1], square, SINE_COEFFICIENTS[0]), difference);
     let c = square * cosine_complement(square);
     let rest = multiply_add(-c, cosine, multiply_add(-s, sine_rest, cosine_rest));
     cosine + multiply_add(-s, sine, rest)
@@ -110,5 +118,5 @@ fn cosine(x: f64, dx: f64) -> f64 {
 
 /// Returns `(1 - cos x) / x²` for a small `x` with this square.
 fn cosine_complement(square: f64) -> f64 {
-    multiply_add(square, multiply_add(COSINE[2], square, COSINE[1]), COSINE[0])
+    multiply_add(square, multiply_add(COSINE_COEFFICIENTS[2], square, COSINE_COEFFICIENTS[1]), COSINE_COEFFICIENTS[0])
 }

@@ -1,7 +1,7 @@
 //! The variable-shift iteration for a real zero (root-finder.md 14).
 use super::{
     Coefficients,
-    constants::{ETA, ETA_2},
+    constants::{ETA_2, UNIT_ERROR},
 };
 
 /// The number of unsuccessful steps after which the iteration fails.
@@ -37,7 +37,7 @@ pub(super) fn run<const N: usize>(
         for q in &q[1..=N] {
             error = error * s.abs() + q.abs();
         }
-        if size <= 20.0 * (ETA_2 * error - ETA * size) {
+        if size <= 20.0 * (ETA_2 * error - UNIT_ERROR * size) {
             return Outcome::Zero(s, q);
         }
         steps += 1;
@@ -55,7 +55,7 @@ pub(super) fn run<const N: usize>(
         for &kappa in &k[1..N] {
             at_s = at_s * s + kappa;
         }
-        t = if at_s.abs() > ((k[N - 1] * 10.0) * ETA).abs() { -value / at_s } else { 0.0 };
+        t = if at_s.abs() > ((k[N - 1] * 10.0) * UNIT_ERROR).abs() { -value / at_s } else { 0.0 };
         s += t;
     }
 }
@@ -80,7 +80,7 @@ fn next_k<const N: usize>(k: &Coefficients, q: &Coefficients, s: f64, value: f64
         w[i] = w[i - 1] * s + k[i];
     }
     let mut next = Coefficients::default();
-    if w[N - 1].abs() <= (k[N - 1].abs() * 10.0) * ETA {
+    if w[N - 1].abs() <= (k[N - 1].abs() * 10.0) * UNIT_ERROR {
         next[1..N].copy_from_slice(&w[..N - 1]);
     } else {
         let ratio = -value / w[N - 1];

@@ -1,8 +1,8 @@
 //! The no-shift stage: five steps that make the small zeros stand out (root-finder.md 10).
-use super::{Coefficients, constants::ETA};
+use super::{Coefficients, constants::UNIT_ERROR};
 
 /// The number of steps of this stage.
-const STEPS: usize = 5;
+const STEP_COUNT: usize = 5;
 
 /// Returns the K polynomial (degree `N - 1`) after five steps without shift, started from the derivative divided by
 /// `N`.
@@ -10,7 +10,7 @@ const STEPS: usize = 5;
 pub(super) fn run<const N: usize>(polynomial: &Coefficients) -> Coefficients {
     let mut k = derivative::<N>(polynomial);
     let mut vanishes = k[N - 1] == 0.0;
-    for _ in 0..STEPS {
+    for _ in 0..STEP_COUNT {
         if vanishes {
             k.copy_within(0..N - 1, 1);
             k[0] = 0.0;
@@ -21,7 +21,7 @@ pub(super) fn run<const N: usize>(polynomial: &Coefficients) -> Coefficients {
                 k[j] = t * k[j - 1] + polynomial[j];
             }
             k[0] = polynomial[0];
-            vanishes = k[N - 1].abs() <= (polynomial[N - 1].abs() * ETA) * 10.0;
+            vanishes = k[N - 1].abs() <= (polynomial[N - 1].abs() * UNIT_ERROR) * 10.0;
         }
     }
     k

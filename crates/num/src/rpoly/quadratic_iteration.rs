@@ -1,7 +1,7 @@
 //! The variable-shift iteration for a quadratic factor (root-finder.md 13).
 use super::{
     Coefficients, Zero,
-    constants::{ETA, ETA_2, ETA_7, ETA_9},
+    constants::{ETA_2, ETA_7, ETA_9, UNIT_ERROR},
     quadratic,
     scalars::{Division, Scalars},
 };
@@ -44,8 +44,8 @@ pub(super) fn run<const N: usize>(
         // Both comparisons are false for a NaN, which leads into the cluster step.
         let advances = relative_step > 0.01 || size < previous_size;
         if steps >= 2 && !advances && !tried_cluster {
-            if relative_step < ETA {
-                relative_step = ETA;
+            if relative_step < UNIT_ERROR {
+                relative_step = UNIT_ERROR;
             }
             let nudge = relative_step.sqrt();
             u -= u * nudge;

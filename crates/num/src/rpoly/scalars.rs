@@ -3,7 +3,7 @@
 //!
 //! With `a`, `b` from the division of P and `c`, `d` from that of K, the published formulas use `bc - ad`, `a² + uab +
 //! vb²` and `ac + uad + vbd`, divided by `c` or by `d`, whichever has the larger modulus.
-use super::{Coefficients, constants::ETA, quadratic};
+use super::{Coefficients, constants::UNIT_ERROR, quadratic};
 
 /// The quadratic factor `z² + u z + v`, and the polynomial of degree `N` divided by it.
 #[derive(Clone, Copy)]
@@ -72,7 +72,8 @@ impl<const N: usize> Scalars<N> {
         let (c, d) = (w[N - 1], w[N - 2]);
         let mut scalars =
             Self { kind: ScalarKind::Divides, w, c, d, s: 0.0, g: 0.0, y: 0.0, phi: 0.0, delta: 0.0, psi: 0.0 };
-        let stands_out = c.abs() > ((k[N - 1] * 100.0) * ETA).abs() || d.abs() > ((k[N - 2] * 100.0) * ETA).abs();
+        let stands_out =
+            c.abs() > ((k[N - 1] * 100.0) * UNIT_ERROR).abs() || d.abs() > ((k[N - 2] * 100.0) * UNIT_ERROR).abs();
         if !stands_out {
             return scalars;
         }
@@ -115,7 +116,7 @@ impl<const N: usize> Scalars<N> {
                 return k;
             }
         };
-        if self.delta.abs() <= (reference.abs() * ETA) * 10.0 {
+        if self.delta.abs() <= (reference.abs() * UNIT_ERROR) * 10.0 {
             k[1] = -self.psi * q[0];
             for i in 2..N {
                 k[i] = self.phi * w[i - 2] - self.psi * q[i - 1];

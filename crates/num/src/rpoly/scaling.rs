@@ -1,7 +1,7 @@
 //! Scaling by a power of two (root-finder.md 8).
 use super::{
     Coefficients,
-    constants::{LAMBDA, LARGE},
+    constants::{LARGEST_NUMBER, SCALING_TARGET},
 };
 use crate::elementary::ln;
 
@@ -9,7 +9,7 @@ use crate::elementary::ln;
 /// moderate or would become too large. NaN coefficients are ignored in the decision.
 #[inline]
 pub(super) fn scale<const N: usize>(polynomial: &mut Coefficients) {
-    let (mut largest, mut smallest) = (0.0, LARGE);
+    let (mut largest, mut smallest) = (0.0, LARGEST_NUMBER);
     for coefficient in &polynomial[..=N] {
         let modulus = coefficient.abs();
         if modulus > largest {
@@ -19,8 +19,8 @@ pub(super) fn scale<const N: usize>(polynomial: &mut Coefficients) {
             smallest = modulus;
         }
     }
-    let factor = LAMBDA / smallest;
-    if (factor > 1.0 && LARGE / factor < largest) || (factor <= 1.0 && largest < 10.0) {
+    let factor = SCALING_TARGET / smallest;
+    if (factor > 1.0 && LARGEST_NUMBER / factor < largest) || (factor <= 1.0 && largest < 10.0) {
         return;
     }
     // Truncated toward zero, even if negative. It is between -201 and 1000, so the power is a normal number.

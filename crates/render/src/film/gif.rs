@@ -10,7 +10,7 @@ use std::{
 };
 
 /// The number of steps from a color to the background.
-const STEPS: u8 = 8;
+const COLOR_STEPS: u8 = 8;
 
 /// A GIF film that is being written.
 pub struct Gif<'a> {
@@ -32,8 +32,9 @@ impl<'a> Gif<'a> {
     pub fn new(out: &'a mut dyn Write, size: Size, rate: Rate, colors: &[Rgb]) -> io::Result<Self> {
         let palette = palette(colors);
         let bytes: Vec<u8> = palette.iter().flat_map(|color| color.0).collect();
-        let mut encoder = gif::Encoder::new(out, side(size.width()), side(size.height()), &bytes).map_err(error)?;
-        encoder.set_repeat(gif::Repeat::Infinite).map_err(error)?;
+        let mut encoder =
+            gif::Encoder::new(out, side(size.width()), side(size.height()), &bytes).map_err(to_io_error)?;
+        encoder.set_repeat(gif::Repeat::Infinite).map_err(to_io_error)?;
         Ok(Self { encoder, size, rate, palette, known: HashMap::new(), before: Vec::new(), pictures: 0 })
     }
 
@@ -48,7 +49,7 @@ impl<'a> Gif<'a> {
             .chunks_exact(4)
             .map(|pixel| {
                 let color = [pixel[0], pixel[1], pixel[2]];
-                *known.entry(color).or_insert_with(|| nearest(palette, color))
+                *known.entry(color).or_insert_with(|| nearest_index(palette, color))
             })
             .collect();
         let part = ChangedArea::between(self.size, &self.before, &after);
@@ -65,7 +66,7 @@ impl<'a> Gif<'a> {
             buffer: part.cut(self.size, &after).into(),
             ..gif::Frame::default()
         };
-        self.encoder.write_frame(&frame).map_err(error)?;
+        self.encoder.write_frame(&frame).map_err(to_io_error)?;
         self.before = after;
         self.pictures += 1;
         Ok(())
@@ -76,7 +77,7 @@ impl<'a> Gif<'a> {
     /// # Errors
     /// Fails if it cannot be written.
     pub fn finish(self) -> io::Result<()> {
-        self.encoder.into_inner().map_err(error)?.flush()
+        self.encoder.into_inner().map_err(to_io_error)?.flush()
     }
 }
 
@@ -85,7 +86,7 @@ fn side(pixels: u32) -> u16 {
     u16::try_from(pixels).unwrap_or(u16::MAX)
 }
 
-fn error(error: gif::EncodingError) -> io::Error {
+fn to_io_error(error: gif::EncodingError) -> io::Error {
     match error {
         gif::EncodingError::Io(error) => error,
         other => io::Error::other(other),
@@ -105,8 +106,8 @@ fn palette(colors: &[Rgb]) -> Vec<Rgb> {
     colors.iter().copied().for_each(&mut add);
     // The middle step first: with many colors, few steps of each are better than all steps of a few.
     for step in [4, 2, 6, 1, 3, 5, 7] {
-        debug_assert!(step < STEPS);
-        colors.iter().for_each(|&color| add(color.towards(background, step)));
+        debug_assert!(step < COLOR_STEPS);
+        colors.iter().for_each(|&color| add(color.mix(background, step)));
     }
     for levels in [6_u8, 4] {
         let part = |index: u8| u8::try_from(255 * u32::from(index) / u32::from(levels - 1)).unwrap_or(u8::MAX);
@@ -119,7 +120,7 @@ fn palette(colors: &[Rgb]) -> Vec<Rgb> {
     palette
 }
 
-fn nearest(palette: &[Rgb], color: [u8; 3]) -> u8 {
+fn nearest_index(palette: &[Rgb], color: [u8; 3]) -> u8 {
     let distance = |other: &Rgb| -> u32 {
         other.0.iter().zip(color).map(|(&own, other)| u32::from(own.abs_diff(other)).pow(2)).sum()
     };
@@ -137,7 +138,7 @@ mod tests {
         let palette = palette(&many);
         assert_eq!(palette.len(), 256);
         for color in many {
-            assert_eq!(palette[usize::from(nearest(&palette, color.0))], color);
+            assert_eq!(palette[usize::from(nearest_index(&palette, color.0))], color);
         }
         assert!(super::palette(&[]).len() <= 256);
     }

@@ -4,7 +4,7 @@ use super::{
     PlotTarget,
     sheet::{Anchor, Ink, Sheet, Tone, WIDTH},
 };
-use crate::number::short;
+use crate::number::format_short;
 use fosssim_num::{interval::Interval, polynomial::evaluate};
 
 /// A polynomial in the plot.
@@ -39,10 +39,10 @@ const RIGHT: f64 = WIDTH - 20.0;
 const TOP: f64 = 34.0;
 const MIDDLE: f64 = 134.0;
 const BOTTOM: f64 = 234.0;
-const ROW: f64 = 22.0;
+const ROW_HEIGHT: f64 = 22.0;
 const SAMPLES: u32 = 128;
 /// The number of samples between the ends of a piece of a curve.
-const PIECE: usize = 8;
+const PIECE_SAMPLES: usize = 8;
 
 impl PolynomialPlot<'_> {
     /// Renders the plot.
@@ -50,17 +50,17 @@ impl PolynomialPlot<'_> {
     pub fn svg(&self, embedding: PlotTarget) -> String {
         let rows = self.curves.len() + usize::from(self.common.is_some());
         #[expect(clippy::cast_precision_loss, reason = "a handful")]
-        let row_top = |row: usize| BOTTOM + 30.0 + ROW * row as f64;
+        let row_top = |row: usize| BOTTOM + 30.0 + ROW_HEIGHT * row as f64;
         let height = row_top(rows) + 12.0;
         let mut sheet = Sheet::new(height, self.title, &self.description(), embedding);
         sheet.text([16.0, 18.0], Anchor::Start, Tone::Plain, self.title);
         let ticks = [0.0, 0.25, 0.5, 0.75, 1.0];
-        sheet.rules(Ink::Grid, &ticks.map(|tick| ([x(tick), TOP], [x(tick), row_top(rows)])));
+        sheet.draw_rules(Ink::Grid, &ticks.map(|tick| ([x(tick), TOP], [x(tick), row_top(rows)])));
         for tick in ticks {
-            sheet.text([x(tick), BOTTOM + 16.0], Anchor::Middle, Tone::Faint, &short(tick));
+            sheet.text([x(tick), BOTTOM + 16.0], Anchor::Middle, Tone::Faint, &format_short(tick));
         }
         sheet.text([RIGHT, BOTTOM + 16.0 - 18.0], Anchor::End, Tone::Faint, "t");
-        sheet.rule(Ink::Axis, [LEFT, MIDDLE], [RIGHT, MIDDLE]);
+        sheet.draw_rule(Ink::Axis, [LEFT, MIDDLE], [RIGHT, MIDDLE]);
         sheet.text([LEFT - 8.0, TOP + 10.0], Anchor::End, Tone::Faint, "positive");
         sheet.text([LEFT - 8.0, MIDDLE + 4.0], Anchor::End, Tone::Faint, "0");
         sheet.text([LEFT - 8.0, BOTTOM - 2.0], Anchor::End, Tone::Faint, "negative");
@@ -69,13 +69,13 @@ impl PolynomialPlot<'_> {
             draw(curve, ink, number, &mut sheet);
             let top = row_top(number);
             sheet.line(ink, 2.0, &[[8.0, top + 8.0], [30.0, top + 8.0]]);
-            sheet.marker(ink, [19.0, top + 8.0]);
+            sheet.draw_marker(ink, [19.0, top + 8.0]);
             sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Plain, &curve.name);
             draw_sets(curve.positive, ink, top, 0.75, &mut sheet);
         }
         if let Some(common) = self.common {
             let top = row_top(rows - 1);
-            sheet.rule(Ink::Axis, [LEFT, top - 2.0], [RIGHT, top - 2.0]);
+            sheet.draw_rule(Ink::Axis, [LEFT, top - 2.0], [RIGHT, top - 2.0]);
             sheet.text([36.0, top + 12.0], Anchor::Start, Tone::Bad, "all positive");
             draw_sets(common, Ink::Bad, top, 1.0, &mut sheet);
         }
@@ -83,7 +83,7 @@ impl PolynomialPlot<'_> {
             sheet.line(Ink::Bad, 1.5, &[[x(time), TOP - 4.0], [x(time), row_top(rows)]]);
             let (place, anchor) =
                 if time < 0.6 { (x(time) + 5.0, Anchor::Start) } else { (x(time) - 5.0, Anchor::End) };
-            sheet.text([place, TOP + 4.0], anchor, Tone::Bad, &format!("impact at {}", short(time)));
+            sheet.text([place, TOP + 4.0], anchor, Tone::Bad, &format!("impact at {}", format_short(time)));
         }
         sheet.finish()
     }
@@ -99,7 +99,7 @@ impl PolynomialPlot<'_> {
             words.push(format!("all are positive {}", clip_to_step(common)));
         }
         if let Some(time) = self.impact {
-            words.push(format!("the time of impact is {}", short(time)));
+            words.push(format!("the time of impact is {}", format_short(time)));
         }
         words.join("; ") + ". Each curve is scaled to its own largest value on the step."
     }
@@ -119,14 +119,14 @@ fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Shee
     // A cubic through the values and slopes at both ends of a piece: exact up to degree 3, and with an error below a
     // thousandth of a pixel for a quintic.
     let mut path: Vec<[f64; 2]> = Vec::new();
-    for k in (0..SAMPLES as usize).step_by(PIECE) {
-        let (start, end) = (times[k], times[k + PIECE]);
+    for k in (0..SAMPLES as usize).step_by(PIECE_SAMPLES) {
+        let (start, end) = (times[k], times[k + PIECE_SAMPLES]);
         let third = (end - start) / 3.0;
         let rise = |time: f64| third * evaluate(&slopes, time);
-        let (low, high) = (values[k], values[k + PIECE]);
+        let (low, high) = (values[k], values[k + PIECE_SAMPLES]);
         let heights = [low, low + rise(start), high - rise(end), high];
         if heights.iter().any(|height| !height.is_finite()) {
-            sheet.curve(ink, 2.0, &std::mem::take(&mut path));
+            sheet.draw_curve(ink, 2.0, &std::mem::take(&mut path));
             continue;
         }
         if path.is_empty() {
@@ -134,15 +134,15 @@ fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Shee
         }
         path.extend([[x(start + third), y(heights[1])], [x(end - third), y(heights[2])], [x(end), y(high)]]);
     }
-    sheet.curve(ink, 2.0, &path);
+    sheet.draw_curve(ink, 2.0, &path);
     // Markers of different curves are at different times, so that none hides another.
     for k in (8 + 8 * (number % 4)..=SAMPLES as usize).step_by(32) {
         if values[k].is_finite() {
-            sheet.marker(ink, [x(times[k]), y(values[k])]);
+            sheet.draw_marker(ink, [x(times[k]), y(values[k])]);
         }
     }
     for &zero in curve.zeros.iter().filter(|zero| (0.0..=1.0).contains(*zero)) {
-        sheet.rule(ink, [x(zero), MIDDLE - 6.0], [x(zero), MIDDLE + 6.0]);
+        sheet.draw_rule(ink, [x(zero), MIDDLE - 6.0], [x(zero), MIDDLE + 6.0]);
     }
 }
 
@@ -160,9 +160,9 @@ fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sh
     for interval in list {
         let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));
         if lo < hi {
-            sheet.bar(ink, [x(lo), top + 2.0], [x(hi) - x(lo), ROW - 10.0], opacity);
+            sheet.draw_bar(ink, [x(lo), top + 2.0], [x(hi) - x(lo), ROW_HEIGHT - 10.0], opacity);
         } else if lo == hi {
-            sheet.marker(ink, [x(lo), top + 8.0]);
+            sheet.draw_marker(ink, [x(lo), top + 8.0]);
         }
     }
 }
@@ -174,8 +174,8 @@ fn clip_to_step(list: &[Interval]) -> String {
         .filter_map(|interval| {
             let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));
             match (lo < hi, lo == hi) {
-                (true, _) => Some(format!("from {} to {}", short(lo), short(hi))),
-                (_, true) => Some(format!("only at {}", short(lo))),
+                (true, _) => Some(format!("from {} to {}", format_short(lo), format_short(hi))),
+                (_, true) => Some(format!("only at {}", format_short(lo))),
                 _ => None,
             }
         })

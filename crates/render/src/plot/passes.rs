@@ -31,7 +31,7 @@ impl PassPlot<'_> {
         let y = |count: u32| BOTTOM - f64::from(count) / f64::from(most) * (BOTTOM - TOP);
         let every = (most / 4).max(1);
         for count in (0..=most).step_by(every as usize) {
-            sheet.rule(if count == 0 { Ink::Axis } else { Ink::Grid }, [LEFT, y(count)], [RIGHT, y(count)]);
+            sheet.draw_rule(if count == 0 { Ink::Axis } else { Ink::Grid }, [LEFT, y(count)], [RIGHT, y(count)]);
             sheet.text([LEFT - 8.0, y(count) + 4.0], Anchor::End, Tone::Faint, &count.to_string());
         }
         sheet.draw_steps(&columns, BOTTOM + 16.0, HEIGHT - 6.0);
@@ -56,13 +56,13 @@ impl PassPlot<'_> {
             }
         }
         for &x in &differing {
-            sheet.bar(Ink::Bad, [x - 1.5, TOP], [3.0, BOTTOM - TOP], 0.25);
-            sheet.marker(Ink::Bad, [x, TOP - 8.0]);
+            sheet.draw_bar(Ink::Bad, [x - 1.5, TOP], [3.0, BOTTOM - TOP], 0.25);
+            sheet.draw_marker(Ink::Bad, [x, TOP - 8.0]);
         }
         for (number, points) in [expected, actual].iter().enumerate() {
-            sheet.series(Ink::Series(number), points, number, 2);
+            sheet.draw_series(Ink::Series(number), points, number, 2);
         }
-        sheet.legend([LEFT, HEIGHT - 6.0], &[(Ink::Series(0), "expected"), (Ink::Series(1), "actual")]);
+        sheet.draw_legend([LEFT, HEIGHT - 6.0], &[(Ink::Series(0), "expected"), (Ink::Series(1), "actual")]);
         sheet.finish()
     }
 

@@ -3,7 +3,7 @@ use super::{
     PlotTarget,
     sheet::{Anchor, Columns, Ink, LEFT, RIGHT, Sheet, Tone, WIDTH},
 };
-use crate::number::{decades, short};
+use crate::number::{decade_range, format_short};
 
 /// A residual of every step, from the first step on.
 #[derive(Debug, Clone, Copy)]
@@ -30,7 +30,7 @@ pub struct ResidualPlot<'a> {
 const TOP: f64 = 48.0;
 const BOTTOM: f64 = 220.0;
 /// The height of the lanes below the scale for zeros and above it for NaN.
-const LANE: f64 = 14.0;
+const LANE_HEIGHT: f64 = 14.0;
 const HEIGHT: f64 = 284.0;
 
 impl ResidualPlot<'_> {
@@ -43,41 +43,41 @@ impl ResidualPlot<'_> {
         let scale = Scale::from_plot(self);
         scale.draw(&mut sheet);
         let columns = Columns::for_steps(steps);
-        sheet.draw_steps(&columns, BOTTOM + LANE + 16.0, HEIGHT - 6.0);
+        sheet.draw_steps(&columns, BOTTOM + LANE_HEIGHT + 16.0, HEIGHT - 6.0);
         if let Some((step, why)) = self.mark
             && (1..=steps).contains(&(step as usize))
         {
             let x = columns.x(step as usize - 1);
-            sheet.line(Ink::Bad, 1.0, &[[x, TOP - LANE], [x, BOTTOM + LANE]]);
+            sheet.line(Ink::Bad, 1.0, &[[x, TOP - LANE_HEIGHT], [x, BOTTOM + LANE_HEIGHT]]);
             let (place, anchor) = if x < 0.6 * WIDTH { (x + 4.0, Anchor::Start) } else { (x - 4.0, Anchor::End) };
-            sheet.text([place, TOP - LANE + 8.0], anchor, Tone::Bad, &format!("step {step}: {why}"));
+            sheet.text([place, TOP - LANE_HEIGHT + 8.0], anchor, Tone::Bad, &format!("step {step}: {why}"));
         }
         let y = scale.y(self.tolerance);
         sheet.line(Ink::Bad, 1.5, &[[LEFT, y], [RIGHT, y]]);
-        sheet.text([RIGHT, y - 4.0], Anchor::End, Tone::Bad, &format!("tolerance {}", short(self.tolerance)));
+        sheet.text([RIGHT, y - 4.0], Anchor::End, Tone::Bad, &format!("tolerance {}", format_short(self.tolerance)));
         for (number, series) in self.series.iter().enumerate() {
             let ink = Ink::Series(number);
             let points: Vec<[f64; 2]> = (0..columns.columns)
                 .filter_map(|column| {
                     let range = columns.range(column);
-                    let (place, value) = worst(series.values, range)?;
+                    let (place, value) = find_worst(series.values, range)?;
                     Some([columns.x(place), scale.y(value)])
                 })
                 .collect();
-            sheet.series(ink, &points, number, 4);
+            sheet.draw_series(ink, &points, number, 4);
         }
         let names: Vec<_> = self.series.iter().enumerate().map(|(k, series)| (Ink::Series(k), series.name)).collect();
-        sheet.legend([LEFT, HEIGHT - 6.0], &names);
+        sheet.draw_legend([LEFT, HEIGHT - 6.0], &names);
         sheet.finish()
     }
 
     /// Returns a description of the plot for readers who do not see it.
     fn description(&self) -> String {
         let of = |Series { name, values }: &Series<'_>| {
-            let (place, value) = worst(values, 0..values.len())?;
+            let (place, value) = find_worst(values, 0..values.len())?;
             // NaN is not below the tolerance.
             let above = values.iter().filter(|&&value| !(value < self.tolerance)).count();
-            let (largest, steps, tolerance) = (short(value), values.len(), short(self.tolerance));
+            let (largest, steps, tolerance) = (format_short(value), values.len(), format_short(self.tolerance));
             Some(format!(
                 "{name}: largest {largest} in step {}, {above} of {steps} steps not below the tolerance {tolerance}",
                 place + 1
@@ -88,7 +88,7 @@ impl ResidualPlot<'_> {
 }
 
 /// Returns the worst value in a range, and its index; NaN is worse than any number.
-fn worst(values: &[f64], range: std::ops::Range<usize>) -> Option<(usize, f64)> {
+fn find_worst(values: &[f64], range: std::ops::Range<usize>) -> Option<(usize, f64)> {
     let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value.abs() };
     let places = range.start.min(values.len())..range.end.min(values.len());
     places
@@ -108,16 +108,16 @@ impl Scale {
         let shown = values.map(f64::abs).filter(|value| *value > 0.0 && value.is_finite());
         let (least, most) =
             shown.fold((f64::INFINITY, 0.0_f64), |(least, most), value| (least.min(value), most.max(value)));
-        let (low, high) = if most > 0.0 { decades(least, most) } else { (-16, 0) };
+        let (low, high) = if most > 0.0 { decade_range(least, most) } else { (-16, 0) };
         Self { low, high }
     }
 
     fn y(&self, value: f64) -> f64 {
         if !value.is_finite() {
-            return TOP - LANE;
+            return TOP - LANE_HEIGHT;
         }
         if value == 0.0 {
-            return BOTTOM + LANE;
+            return BOTTOM + LANE_HEIGHT;
         }
         let share = (value.abs().log10() - f64::from(self.low)) / f64::from(self.high - self.low);
         BOTTOM - share.clamp(0.0, 1.0) * (BOTTOM - TOP)
@@ -128,11 +128,11 @@ impl Scale {
         for power in (self.low..=self.high).filter(|power| (power - self.low) % every == 0) {
             let share = f64::from(power - self.low) / f64::from(self.high - self.low);
             let y = BOTTOM - share * (BOTTOM - TOP);
-            sheet.rule(Ink::Grid, [LEFT, y], [RIGHT, y]);
+            sheet.draw_rule(Ink::Grid, [LEFT, y], [RIGHT, y]);
             sheet.text([LEFT - 8.0, y + 4.0], Anchor::End, Tone::Faint, &format!("1e{power}"));
         }
-        sheet.rule(Ink::Axis, [LEFT, BOTTOM + LANE], [RIGHT, BOTTOM + LANE]);
-        sheet.text([LEFT - 8.0, BOTTOM + LANE + 4.0], Anchor::End, Tone::Faint, "0");
+        sheet.draw_rule(Ink::Axis, [LEFT, BOTTOM + LANE_HEIGHT], [RIGHT, BOTTOM + LANE_HEIGHT]);
+        sheet.text([LEFT - 8.0, BOTTOM + LANE_HEIGHT + 4.0], Anchor::End, Tone::Faint, "0");
     }
 }
 
@@ -172,7 +172,7 @@ mod tests {
         assert!(svg.len() < 30_000, "{}", svg.len());
         let series = [Series { name: "position", values: &values }];
         let scale = Scale::from_plot(&ResidualPlot { title: "", series: &series, tolerance: 1e-10, mark: None });
-        let top = crate::number::pixel(scale.y(1e-3));
+        let top = crate::number::format_pixel(scale.y(1e-3));
         assert!(svg.contains(&format!(" {top}L")), "the peak is drawn");
     }
 }

@@ -1,6 +1,6 @@
 //! A sheet of SVG on which a plot is drawn.
 use super::{PlotTarget, STYLE};
-use crate::{number::pixel, svg::escape};
+use crate::{number::format_pixel, svg::escape};
 use std::fmt::Write;
 
 /// The width of all sheets.
@@ -27,7 +27,7 @@ pub enum Ink {
 }
 
 /// The colors of series.
-const SERIES: [&str; 4] = ["#0063a6", "#a34e00", "#00694a", "#84367c"];
+const SERIES_COLORS: [&str; 4] = ["#0063a6", "#a34e00", "#00694a", "#84367c"];
 
 impl Ink {
     /// Returns the class of a line (`s`) or an area (`f`), and the color. Axes and grids are never filled.
@@ -36,7 +36,7 @@ impl Ink {
             Self::Axis => ("ax".to_owned(), "#1b1f24"),
             Self::Grid => ("gr".to_owned(), "#dfe3e8"),
             Self::Bad => (format!("b{kind}"), "#b3261e"),
-            Self::Series(number) => (format!("{kind}{}", number % 4 + 1), SERIES[number % 4]),
+            Self::Series(number) => (format!("{kind}{}", number % 4 + 1), SERIES_COLORS[number % 4]),
         }
     }
 
@@ -83,7 +83,7 @@ impl Sheet {
     /// Creates a sheet with a given height.
     pub fn new(height: f64, title: &str, description: &str, embedding: PlotTarget) -> Self {
         let (title, description) = (escape(title), escape(description));
-        let (width, height) = (pixel(WIDTH), pixel(height));
+        let (width, height) = (format_pixel(WIDTH), format_pixel(height));
         let is_styled = embedding == PlotTarget::Page;
         let (space, font) = match is_styled {
             true => ("", ""),
@@ -129,15 +129,15 @@ impl Sheet {
     }
 
     /// Draws a thin straight line without dashes.
-    pub fn rule(&mut self, ink: Ink, from: [f64; 2], to: [f64; 2]) {
-        self.rules(ink, &[(from, to)]);
+    pub fn draw_rule(&mut self, ink: Ink, from: [f64; 2], to: [f64; 2]) {
+        self.draw_rules(ink, &[(from, to)]);
     }
 
     /// Draws thin straight lines without dashes.
-    pub fn rules(&mut self, ink: Ink, lines: &[([f64; 2], [f64; 2])]) {
+    pub fn draw_rules(&mut self, ink: Ink, lines: &[([f64; 2], [f64; 2])]) {
         let ink = self.stroke_attributes(ink);
         let piece = |&([x1, y1], [x2, y2]): &([f64; 2], [f64; 2])| {
-            let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(pixel);
+            let [x1, y1, x2, y2] = [x1, y1, x2, y2].map(format_pixel);
             format!("M{x1} {y1}L{x2} {y2}")
         };
         let list: String = lines.iter().map(piece).collect();
@@ -149,15 +149,20 @@ impl Sheet {
         if points.len() < 2 {
             return;
         }
-        let list = points.iter().map(|&[x, y]| format!("{} {}", pixel(x), pixel(y))).collect::<Vec<_>>().join("L");
+        let list = points
+            .iter()
+            .map(|&[x, y]| format!("{} {}", format_pixel(x), format_pixel(y)))
+            .collect::<Vec<_>>()
+            .join("L");
         self.draw_path(ink, width, &list);
     }
 
     /// Draws a line of cubic curves: the start, and for each piece two control points and its end.
-    pub fn curve(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
+    pub fn draw_curve(&mut self, ink: Ink, width: f64, points: &[[f64; 2]]) {
         let Some((&[x, y], rest)) = points.split_first().filter(|(_, rest)| !rest.is_empty()) else { return };
-        let list = rest.iter().map(|&[x, y]| format!("{} {}", pixel(x), pixel(y))).collect::<Vec<_>>().join(" ");
-        self.draw_path(ink, width, &format!("{} {}C{list}", pixel(x), pixel(y)));
+        let list =
+            rest.iter().map(|&[x, y]| format!("{} {}", format_pixel(x), format_pixel(y))).collect::<Vec<_>>().join(" ");
+        self.draw_path(ink, width, &format!("{} {}C{list}", format_pixel(x), format_pixel(y)));
     }
 
     fn draw_path(&mut self, ink: Ink, width: f64, list: &str) {
@@ -166,36 +171,40 @@ impl Sheet {
             "<path{}{}{}{} d=\"M{list}\"/>",
             self.stroke_attributes(ink),
             // The lines of the style sheet have this width.
-            if self.is_styled && width == 2.0 { String::new() } else { format!(" stroke-width=\"{}\"", pixel(width)) },
+            if self.is_styled && width == 2.0 {
+                String::new()
+            } else {
+                format!(" stroke-width=\"{}\"", format_pixel(width))
+            },
             self.attribute_unless_styled("stroke-linejoin", "round"),
             ink.dash()
         );
     }
 
     /// Draws a filled rectangle.
-    pub fn bar(&mut self, ink: Ink, [left, top]: [f64; 2], [width, height]: [f64; 2], opacity: f64) {
+    pub fn draw_bar(&mut self, ink: Ink, [left, top]: [f64; 2], [width, height]: [f64; 2], opacity: f64) {
         let ink = self.fill_attributes(ink);
-        let [left, top, width, height] = [left, top, width.max(0.5), height].map(pixel);
+        let [left, top, width, height] = [left, top, width.max(0.5), height].map(format_pixel);
         let _ = writeln!(
             self.svg,
             "<rect{ink} fill-opacity=\"{}\" x=\"{left}\" y=\"{top}\" width=\"{width}\" \
              height=\"{height}\"/>",
-            pixel(opacity)
+            format_pixel(opacity)
         );
     }
 
     /// Draws a marker. The series have different shapes: disc, square, triangle, diamond. A wrong value has a cross.
-    pub fn marker(&mut self, ink: Ink, [x, y]: [f64; 2]) {
+    pub fn draw_marker(&mut self, ink: Ink, [x, y]: [f64; 2]) {
         let path = match ink {
             Ink::Series(number) => match number % 4 {
-                0 => format!("M{} {}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0z", pixel(x - 3.0), pixel(y)),
-                1 => format!("M{} {}h5.4v5.4h-5.4z", pixel(x - 2.7), pixel(y - 2.7)),
-                2 => format!("M{} {}l3.6 6.2h-7.2z", pixel(x), pixel(y - 4.0)),
-                _ => format!("M{} {}l4 4l-4 4l-4 -4z", pixel(x), pixel(y - 4.0)),
+                0 => format!("M{} {}a3 3 0 1 0 6 0a3 3 0 1 0 -6 0z", format_pixel(x - 3.0), format_pixel(y)),
+                1 => format!("M{} {}h5.4v5.4h-5.4z", format_pixel(x - 2.7), format_pixel(y - 2.7)),
+                2 => format!("M{} {}l3.6 6.2h-7.2z", format_pixel(x), format_pixel(y - 4.0)),
+                _ => format!("M{} {}l4 4l-4 4l-4 -4z", format_pixel(x), format_pixel(y - 4.0)),
             },
             Ink::Axis | Ink::Grid | Ink::Bad => {
                 let ink = self.stroke_attributes(ink);
-                let (x, y) = (pixel(x - 3.5), pixel(y - 3.5));
+                let (x, y) = (format_pixel(x - 3.5), format_pixel(y - 3.5));
                 let _ = writeln!(self.svg, "<path{ink} stroke-width=\"2\" d=\"M{x} {y}l7 7m0 -7l-7 7\"/>");
                 return;
             }
@@ -218,7 +227,7 @@ impl Sheet {
             Tone::Faint => (" class=\"ft\"", "#5f6871"),
             Tone::Bad => (" class=\"bt\"", "#b3261e"),
         };
-        let (x, y) = (pixel(x), pixel(y));
+        let (x, y) = (format_pixel(x), format_pixel(y));
         let _ = writeln!(
             self.svg,
             "<text{class} x=\"{x}\" y=\"{y}\"{anchor}{}>{}</text>",
@@ -236,19 +245,19 @@ impl Sheet {
     }
 
     /// Draws the line of series `number` of `most`, with its markers between those of the others.
-    pub fn series(&mut self, ink: Ink, points: &[[f64; 2]], number: usize, most: usize) {
+    pub fn draw_series(&mut self, ink: Ink, points: &[[f64; 2]], number: usize, most: usize) {
         self.line(ink, 1.5, points);
         let every = (points.len() / 12).max(1);
-        points.iter().skip(every * number / most).step_by(every).for_each(|&point| self.marker(ink, point));
+        points.iter().skip(every * number / most).step_by(every).for_each(|&point| self.draw_marker(ink, point));
     }
 
     /// Draws a legend in a row, with the line, marker and name of each series.
-    pub fn legend(&mut self, [left, base]: [f64; 2], names: &[(Ink, &str)]) {
+    pub fn draw_legend(&mut self, [left, base]: [f64; 2], names: &[(Ink, &str)]) {
         let mut x = left;
         for &(ink, name) in names {
             self.line(ink, 2.0, &[[x, base - 4.0], [x + 26.0, base - 4.0]]);
             if !matches!(ink, Ink::Bad) {
-                self.marker(ink, [x + 13.0, base - 4.0]);
+                self.draw_marker(ink, [x + 13.0, base - 4.0]);
             }
             self.text([x + 32.0, base], Anchor::Start, Tone::Plain, name);
             #[expect(clippy::cast_precision_loss, reason = "names are short")]

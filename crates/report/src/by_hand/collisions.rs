@@ -1,9 +1,9 @@
 //! Shows the passes of a step as a calculation by hand, with the impulses and the rigid motions that follow
 //! (collisions.md 3 to 6).
-use super::{states, table, vector};
+use super::{format_vector, render_states, render_table};
 use crate::{
     detect::{self, Detect, Overlap},
-    number::short,
+    number::format_short,
     style::Style,
     words::explanation::explain_letters,
 };
@@ -13,7 +13,7 @@ use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Decision, Detection, Impulse, Observer, Pair, PairKind, PairMotion, Pass, Stage, State, Zone},
 };
-use fosssim_num::vector::{Vec2, at, unit};
+use fosssim_num::vector::{Vec2, unit, vector_at};
 use fosssim_student::assignments::t2m2::{
     Inputs,
     formulas::{Formula, readings},
@@ -44,7 +44,7 @@ impl<'a> CollisionWalk<'a> {
     }
 
     fn shift(&self, particle: usize) -> Vec2 {
-        at(&self.seen.positions, particle) - at(&self.start, particle)
+        vector_at(&self.seen.positions, particle) - vector_at(&self.start, particle)
     }
 
     /// Renders the detection of a pair.
@@ -53,13 +53,13 @@ impl<'a> CollisionWalk<'a> {
         if pass.stage == Stage::Simple {
             let study = &OverlapStudy::for_pair(self.scene, 1, &State::for_scene(self.scene), pair).ok()??;
             let report = Overlap { study, scene: "small.xml", trace: None, step: 1, pair, logged: None };
-            return Some(format!("{}:\n{}\n", PairWords(pair), report.body(short, Style::Plain)));
+            return Some(format!("{}:\n{}\n", PairWords(pair), report.body(format_short, Style::Plain)));
         }
         let motion = &PairMotion::between(self.scene, pair, q_start, q_end);
         let computation =
-            Detect { study: &Study::for_motion(motion).ok()?, place: None }.computation(short, Style::Plain);
-        let moving = detect::motion(motion, short, Style::Plain);
-        Some(format!("{}:\n{moving}\n{}{computation}\n", PairWords(pair), letters(motion)))
+            Detect { study: &Study::for_motion(motion).ok()?, place: None }.computation(format_short, Style::Plain);
+        let moving = detect::render_motion(motion, format_short, Style::Plain);
+        Some(format!("{}:\n{moving}\n{}{computation}\n", PairWords(pair), render_letters(motion)))
     }
 }
 
@@ -72,7 +72,7 @@ impl Observer for CollisionWalk<'_> {
         self.seen.positions = q_end.to_vec();
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let Detection { pass, pair, decision, .. } = *detection;
         if self.pair.is_some_and(|(asked, when)| asked == pair && when.is_none_or(|when| when == pass)) {
             self.text.extend(self.detection_text(detection));
@@ -80,8 +80,9 @@ impl Observer for CollisionWalk<'_> {
         }
         if let Decision::Hit { time, normal } = decision {
             self.seen = State { positions: detection.q_end.to_vec(), velocities: detection.velocities.to_vec() };
-            let when = if pass.stage == Stage::Simple { String::new() } else { format!(" at t = {}", short(time)) };
-            self.text += &format!("  {} collide{when} with n = {}\n", PairWords(pair), vector(normal));
+            let when =
+                if pass.stage == Stage::Simple { String::new() } else { format!(" at t = {}", format_short(time)) };
+            self.text += &format!("  {} collide{when} with n = {}\n", PairWords(pair), format_vector(normal));
         }
     }
 
@@ -92,29 +93,29 @@ impl Observer for CollisionWalk<'_> {
         }
     }
 
-    fn impulse(&mut self, impulse: &Impulse) {
+    fn observe_impulse(&mut self, impulse: &Impulse) {
         let (scene, Impulse { pair, normal, time }) = (self.scene, *impulse);
         let (first, second) = (pair.first as usize, pair.second as usize);
         let is_simple = matches!(scene.collision, Collision::Simple { .. });
         let u = unit(normal);
-        let mut text = format!("Response to {}: u = n / |n| = {}\n", PairWords(pair), vector(u));
+        let mut text = format!("Response to {}: u = n / |n| = {}\n", PairWords(pair), format_vector(u));
         let weights = match pair.kind {
             PairKind::ParticleParticle => vec![(first, 1.0), (second, -1.0)],
             PairKind::ParticleHalfPlane => vec![(first, 1.0)],
             PairKind::ParticleEdge => {
                 let edge = &scene.edges[second];
                 let place = |particle: usize| match is_simple {
-                    true => at(&self.seen.positions, particle),
-                    false => at(&self.start, particle) + time * self.shift(particle),
+                    true => vector_at(&self.seen.positions, particle),
+                    false => vector_at(&self.start, particle) + time * self.shift(particle),
                 };
                 let [y1, y2, y3] = [first, edge.first, edge.second].map(place);
                 let alpha = ((y1 - y2).dot(&(y3 - y2)) / (y3 - y2).dot(&(y3 - y2))).clamp(0.0, 1.0);
-                text += &format!("  alpha = {}: the nearest point of the edge at that time\n", short(alpha));
+                text += &format!("  alpha = {}: the nearest point of the edge at that time\n", format_short(alpha));
                 vec![(first, 1.0), (edge.first, alpha - 1.0), (edge.second, -alpha)]
             }
         };
         let speed = |particle: usize| match is_simple {
-            true => at(&self.seen.velocities, particle),
+            true => vector_at(&self.seen.velocities, particle),
             false => (1.0 / scene.time_step) * self.shift(particle),
         };
         let rate = |particle: usize| match &scene.particles[particle] {
@@ -126,38 +127,44 @@ impl Observer for CollisionWalk<'_> {
         let closing: f64 = weights.iter().map(|&(particle, w)| w * speed(particle).dot(&u)).sum();
         let factor = 1.0 + scene.collision.restitution();
         let size = if rates == 0.0 { 0.0 } else { -factor * closing / rates };
-        let [factor, closing, rates, result] = [factor, closing, rates, size].map(short);
+        let [factor, closing, rates, result] = [factor, closing, rates, size].map(format_short);
         let (velocity, moves) = if is_simple { ("v", "") } else { ("D = dx / h", ", x += h times that") };
         text += &format!("  J = -(1 + COR) (sum of w {velocity:.1}.u) / (sum of w^2/m) = ");
         text += &format!("-{factor} * {closing} / {rates} = {result}\n");
         let rows = weights.iter().map(|&(particle, w)| {
             let change = w * size * rate(particle) * u;
-            [particle.to_string(), vector(speed(particle)), short(w), short(rate(particle)), vector(change)]
+            [
+                particle.to_string(),
+                format_vector(speed(particle)),
+                format_short(w),
+                format_short(rate(particle)),
+                format_vector(change),
+            ]
         });
-        text += &table(["particle", velocity, "w", "1/m", &format!("v += w J/m u{moves}")], rows);
+        text += &render_table(["particle", velocity, "w", "1/m", &format!("v += w J/m u{moves}")], rows);
         self.text += &text;
     }
 
-    fn zones(&mut self, _: u32, zones: &[Zone<'_>]) {
+    fn observe_zones(&mut self, _: u32, zones: &[Zone<'_>]) {
         let names: Vec<String> = zones.iter().map(zone_name).collect();
         self.text +=
             &format!("  impact zones: {}\n", if names.is_empty() { "none".to_owned() } else { names.join(", ") });
     }
 
-    fn failsafe(&mut self, _: u32, zone: &Zone<'_>) {
+    fn observe_failsafe(&mut self, _: u32, zone: &Zone<'_>) {
         self.text += &format!("Rigid failsafe of zone {}\n", zone_name(zone));
         self.text += &rigid_motion(self.scene, zone, &self.start, |particle| self.shift(particle));
     }
 
     fn end_step(&mut self, _: u32, state: &State) {
         if !self.text.is_empty() {
-            self.text += &format!("End of the step\n{}", states(state));
+            self.text += &format!("End of the step\n{}", render_states(state));
         }
     }
 }
 
 /// Renders the formulas of a pair's polynomials, with the values of their letters. The course supplies the longest one.
-fn letters(motion: &PairMotion) -> String {
+fn render_letters(motion: &PairMotion) -> String {
     let (inputs, mut lines) = (Inputs::new(motion), Vec::new());
     for subject in Subject::all_of_kind(motion.kind()) {
         let Formula { letters, terms, degree } = &readings(*subject)[0];
@@ -176,7 +183,7 @@ fn letters(motion: &PairMotion) -> String {
         lines.extend((0..=*degree).rev().filter(|_| *subject != Subject::EdgeApproach).map(sum));
         let values = letters.iter().map(|letter| {
             let meaning = if letter.meaning.is_empty() { String::new() } else { format!(" = {}", letter.meaning) };
-            format!("{}{meaning} = {}", letter.name, short((letter.value)(&inputs).value))
+            format!("{}{meaning} = {}", letter.name, format_short((letter.value)(&inputs).value))
         });
         let values: Vec<String> = values.collect();
         let values = values.chunks(5).map(|some| format!("    with {}", some.join(", "))).collect::<Vec<_>>();
@@ -201,22 +208,23 @@ fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(us
     }
     let mass = |particle: usize| scene.particles[particle].mass;
     let rate = 1.0 / members().map(mass).sum::<f64>();
-    let center = rate * members().map(|particle| mass(particle) * at(start, particle)).sum::<Vec2>();
+    let center = rate * members().map(|particle| mass(particle) * vector_at(start, particle)).sum::<Vec2>();
     let motion = rate * members().map(|particle| mass(particle) * shift(particle)).sum::<Vec2>();
     let sum = |of: &dyn Fn(usize) -> f64| members().map(|particle| mass(particle) * of(particle)).sum::<f64>();
-    let s = |particle: usize| at(start, particle) - center;
+    let s = |particle: usize| vector_at(start, particle) - center;
     let momentum = sum(&|particle| s(particle).perp(&(shift(particle) - motion)));
     let inertia = sum(&|particle| s(particle).dot(&s(particle)));
-    let rows =
-        members().map(|index| [index.to_string(), short(mass(index)), vector(s(index)), vector(shift(index) - motion)]);
+    let rows = members().map(|index| {
+        [index.to_string(), format_short(mass(index)), format_vector(s(index)), format_vector(shift(index) - motion)]
+    });
     format!(
         "  x_cm = {}, dx_cm = {}\n{}  L = sum of m s x (dx - dx_cm) = {}, I = sum of m |s|^2 = {}, \
          omega = L / I = {}\n  x = x_cm + dx_cm + cos(omega) s + sin(omega) (-s_y, s_x), v = (x - xs) / h\n",
-        vector(center),
-        vector(motion),
-        table(["particle", "m", "s = xs - x_cm", "dx - dx_cm"], rows),
-        short(momentum),
-        short(inertia),
-        short(momentum / inertia)
+        format_vector(center),
+        format_vector(motion),
+        render_table(["particle", "m", "s = xs - x_cm", "dx - dx_cm"], rows),
+        format_short(momentum),
+        format_short(inertia),
+        format_short(momentum / inertia)
     )
 }

@@ -110,6 +110,6 @@ fn a_penalty_force_has_its_depth() {
 
 #[test]
 fn numbers_are_short() {
-    let numbers = [1.0 / 3.0, -0.1 - 0.2, 1e-17, 2.0_f64.sqrt(), 0.0625].map(short);
+    let numbers = [1.0 / 3.0, -0.1 - 0.2, 1e-17, 2.0_f64.sqrt(), 0.0625].map(format_short);
     assert_eq!(numbers, ["1/3", "-0.3", "0", "1.41421", "0.0625"]);
 }

@@ -7,7 +7,7 @@ use fosssim_model::assignments::CollisionType;
 
 /// Returns the advice; empty if the explanations are sufficient, because they name a known mistake or a polynomial.
 pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
-    let Some(first) = first::first(check) else { return Vec::new() };
+    let Some(first) = first::find_first(check) else { return Vec::new() };
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
         Some(known) if known.is_of_stage() => explanation::where_to_look(known).into_iter().collect(),
         Some(_) => Vec::new(),

@@ -4,7 +4,7 @@ use crate::{
     number::format_count,
     style::{Look, Style},
 };
-use fosssim_judge::{Overall, fair::cause};
+use fosssim_judge::{Overall, fair::find_cause};
 
 /// The verdict of one rule book: its name, its word with a style, and its reason.
 pub(crate) type BookWords = (&'static str, Look, &'static str, String);
@@ -25,7 +25,7 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     found.extend((follow > 0).then(|| format!("among them {}", follows::describe(follow))));
     let parity = ("the original's rules", look, word, found.join(", "));
     let (look, word) = fair::verdict(judgement);
-    Some([parity, ("the fair rules", look, word, fair::summary(judgement, outcome))])
+    Some([parity, ("the fair rules", look, word, fair::summarize(judgement, outcome))])
 }
 
 /// Renders the section about the rule books; `None` if the headline contains the verdicts.
@@ -35,7 +35,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
         let grounds = if grounds.is_empty() { grounds } else { format!(": {grounds}") };
         text += &format!("  {name}: {}{grounds}\n", style.paint(look, word));
     }
-    if let Some(cause) = cause(check.outcome) {
+    if let Some(cause) = find_cause(check.outcome) {
         text += &format!("  {} {cause}\n", style.paint(Look::Notice, "They differ:"));
     }
     Some(text)

@@ -4,8 +4,8 @@ use crate::{describe::pair_key, foreign::quote};
 
 /// Returns the commands, ready to be typed; empty if the trace is right, or came from standard input and can't be read
 /// again.
-pub(super) fn commands(check: &Check<'_>) -> Vec<String> {
-    let Some(first) = first::first(check).filter(|_| check.trace != "-") else { return Vec::new() };
+pub(super) fn list_commands(check: &Check<'_>) -> Vec<String> {
+    let Some(first) = first::find_first(check).filter(|_| check.trace != "-") else { return Vec::new() };
     let (scene, trace, step) = (quote(check.scene), quote(check.trace), first.step);
     let mut commands = Vec::new();
     if let (Some(pair), 1..) = (first.detail.pair().map(pair_key), step) {

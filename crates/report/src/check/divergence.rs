@@ -1,10 +1,10 @@
 //! Shows the first difference, with expected and actual values side by side.
 use super::super::{
-    number::{exact, format_g},
+    number::{format_exact, format_g},
     style::{Look, Style},
     table::{Align, Cell, Table},
 };
-use fosssim_judge::{Finding, FindingDetail, Power, RescaledCoefficient, differing, factor};
+use fosssim_judge::{Finding, FindingDetail, Power, RescaledCoefficient, differing_powers, find_factor};
 use fosssim_model::trace::LoggedImpulse;
 
 /// Renders the block about one finding, with a heading and without advice.
@@ -47,7 +47,7 @@ impl Value {
         match self {
             Self::Nothing => "none".to_owned(),
             Self::Count(count) => count.to_string(),
-            Self::Number(number) => exact(number),
+            Self::Number(number) => format_exact(number),
         }
     }
 }
@@ -124,10 +124,10 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
             let (reference, trace) = (expected_polynomial.coefficients(), actual_polynomial.coefficients());
             let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
             // This is the factor that was used for the finding.
-            let factor = if own == 0.0 { factor(reference, trace) } else { expected / own };
+            let factor = if own == 0.0 { find_factor(reference, trace) } else { expected / own };
             let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
             sides.original = rescaled.as_ref().map(|RescaledCoefficient { power, expected, actual, .. }| {
-                let (power, actual, expected) = (Power(*power), exact(*actual), exact(*expected));
+                let (power, actual, expected) = (Power(*power), format_exact(*actual), format_exact(*expected));
                 format!("(after the original's rescaling: {power} {actual}, expected {expected})")
             });
             sides
@@ -159,7 +159,7 @@ fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
 
 /// Returns two polynomials by power. Coefficients that differ after division by the common factor are marked.
 fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual: &[f64]) -> SideBySide {
-    polynomials_with(place, expected, actual, factor(expected, actual), None)
+    polynomials_with(place, expected, actual, find_factor(expected, actual), None)
 }
 
 /// Compares two polynomials by power, where `factor` scales the expected values; `power` is known to differ.
@@ -174,7 +174,7 @@ fn polynomials_with(
     let powers = expected.len().max(actual.len());
     let is_one = (factor - 1.0).abs() <= 1e-12 || !factor.is_finite();
     let factor = if is_one { 1.0 } else { factor };
-    let differing = differing(expected, actual, factor);
+    let differing = differing_powers(expected, actual, factor);
     let row = |power: usize| {
         let (expected, actual) = (of(expected, power).map(|value| factor * value), of(actual, power));
         let value = |value: Option<f64>| value.map_or(Value::Nothing, Value::Number);

@@ -8,7 +8,7 @@ use super::super::{
 use fosssim_findings::{BookFindings, Cause};
 use fosssim_judge::{
     Outcome, PairWords, PassWords,
-    fair::{FairRefusal, FairVerdict, Form, Judgement, cause},
+    fair::{FairRefusal, FairVerdict, Form, Judgement, find_cause},
 };
 
 /// Renders the section about the fair rules; `None` if they did not judge.
@@ -17,7 +17,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     let mut text = style.paint(Look::Strong, "Fair rules") + "\n";
     let (look, word) = verdict(fair);
     let mut line = |words: String| text += &format!("  {words}\n");
-    line(format!("{}: {}", style.paint(look, word), summary(fair, outcome)));
+    line(format!("{}: {}", style.paint(look, word), summarize(fair, outcome)));
     if let Some([low, high]) = fair.factor {
         let range = if high / low - 1.0 < 1e-9 {
             format_g(low)
@@ -53,7 +53,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     if !fair.findings.examples.is_empty() {
         text += &describe_kinds(&fair.findings, style);
     }
-    if let Some(cause) = cause(outcome) {
+    if let Some(cause) = find_cause(outcome) {
         let (heading, sides) = (style.paint(Look::Notice, "The rule books differ:"), describe_sides(cause));
         text += &format!("  {heading} {sides}:\n  {cause}\n");
     }
@@ -81,7 +81,7 @@ pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
 }
 
 /// Returns the reason for the fair verdict, in one line.
-pub(super) fn summary(fair: &Judgement, outcome: &Outcome) -> String {
+pub(super) fn summarize(fair: &Judgement, outcome: &Outcome) -> String {
     let refusal = match fair.refusal {
         Some(FairRefusal::Stopped) => Some("the trace can't be read to its end"),
         Some(FairRefusal::Damaged) => Some("the trace is damaged"),

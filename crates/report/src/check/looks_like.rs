@@ -7,7 +7,7 @@ pub const SNIFFED_BYTES: u64 = 512;
 /// a position.
 #[must_use]
 pub fn looks_like(start: &[u8]) -> Option<&'static str> {
-    const MARKS: [(&[u8], &str); 8] = [
+    const FILE_SIGNATURES: [(&[u8], &str); 8] = [
         (b"\x7fELF", "looks like a program (ELF)"),
         (b"PK\x03\x04", "looks like a zip archive"),
         (b"\x1f\x8b", "looks like a gzip file; unpack it first"),
@@ -20,7 +20,7 @@ pub fn looks_like(start: &[u8]) -> Option<&'static str> {
     if start.is_empty() {
         return Some("is empty");
     }
-    if let Some((_, what)) = MARKS.iter().find(|(mark, _)| start.starts_with(mark)) {
+    if let Some((_, what)) = FILE_SIGNATURES.iter().find(|(mark, _)| start.starts_with(mark)) {
         return Some(what);
     }
     let is_text = |byte: &u8| matches!(byte, b'\t' | b'\n' | b'\r' | 0x1b | 0x20..=0x7e);

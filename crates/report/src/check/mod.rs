@@ -18,20 +18,20 @@ mod text;
 
 pub use asked::{describe_no_verdict, describe_unread, is_wrong};
 pub use looks_like::{SNIFFED_BYTES, looks_like};
-pub use steps::{LISTED, StepChoice, WrongSteps};
+pub use steps::{MAX_LISTED, StepChoice, WrongSteps};
 pub use text::describe_stop;
-pub(crate) use text::{describe_problem, headline, notes};
+pub(crate) use text::{describe_problem, list_notes, render_headline};
 
 use super::{
-    annotation::annotation,
+    annotation::render_annotation,
     explain::{self, ExplanationView},
     style::Style,
-    view::{CHECK_SCHEMA, FindingView, document, view},
+    view::{CHECK_SCHEMA, FindingView, to_document, view},
 };
 pub(crate) use fair_view::CauseView;
 use fair_view::{CountedView, FairView};
 use fosssim_findings::{Book, BookFindings, Damage, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
-use fosssim_judge::{Unreadable, WithoutResult, fair::cause};
+use fosssim_judge::{Unreadable, WithoutResult, fair::find_cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::SearchCounts;
 use serde::Serialize;
@@ -82,7 +82,7 @@ impl Check<'_> {
     /// Returns the text about which book accepts the trace, if the rule books disagree.
     #[must_use]
     pub fn difference(&self) -> Option<&'static str> {
-        cause(self.outcome).map(fair::describe_sides)
+        find_cause(self.outcome).map(fair::describe_sides)
     }
 
     /// Returns the official book.
@@ -115,13 +115,14 @@ impl Check<'_> {
         let title = format!("{}: {}", self.trace, self.verdict());
         if !self.is_accepted() {
             let place = self.outcome.stop_of(self.book()).map(|stop| describe_stop(&stop, self.outcome));
-            let first = first::first(self).map(|first| first.to_string());
-            let likely = explain::sentence(self.explanations).filter(|_| !first::is_other_scene(self));
-            let words: Vec<String> = [Some(text::headline(self)), place, first, likely].into_iter().flatten().collect();
-            text += &annotation("error", &title, &words.join("; "));
+            let first = first::find_first(self).map(|first| first.to_string());
+            let likely = explain::render_sentence(self.explanations).filter(|_| !first::is_other_scene(self));
+            let words: Vec<String> =
+                [Some(text::render_headline(self)), place, first, likely].into_iter().flatten().collect();
+            text += &render_annotation("error", &title, &words.join("; "));
         }
-        if let Some(cause) = cause(self.outcome) {
-            text += &annotation("warning", &title, &format!("the rule books differ: {cause}"));
+        if let Some(cause) = find_cause(self.outcome) {
+            text += &render_annotation("warning", &title, &format!("the rule books differ: {cause}"));
         }
         text
     }
@@ -129,7 +130,7 @@ impl Check<'_> {
     /// Renders the report for programs: one JSON object, indented, with a line feed at its end.
     #[must_use]
     pub fn json(&self) -> String {
-        document(&CheckView::from(self))
+        to_document(&CheckView::from(self))
     }
 }
 
@@ -177,13 +178,13 @@ view! {
         #[schemars(extend("enum" = Ruling::ALL.map(Ruling::name)))]
         verdict: &'static str = check.verdict(),
         /// The reason for the verdict, in one line.
-        summary: String = text::headline(check),
+        summary: String = text::render_headline(check),
         /// The original's judgement.
         parity: Parity = Parity::from(check.outcome),
         /// The fair rules' judgement; null if they did not judge.
         fair: Option<FairView<'a>> = check.outcome.fair.as_deref().map(FairView::from),
         /// The rule by which the two rule books differ; null if they agree.
-        difference: Option<CauseView> = cause(check.outcome).as_ref().map(CauseView::from),
+        difference: Option<CauseView> = find_cause(check.outcome).as_ref().map(CauseView::from),
         /// The official book's first finding; null if there is none.
         first_divergence: Option<FindingView> =
             check.account().first_divergence.as_ref().map(|first| FindingView::from_finding(check.book(), first)),
@@ -193,9 +194,9 @@ view! {
         /// Advice for the kind of the first finding.
         advice: Vec<&'static str> = advice::lines(check),
         /// Commands that show more of the first finding.
-        commands: Vec<String> = closer::commands(check),
+        commands: Vec<String> = closer::list_commands(check),
         /// Other facts, such as damage or bytes after the end.
-        notes: Vec<String> = text::notes(check),
+        notes: Vec<String> = text::list_notes(check),
         /// Likely mistakes, the likeliest first; empty if nothing is wrong, or with --no-explain.
         explanations: Vec<ExplanationView> = check.explanations.iter().map(ExplanationView::from).collect(),
         /// The number of steps of the scene.
@@ -205,11 +206,11 @@ view! {
         /// The number of steps with at least one finding of the official book.
         wrong_steps: u64 = check.account().wrong_steps,
         /// The numbers of the wrong steps, from 1; only the first 1000.
-        #[schemars(length(max = LISTED), inner(range(min = 1)))]
-        wrong_step_numbers: Vec<u32> = steps::numbers(check),
+        #[schemars(length(max = MAX_LISTED), inner(range(min = 1)))]
+        wrong_step_numbers: Vec<u32> = steps::step_numbers(check),
         /// The wrong steps (the first 1000) with --all, or the requested steps with --step; null without both options.
         /// The findings are the official book's, or the fair rules' if the official book found none.
-        shown_steps: Option<Vec<WrongStepView>> = steps::views(check),
+        shown_steps: Option<Vec<WrongStepView>> = steps::step_views(check),
         /// The reason why judging stopped before the scene's last step; null if it did not.
         problem: Option<StopView> = check.outcome.stop_of(check.book()).as_ref().map(StopView::from),
         /// The first damage that the original's reader skips silently.

@@ -12,7 +12,7 @@ use fosssim_judge::{
 use serde::Serialize;
 
 /// The maximum number of wrong steps whose numbers or findings are kept.
-pub const LISTED: usize = 1000;
+pub const MAX_LISTED: usize = 1000;
 
 /// The selection of steps that a report shows individually.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
@@ -20,7 +20,7 @@ pub enum StepChoice {
     /// No step; only the numbers of the wrong steps are kept.
     #[default]
     None,
-    /// All wrong steps, up to [`LISTED`].
+    /// All wrong steps, up to [`MAX_LISTED`].
     All,
     /// The given steps, wrong or right; 0 is the first record.
     These(Vec<u32>),
@@ -36,7 +36,7 @@ struct Step {
     more: FindingCounts,
 }
 
-/// The wrong steps by one book, up to [`LISTED`], in order.
+/// The wrong steps by one book, up to [`MAX_LISTED`], in order.
 #[derive(Debug, Clone, Default)]
 struct Steps {
     numbers: Vec<u32>,
@@ -86,7 +86,8 @@ impl Steps {
             return;
         }
         // Record 0 is the initial state, not a step.
-        if let (Err(place), true, true) = (self.numbers.binary_search(&step), step > 0, self.numbers.len() < LISTED) {
+        if let (Err(place), true, true) = (self.numbers.binary_search(&step), step > 0, self.numbers.len() < MAX_LISTED)
+        {
             self.numbers.insert(place, step);
         }
         let wanted = match shown {
@@ -99,7 +100,7 @@ impl Steps {
         }
         let place = match self.kept.binary_search_by_key(&step, |kept| kept.number) {
             Ok(place) => place,
-            Err(_) if self.kept.len() >= LISTED => return,
+            Err(_) if self.kept.len() >= MAX_LISTED => return,
             Err(place) => {
                 self.kept.insert(place, Step { number: step, firsts: Vec::new(), more: FindingCounts::default() });
                 place
@@ -125,8 +126,8 @@ fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     official
 }
 
-/// Returns the numbers of the official book's wrong steps, up to [`LISTED`].
-pub(super) fn numbers(check: &Check<'_>) -> Vec<u32> {
+/// Returns the numbers of the official book's wrong steps, up to [`MAX_LISTED`].
+pub(super) fn step_numbers(check: &Check<'_>) -> Vec<u32> {
     check.steps.findings_of(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 
@@ -212,7 +213,7 @@ pub(super) struct WrongStepView {
 }
 
 /// Returns the requested steps; `None` if no step was requested.
-pub(super) fn views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
+pub(super) fn step_views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
     let (book, steps) = steps_of(check);
     let counted = |step: &Step| CountedView::count(book, &step.firsts, |kind| 1 + step.more.get(kind));
     let view =

@@ -9,7 +9,7 @@ use super::{
         words,
     },
     Check, advice, books, closer, divergence, fair,
-    first::{first, is_other_scene},
+    first::{find_first, is_other_scene},
     follows, steps,
 };
 use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, WithoutResult};
@@ -47,7 +47,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     let is_told = !is_other_scene(check);
     parts.extend(render_mistakes(check, style).filter(|_| is_told));
     // If all steps are shown, the first finding is among them.
-    let first = first(check).filter(|_| !steps::are_all_requested(check));
+    let first = find_first(check).filter(|_| !steps::are_all_requested(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
     parts.extend(render_section("Where to look", "  - ", &advice::lines(check), style));
     parts.extend(steps::render(check, style).filter(|_| is_told));
@@ -63,9 +63,9 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     } else {
         parts.extend(books::render(check, style));
     }
-    parts.extend(render_section("Notes", "  - ", &notes(check), style));
+    parts.extend(render_section("Notes", "  - ", &list_notes(check), style));
     let more = "  --tables shows all kinds of findings, and how much of each tolerance is used\n";
-    let commands = render_section("Next", "  $ ", &closer::commands(check), style);
+    let commands = render_section("Next", "  $ ", &closer::list_commands(check), style);
     parts.extend(commands.map(|commands| commands + if has_tables { "" } else { more }));
     parts.join("\n")
 }
@@ -82,7 +82,7 @@ fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
     let most = if check.tables { usize::MAX } else { MAX_EXPLANATIONS };
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
     // The example is left out, because the first difference, which is also an example, follows.
-    let has_example = check.tables || first(check).is_none();
+    let has_example = check.tables || find_first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
     let mut lines = explain::lines(&shown, style);
@@ -96,19 +96,19 @@ fn render_head(check: &Check<'_>, style: Style) -> String {
     let look = if check.is_accepted() { Look::Good } else { Look::Bad };
     let verdict = style.paint(look, &check.verdict().to_uppercase());
     if check.is_not_a_trace() {
-        return format!("{verdict}: {} {}\n", check.trace, headline(check));
+        return format!("{verdict}: {} {}\n", check.trace, render_headline(check));
     }
-    format!("{verdict}: {}\n  scene {}\n  trace {}\n", headline(check), check.scene, check.trace)
+    format!("{verdict}: {}\n  scene {}\n  trace {}\n", render_headline(check), check.scene, check.trace)
 }
 
 /// Returns the reason for the verdict, in one line.
-pub(crate) fn headline(check: &Check<'_>) -> String {
+pub(crate) fn render_headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
     if let (Some(kind), true) = (check.looks_like, check.is_not_a_trace()) {
         return format!("is not a trace: it {kind}; a program writes one with -s scene.xml -d 0 -o trace.bin");
     }
     if let Some(question) = check.explanations.iter().find(|one| one.is_other_scene()) {
-        return words::explanation::what(question);
+        return words::explanation::describe(question);
     }
     let steps = count(u64::from(outcome.steps));
     let parity = match outcome.parity.overall {
@@ -136,9 +136,9 @@ pub(crate) fn headline(check: &Check<'_>) -> String {
     match (check.book(), &outcome.fair, outcome.ruling(Book::Fair)) {
         (Book::Parity, ..) | (_, None, _) => parity,
         (Book::Fair, Some(fair), Ruling::Accepted) if outcome.steps > 0 => {
-            format!("{} by the fair rules", fair::summary(fair, outcome))
+            format!("{} by the fair rules", fair::summarize(fair, outcome))
         }
-        (Book::Fair, Some(fair), _) => fair::summary(fair, outcome),
+        (Book::Fair, Some(fair), _) => fair::summarize(fair, outcome),
     }
 }
 
@@ -270,7 +270,7 @@ fn render_findings(account: &BookFindings, follow: u64, style: Style) -> String 
 }
 
 /// Returns further notes about the trace.
-pub(crate) fn notes(check: &Check<'_>) -> Vec<String> {
+pub(crate) fn list_notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();
     if let Some(damage) = &outcome.damage {

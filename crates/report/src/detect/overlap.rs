@@ -1,9 +1,9 @@
 //! The report on a decision of `simple` handling: overlap, approach, and result.
-use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, ShownNumber, motion, title};
+use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, ShownNumber, render_motion, title};
 use crate::{
-    number::exact,
+    number::format_exact,
     style::{Look, Style},
-    view::{Number, document},
+    view::{Number, to_document},
 };
 use fosssim_judge::overlap::OverlapStudy;
 use fosssim_model::sim::Pair;
@@ -33,7 +33,7 @@ impl Overlap<'_> {
     pub fn text(&self, style: Style) -> String {
         style.paint(Look::Strong, &title(self.pair, self.step, self.trace, self.scene))
             + "\n"
-            + &self.body(exact, style)
+            + &self.body(format_exact, style)
     }
 
     /// Renders the report without its title; `number` formats numbers.
@@ -43,7 +43,7 @@ impl Overlap<'_> {
         let vector = |v: Vec2| format!("({}, {})", number(v.x), number(v.y));
         let mut text =
             "  simple collisions: the positions at the end of the step count, and the velocities there\n".to_owned();
-        text += &motion(&study.motion, number, style);
+        text += &render_motion(&study.motion, number, style);
         text += &heading("At the end of the step");
         if let Some(alpha) = study.alpha {
             let along = "the nearest point of the edge, from 0 at its first end to 1 at its second";
@@ -88,7 +88,7 @@ impl Overlap<'_> {
         let &Self { study, scene, trace, step, pair, .. } = self;
         let time = Number(if study.collides { 0.0 } else { f64::INFINITY });
         let normal = study.collides.then(|| study.normal.write());
-        document(&DetectView {
+        to_document(&DetectView {
             schema: DETECT_SCHEMA,
             place: Some(PlaceView { scene, trace, step, pair, pass: None, passes: 1, logged: None }),
             kind: study.motion.kind(),

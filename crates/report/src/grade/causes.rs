@@ -66,15 +66,15 @@ fn describe_cause(scene: &SceneGrade) -> Vec<String> {
     }
     if !matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace) {
         // If nothing is logged, the place of the first difference does not matter.
-        let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
+        let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::list_details(scene) };
         return std::iter::once(words::describe_ending(scene)).chain(details).collect();
     }
     if !scene.settled.is_empty() {
-        return scene.settled.iter().map(words::explanation::what).collect();
+        return scene.settled.iter().map(words::explanation::describe).collect();
     }
     let first = scene.disclosure.as_ref().and_then(|all| all.official().first_divergence.as_ref());
     let kind = first.map(|first| format!("{:?}", first.kind()));
-    vec![kind.unwrap_or_else(|| words::summary(scene).replace(|letter: char| letter.is_ascii_digit(), ""))]
+    vec![kind.unwrap_or_else(|| words::summarize(scene).replace(|letter: char| letter.is_ascii_digit(), ""))]
 }
 
 #[cfg(test)]

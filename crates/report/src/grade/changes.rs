@@ -1,5 +1,5 @@
 //! The changes of a submission since an earlier grading, as text.
-use super::{format_points, phrases::list_some, points};
+use super::{format_optional_points, format_points, phrases::list_some};
 use crate::{number::format_count, style::Look};
 use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
 
@@ -33,11 +33,11 @@ pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
     if lines.is_empty() {
         lines.push((Look::Faint, "no scene changed".to_owned()));
     }
-    let then = match points(changes.max_points) == points(grade.max_points) {
-        true => format_points(changes.points),
-        false => format!("{} of {}", format_points(changes.points), points(changes.max_points)),
+    let then = match format_points(changes.max_points) == format_points(grade.max_points) {
+        true => format_optional_points(changes.points),
+        false => format!("{} of {}", format_optional_points(changes.points), format_points(changes.max_points)),
     };
-    lines.insert(0, (Look::Strong, format!("{then} points before, {} now", format_points(grade.points))));
+    lines.insert(0, (Look::Strong, format!("{then} points before, {} now", format_optional_points(grade.points))));
     lines
 }
 

@@ -1,5 +1,5 @@
 //! The statistics of a class: points, the hardest scenes, and the most frequent mistakes.
-use super::{likely_mistakes, phrases::list_some, points, shorten_name};
+use super::{format_points, likely_mistakes, phrases::list_some, shorten_name};
 use crate::foreign::one_line;
 use crate::{
     number::format_count,
@@ -21,7 +21,7 @@ pub(crate) struct SceneShare {
 /// Returns the report on the class, with at most `most` scenes, mistakes, and names of submissions with the same
 /// program.
 #[must_use]
-pub fn class(grades: &[Grade], most: usize, style: Style) -> String {
+pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
     let mut text = format!("{}: {}\n", style.paint(Look::Strong, "Class"), render_head(grades));
     let (scenes, whole) = find_hardest(grades);
     if !scenes.is_empty() {
@@ -127,7 +127,7 @@ fn render_head(grades: &[Grade]) -> String {
     let all = format_count(figures.submissions as u64, "submission");
     let mut text = format!("{all}, {} ran, {} accepted", figures.ran, figures.accepted);
     if let Some(reached) = figures.points {
-        let ([mean, middle, lowest, highest], most) = (reached.map(points), points(figures.max_points));
+        let ([mean, middle, lowest, highest], most) = (reached.map(format_points), format_points(figures.max_points));
         let _ = write!(
             text,
             "; of those that ran mean {mean}, median {middle}, from {lowest} to {highest} of {most} points"
@@ -203,8 +203,8 @@ mod tests {
     #[test]
     fn a_class_is_summed_up() {
         let grades = [samples::accepted_grade(), samples::failing_grade(), samples::fault(), samples::stopped_grade()];
-        insta::assert_snapshot!(class(&grades, 3, Style::Plain));
-        assert!(class(&grades, usize::MAX, Style::Plain).contains("Rest/SV"), "the whole list");
+        insta::assert_snapshot!(render_class(&grades, 3, Style::Plain));
+        assert!(render_class(&grades, usize::MAX, Style::Plain).contains("Rest/SV"), "the whole list");
     }
 
     #[test]
@@ -216,7 +216,7 @@ mod tests {
             ..samples::accepted_grade()
         };
         let grades = [with("zoe", "1", &["kim"]), with("ann", "2", &[]), with("kim", "1", &["zoe"])];
-        assert!(class(&grades, 3, Style::Plain).ends_with("The same program, byte for byte\n  zoe, kim\n"));
+        assert!(render_class(&grades, 3, Style::Plain).ends_with("The same program, byte for byte\n  zoe, kim\n"));
         let shown = |reader| {
             let told: Vec<Grade> =
                 grades.iter().map(|grade| Format::Json.visible_part(grade, reader, false).into_owned()).collect();

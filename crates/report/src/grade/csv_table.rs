@@ -1,12 +1,12 @@
 //! CSV for spreadsheets. A cell that a spreadsheet would read as a formula begins with an apostrophe.
-use super::{likely_mistakes, no_points, phrases::NOT_GRADED, points};
+use super::{format_points, likely_mistakes, no_points, phrases::NOT_GRADED};
 use crate::foreign::one_line;
-use crate::{view::key, words};
+use crate::{view::to_key, words};
 use fosssim_findings::{Grade, PassedOver, speed::SpeedSource};
 use fosssim_mistakes::together::worth;
 
 /// Returns one row per scene.
-pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,\
                 rules_differ,likely_mistake_key";
     let rows = grades.iter().flat_map(|grade| {
@@ -17,14 +17,14 @@ pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
                     escape_formula(&group.name),
                     escape_formula(&scene.scene),
                     scene.verdict.code().to_owned(),
-                    scene.points.map(points).unwrap_or_default(),
-                    points(scene.max_points),
+                    scene.points.map(format_points).unwrap_or_default(),
+                    format_points(scene.max_points),
                     scene.right_steps.to_string(),
                     scene.steps.to_string(),
                     format!("{:.3}", scene.measured.cpu.as_secs_f64()),
                     format!("{:.3}", scene.measured.wall.as_secs_f64()),
-                    escape_formula(&words::summary(scene)),
-                    scene.differs.map(|cause| key(&cause)).unwrap_or_default(),
+                    escape_formula(&words::summarize(scene)),
+                    scene.differs.map(|cause| to_key(&cause)).unwrap_or_default(),
                     scene.settled.first().map(|likeliest| escape_formula(&likeliest.key)).unwrap_or_default(),
                 ]
             })
@@ -41,7 +41,7 @@ pub(crate) fn scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
 /// points that fixing the first likely mistake would give. Entries that are not submissions have rows with only the
 /// reason.
 #[must_use]
-pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub fn render_submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let head = "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,\
                 reason,same_program,worth";
     let mut head: Vec<String> = head.split(',').map(str::to_owned).collect();
@@ -56,18 +56,18 @@ pub fn submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
         let mut row = vec![
             escape_formula(&grade.submission),
             grade.verdict.name().to_owned(),
-            grade.points.map(points).unwrap_or_default(),
-            points(grade.max_points),
+            grade.points.map(format_points).unwrap_or_default(),
+            format_points(grade.max_points),
             grade.scenes().filter(|scene| scene.verdict.is_accepted()).count().to_string(),
             grade.scenes().count().to_string(),
             format!("{:.3}", grade.wall.as_secs_f64()),
             grade.differing().to_string(),
             escape_formula(&mistakes.join(" ")),
-            escape_formula(&no_points(grade).or_else(|| words::reason(grade)).unwrap_or_default()),
+            escape_formula(&no_points(grade).or_else(|| words::describe_reason(grade)).unwrap_or_default()),
             escape_formula(&grade.same_program.join(", ")),
-            likely_mistakes(grade).first().map(|(first, _)| points(worth(grade, first))).unwrap_or_default(),
+            likely_mistakes(grade).first().map(|(first, _)| format_points(worth(grade, first))).unwrap_or_default(),
         ];
-        row.extend(grade.groups.iter().map(|group| group.points.map(points).unwrap_or_default()));
+        row.extend(grade.groups.iter().map(|group| group.points.map(format_points).unwrap_or_default()));
         row.extend(grade.groups.iter().filter_map(|group| group.speed.as_ref()).map(|speed| match &speed.source {
             SpeedSource::Measured(measured) => format!("{:.3}", measured.ratio),
             _ => String::new(),
@@ -104,10 +104,10 @@ fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
 /// Returns text that no spreadsheet reads as a formula. Text that begins like an escaped formula is escaped again, so
 /// that different texts have different cells.
 fn escape_formula(text: &str) -> String {
-    const FORMULAS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
+    const FORMULA_STARTS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
     let text = one_line(text);
     let begins = |c: char| c == '\'' || c.is_whitespace();
-    if text.trim_start_matches(begins).starts_with(FORMULAS) { format!("'{text}") } else { text }
+    if text.trim_start_matches(begins).starts_with(FORMULA_STARTS) { format!("'{text}") } else { text }
 }
 
 #[cfg(test)]

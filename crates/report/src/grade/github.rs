@@ -1,25 +1,25 @@
 //! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
 use super::{
     super::explain,
-    by_cause, change_lines, describe_difference, format_points, head_lines, is_listed, no_points,
+    by_cause, change_lines, describe_difference, format_optional_points, format_points, head_lines, is_listed,
+    no_points,
     phrases::{NOT_GRADED, list_some},
-    points,
 };
-use crate::annotation::{annotation, join_annotation};
+use crate::annotation::{join_annotation, render_annotation};
 use crate::foreign::{clean_output, one_line};
 use crate::{number::format_count, words};
 use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
 use std::fmt::Write;
 
 /// The maximum number of scenes with the same cause that are named.
-const NAMED: usize = 3;
+const MAX_NAMED: usize = 3;
 
 /// Returns annotations, with text that is escaped for workflow commands.
-pub(crate) fn annotations(grades: &[Grade]) -> String {
+pub(crate) fn render_annotations(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
         for warning in &grade.warnings {
-            text += &annotation("warning", &grade.submission, warning);
+            text += &render_annotation("warning", &grade.submission, warning);
         }
         if let Some(build) = grade.failed_build() {
             let title = format!("{}: {}", grade.submission, words::build(&build.end));
@@ -37,12 +37,12 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = format!("{}: {} {}", grade.submission, scene.scene, scene.verdict);
             let words: Vec<String> =
-                std::iter::once(words::summary(scene)).chain(explain::sentence(&scene.settled)).collect();
-            text += &annotation(level, &title, &words.join("; "));
+                std::iter::once(words::summarize(scene)).chain(explain::render_sentence(&scene.settled)).collect();
+            text += &render_annotation(level, &title, &words.join("; "));
         }
         for scene in grade.scenes() {
             let Some(words) = describe_difference(scene) else { continue };
-            text += &annotation("warning", &format!("{}: {}", grade.submission, scene.scene), &words);
+            text += &render_annotation("warning", &format!("{}: {}", grade.submission, scene.scene), &words);
         }
     }
     text
@@ -50,7 +50,8 @@ pub(crate) fn annotations(grades: &[Grade]) -> String {
 
 /// Returns a warning per entry that is not a submission.
 pub(crate) fn passed_over(entries: &[PassedOver]) -> String {
-    let warning = |entry: &PassedOver| annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
+    let warning =
+        |entry: &PassedOver| render_annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
     entries.iter().map(warning).collect()
 }
 
@@ -59,28 +60,34 @@ pub(crate) fn list_of_passed_over(entries: &[PassedOver]) -> String {
     if entries.is_empty() {
         return String::new();
     }
-    let item = |entry: &PassedOver| format!("- {}: {}\n", cell(&entry.name), cell(&entry.why));
+    let item = |entry: &PassedOver| format!("- {}: {}\n", escape_cell(&entry.name), escape_cell(&entry.why));
     format!("### Not graded\n\n{}\n", entries.iter().map(item).collect::<String>())
 }
 
 /// Returns a Markdown table per submission.
-pub(crate) fn summary(grades: &[Grade]) -> String {
+pub(crate) fn render_summary(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
-        let _ = writeln!(text, "### {}: {} ({})\n", cell(&grade.submission), grade.verdict, cell(&format_score(grade)));
+        let _ = writeln!(
+            text,
+            "### {}: {} ({})\n",
+            escape_cell(&grade.submission),
+            grade.verdict,
+            escape_cell(&format_score(grade))
+        );
         for line in head_lines(grade) {
-            let _ = writeln!(text, "{}\n", cell(&line));
+            let _ = writeln!(text, "{}\n", escape_cell(&line));
         }
-        let changes: Vec<String> = change_lines(grade).into_iter().map(|(_, line)| cell(&line)).collect();
+        let changes: Vec<String> = change_lines(grade).into_iter().map(|(_, line)| escape_cell(&line)).collect();
         if !changes.is_empty() {
             let _ = writeln!(text, "Since the earlier grading: {}\n", changes.join("; "));
         }
         for warning in &grade.warnings {
-            let _ = writeln!(text, "**Warning:** {}\n", cell(warning));
+            let _ = writeln!(text, "**Warning:** {}\n", escape_cell(warning));
         }
         if let Some(build) = grade.failed_build() {
             if grade.unfit().is_none() {
-                let _ = writeln!(text, "{}\n", cell(&words::build(&build.end)));
+                let _ = writeln!(text, "{}\n", escape_cell(&words::build(&build.end)));
             }
             for line in clean_output(&build.output).lines().take(40) {
                 let _ = writeln!(text, "    {}", one_line(line));
@@ -91,16 +98,16 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
             continue;
         }
         let _ = writeln!(text, "| scenes | verdict | points | what happened |\n|---|---|---:|---|");
-        let sum = |scenes: &[&SceneGrade]| format_points(scenes.iter().map(|scene| scene.points).sum());
+        let sum = |scenes: &[&SceneGrade]| format_optional_points(scenes.iter().map(|scene| scene.points).sum());
         for alike in by_cause(grade) {
             let names: Vec<&str> = alike.iter().map(|scene| scene.scene.as_str()).collect();
             let scene = alike[0];
-            let words: Vec<String> = std::iter::once(words::summary(scene))
-                .chain(explain::sentence(&scene.settled))
+            let words: Vec<String> = std::iter::once(words::summarize(scene))
+                .chain(explain::render_sentence(&scene.settled))
                 .chain(describe_difference(scene))
-                .map(|words| cell(&words))
+                .map(|words| escape_cell(&words))
                 .collect();
-            let (names, words) = (cell(&list_some(&names, NAMED)), words.join("; "));
+            let (names, words) = (escape_cell(&list_some(&names, MAX_NAMED)), words.join("; "));
             let _ = writeln!(text, "| {names} | {} | {} | {words} |", scene.verdict, sum(&alike));
         }
         for verdict in [Verdict::Accepted, Verdict::NotRun] {
@@ -117,12 +124,13 @@ pub(crate) fn summary(grades: &[Grade]) -> String {
 
 /// Returns the score, such as `12.5 of 20`, or the reason why there are no points.
 fn format_score(grade: &Grade) -> String {
-    let reached = grade.points.map(|reached| format!("{} of {}", points(reached), points(grade.max_points)));
+    let reached =
+        grade.points.map(|reached| format!("{} of {}", format_points(reached), format_points(grade.max_points)));
     reached.or_else(|| no_points(grade)).unwrap_or_default()
 }
 
 /// Returns text in which Markdown and HTML are escaped.
-fn cell(text: &str) -> String {
+fn escape_cell(text: &str) -> String {
     let mut cell = String::new();
     for c in one_line(text).chars() {
         match c {

@@ -1,8 +1,8 @@
 //! Gradescope's results.json. If the grader failed there is no score: the harness exits with an error instead of giving
 //! zero points.
-use super::{super::explain, describe_difference, describe_speed, head_lines, points, see_above};
+use super::{super::explain, describe_difference, describe_speed, format_points, head_lines, see_above};
 use crate::foreign::{clean_output, strip_control_characters};
-use crate::{number::format_count, style::Style, view::document, words};
+use crate::{number::format_count, style::Style, view::to_document, words};
 use fosssim_findings::{
     Grade, SceneGrade, Verdict, Visibility,
     speed::{SpeedGrade, SpeedSource},
@@ -107,7 +107,7 @@ pub(crate) fn render(grade: &Grade) -> String {
             sandbox: grade.layers.clone(),
         },
     };
-    document(&results)
+    to_document(&results)
 }
 
 fn describe_grade(grade: &Grade) -> String {
@@ -115,7 +115,9 @@ fn describe_grade(grade: &Grade) -> String {
     let all_visible = grade.is_visible();
     let mut lines = vec![match grade.points {
         Some(_) if !all_visible => "Graded.".to_owned(),
-        Some(reached) => format!("{}: {} of {} points.", grade.verdict, points(reached), points(grade.max_points)),
+        Some(reached) => {
+            format!("{}: {} of {} points.", grade.verdict, format_points(reached), format_points(grade.max_points))
+        }
         None if grade.is_our_fault() => {
             "The grader failed. This is not your fault and costs no points. Staff must check it.".to_owned()
         }
@@ -149,7 +151,7 @@ fn describe_timeout(grade: &Grade) -> String {
         let (seconds, scene, summary) = (
             longest.measured.wall.as_secs_f64(),
             strip_control_characters(&longest.scene),
-            strip_control_characters(&words::summary(longest)),
+            strip_control_characters(&words::summarize(longest)),
         );
         let _ = match group.visibility {
             Visibility::Visible => write!(text, ", {seconds:.1} s of it in scene {scene}: {summary}."),
@@ -160,9 +162,9 @@ fn describe_timeout(grade: &Grade) -> String {
 }
 
 fn describe_scene(scene: &SceneGrade) -> String {
-    let mut lines = vec![format!("{}: {}", scene.verdict, strip_control_characters(&words::summary(scene)))];
+    let mut lines = vec![format!("{}: {}", scene.verdict, strip_control_characters(&words::summarize(scene)))];
     lines.extend(describe_difference(scene));
-    lines.extend(words::details(scene).iter().map(|detail| strip_control_characters(detail)));
+    lines.extend(words::list_details(scene).iter().map(|detail| strip_control_characters(detail)));
     lines.extend(explain::lines(&scene.settled, Style::Plain).iter().map(|line| strip_control_characters(line)));
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(format!("The program's standard error:\n{}", clean_output(&scene.stderr)));

@@ -4,7 +4,7 @@ use crate::foreign::{clean_output, strip_control_characters};
 use crate::{
     check::CauseView,
     smallest::SmallestView,
-    view::{document, view},
+    view::{to_document, view},
     words,
 };
 use fosssim_findings::Verdict;
@@ -226,11 +226,11 @@ view! {
         #[schemars(extend("enum" = Verdict::ALL.map(Verdict::code)))]
         code: &'static str = scene.verdict.code(),
         /// The reason for the verdict, in one line.
-        summary: String = strip_control_characters(&words::summary(scene)),
+        summary: String = strip_control_characters(&words::summarize(scene)),
         /// The rule by which the two rule books judge the scene differently; null if they agree.
         difference: Option<CauseView> = scene.differs.as_ref().map(CauseView::from),
         /// The place of the first difference, and the number of findings of each kind, if hints allow it.
-        details: Vec<String> = words::details(scene).iter().map(|detail| strip_control_characters(detail)).collect(),
+        details: Vec<String> = words::list_details(scene).iter().map(|line| strip_control_characters(line)).collect(),
         /// The likely mistakes, the likeliest first, if hints allow it.
         explanations: Vec<ExplanationView> = scene.settled.iter().map(ExplanationView::from).collect(),
         /// The points reached; null if the grader failed or did not run the scene.
@@ -264,7 +264,7 @@ view! {
 pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     let (grades, passed_over) =
         (grades.iter().map(GradeView::from).collect(), passed_over.iter().map(with_plain_words).collect());
-    document(&GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over })
+    to_document(&GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over })
 }
 
 fn with_plain_words(entry: &PassedOver) -> PassedOver {

@@ -77,8 +77,8 @@ fn test_case(grade: &Grade, scene: &SceneGrade) -> TestCase {
             let kind = if verdict == Verdict::JudgeError { NonSuccessKind::Error } else { NonSuccessKind::Failure };
             let mut status = TestCaseStatus::non_success(kind);
             status.set_type(verdict.name());
-            status.set_message(strip_control_characters(&words::summary(scene)));
-            let mut description = words::details(scene);
+            status.set_message(strip_control_characters(&words::summarize(scene)));
+            let mut description = words::list_details(scene);
             description.extend(explain::lines(&scene.settled, Style::Plain));
             if let Some(build) = grade.failed_build() {
                 description.extend([words::build(&build.end), clean_output(&build.output)]);

@@ -28,17 +28,19 @@ pub fn json(grades: &[Grade]) -> String {
 pub use causes::{AlikeScenes, by_cause};
 pub(crate) use causes::{clearest_scene, is_listed, rank};
 pub(crate) use changes::lines as change_lines;
-pub use class::class;
+pub use class::render_class;
 pub(crate) use class::{ClassFigures, SharedMistake, find_frequent, find_hardest, never_ran, same_programs};
-pub use csv_table::submissions as csv_of_submissions;
+pub use csv_table::render_submissions as csv_of_submissions;
 pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;
 pub use passed_over::{add_warnings, not_graded};
 use phrases::see_above;
-pub(crate) use phrases::{count_wrong, worth};
-pub use phrases::{describe_difference, format_points, head_lines, likely_mistakes, no_points, points, score};
+pub(crate) use phrases::{count_wrong, describe_worth};
+pub use phrases::{
+    describe_difference, format_optional_points, format_points, format_score, head_lines, likely_mistakes, no_points,
+};
 pub(crate) use speed::describe_speed;
-pub use text::{Advice, Text, TextDetail, extra, shorten_name, table as text_table};
+pub use text::{Advice, Text, TextDetail, extra, render_table as text_table, shorten_name};
 
 #[cfg(test)]
 pub(crate) mod samples;

@@ -21,7 +21,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
         if mistake.is_not_finite() {
             return format!("{what} (in {explained} of {wrong})");
         }
-        let worth = worth(grade, &mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
+        let worth = describe_worth(grade, &mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
         format!("{}: {what} (explains {explained} of {wrong}{worth})", std::mem::replace(&mut rank, "also likely"))
     };
     let located = grade.located.as_ref().map(words::describe_located);
@@ -30,9 +30,9 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
 
 /// Returns the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene fails
 /// only because of it.
-pub(crate) fn worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
+pub(crate) fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     let lost = together::worth(grade, mistake);
-    (lost > 0.0).then(|| format!("worth {}", score(lost, grade.max_points)))
+    (lost > 0.0).then(|| format!("worth {}", format_score(lost, grade.max_points)))
 }
 
 /// Returns the course's note on a mistake, to follow the report's text; empty if there is none.
@@ -76,22 +76,22 @@ pub(super) fn list_some(names: &[impl AsRef<str>], most: usize) -> String {
 
 /// Returns points without trailing zeros, such as `12.5` or `10`.
 #[must_use]
-pub fn points(value: f64) -> String {
+pub fn format_points(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 /// Returns a score, such as `12.5 of 20 points`.
 #[must_use]
-pub fn score(reached: f64, most: f64) -> String {
-    let plural = if points(most) == "1" { "" } else { "s" };
-    format!("{} of {} point{plural}", points(reached), points(most))
+pub fn format_score(reached: f64, most: f64) -> String {
+    let plural = if format_points(most) == "1" { "" } else { "s" };
+    format!("{} of {} point{plural}", format_points(reached), format_points(most))
 }
 
 /// Returns the points as text. They may be missing, because a failure of the grader does not give zero points.
 #[must_use]
-pub fn format_points(value: Option<f64>) -> String {
-    value.map_or_else(|| "-".to_owned(), points)
+pub fn format_optional_points(value: Option<f64>) -> String {
+    value.map_or_else(|| "-".to_owned(), format_points)
 }
 
 /// Returns the reason why a grade has no points.
@@ -116,6 +116,9 @@ mod tests {
 
     #[test]
     fn points_have_no_needless_digits() {
-        assert_eq!((points(10.0), points(2.5), points(0.0)), ("10".into(), "2.5".into(), "0".into()));
+        assert_eq!(
+            (format_points(10.0), format_points(2.5), format_points(0.0)),
+            ("10".into(), "2.5".into(), "0".into())
+        );
     }
 }

@@ -1,8 +1,8 @@
 //! PrairieLearn's results.json: a score from 0 to 1. `gradable: false` stands for errors of the grader and for uploads
 //! without a runnable program, which do not count as an attempt.
-use super::{super::explain, describe_difference, describe_speed, head_lines, score, see_above};
+use super::{super::explain, describe_difference, describe_speed, format_score, head_lines, see_above};
 use crate::foreign::{clean_output, one_line, strip_control_characters};
-use crate::{style::Style, view::document, words};
+use crate::{style::Style, view::to_document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
 use serde::Serialize;
@@ -57,7 +57,7 @@ pub(crate) fn render(grade: &Grade) -> String {
             description: scene.verdict.name().to_owned(),
             points: scene.points,
             max_points: scene.max_points,
-            message: if grade.unfit().is_some() { see_above(scene).to_owned() } else { cut(&words::summary(scene)) },
+            message: if grade.unfit().is_some() { see_above(scene).to_owned() } else { cut(&words::summarize(scene)) },
             output: cut(&describe_scene(scene)),
         })
         .chain(shown.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))).map(|(group, speed)| {
@@ -94,7 +94,7 @@ pub(crate) fn render(grade: &Grade) -> String {
             _ => format!(
                 "{} on the tests shown here ({}); other tests are hidden",
                 shown.verdict,
-                score(shown.points.unwrap_or_default(), shown.max_points)
+                format_score(shown.points.unwrap_or_default(), shown.max_points)
             ),
         },
         output: grade
@@ -118,13 +118,13 @@ pub(crate) fn render(grade: &Grade) -> String {
             .collect(),
         tests,
     };
-    document(&results)
+    to_document(&results)
 }
 
 /// Returns everything about a scene except for its message.
 fn describe_scene(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = describe_difference(scene).into_iter().collect();
-    lines.extend(words::details(scene));
+    lines.extend(words::list_details(scene));
     lines.extend(explain::lines(&scene.settled, Style::Plain));
     lines.join("\n")
 }

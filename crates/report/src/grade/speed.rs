@@ -1,5 +1,5 @@
 //! The sentence about points for speed.
-use super::points;
+use super::format_points;
 use crate::number::format_count;
 use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
 
@@ -7,8 +7,8 @@ use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource}
 #[must_use]
 pub fn describe_speed(speed: &SpeedGrade) -> String {
     let SpeedGrade { marking, points: reached, source } = speed;
-    let of = format!("of {} points for speed", points(marking.points));
-    let reached = reached.map_or_else(|| "none yet".to_owned(), points);
+    let of = format!("of {} points for speed", format_points(marking.points));
+    let reached = reached.map_or_else(|| "none yet".to_owned(), format_points);
     match source {
         SpeedSource::Measured(measured) => format!("{reached} {of}: {}", describe_ratio(marking, measured)),
         SpeedSource::NotAccepted => format!("{reached} {of}: counted only if all scenes of the group are accepted"),
@@ -25,7 +25,7 @@ pub fn describe_speed(speed: &SpeedGrade) -> String {
 /// Returns the ratio, its spread, and the effect of the spread on the points.
 fn describe_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
     let SpeedRatio { ratio, least, most, runs } = *measured;
-    let (high, low) = (points(marking.points_at(least)), points(marking.points_at(most)));
+    let (high, low) = (format_points(marking.points_at(least)), format_points(marking.points_at(most)));
     let sure = if high == low {
         "which does not change the points".to_owned()
     } else {

@@ -1,13 +1,13 @@
 //! A detection call on a page: curves, intervals, coefficients.
 use super::{
-    markup::{mark_difference, number},
+    markup::{mark_difference, render_number},
     render_template,
 };
 use crate::{describe::pair_key, detect::Detect, number::format_g};
 use askama::Template;
 use fosssim_evidence::{CallLog, InspectedCall};
 use fosssim_judge::{
-    PairWords, PassWords, differing, factor,
+    PairWords, PassWords, differing_powers, find_factor,
     study::{self, Study},
 };
 use fosssim_num::{first_time::positive_set, interval::Interval};
@@ -60,7 +60,7 @@ impl CallContent<'_> {
 
     /// Draws the expected curves.
     fn draw_expected(&self, study: &Study) -> String {
-        detection::picture(study, &format!("Expected in step {}: {}", self.step, self.pair), PlotTarget::Page)
+        detection::render_picture(study, &format!("Expected in step {}: {}", self.step, self.pair), PlotTarget::Page)
     }
 
     /// Renders the decision by the trace's own polynomials, and their curves, if one of them is wrong.
@@ -158,7 +158,7 @@ fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
 /// Returns the decision by the trace's own polynomials.
 fn own_decision(logged: &[Vec<f64>]) -> String {
     let says = match common_intervals(logged).iter().map(|set| set.lo).reduce(f64::min) {
-        Some(time) => format!("all are positive from time {} on: a collision", number(time)),
+        Some(time) => format!("all are positive from time {} on: a collision", render_number(time)),
         None => "there is no time in the step at which all are positive: no collision".to_owned(),
     };
     format!("<p>According to your polynomials, {says}.</p>\n")
@@ -185,10 +185,10 @@ fn coefficient_rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Ro
     for (place, curve) in study.curves.iter().enumerate() {
         let expected = curve.logged.coefficients();
         let own = logged.get(place).map_or(&[][..], Vec::as_slice);
-        let (marks, factor) = (mark_differences(expected, own), factor(expected, own));
+        let (marks, factor) = (mark_differences(expected, own), find_factor(expected, own));
         for power in (0..expected.len().max(own.len()).min(12)).rev() {
             let at = |list: &[f64]| (power < list.len()).then(|| list[list.len() - 1 - power]);
-            let cell = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), number);
+            let cell = |value: Option<f64>| value.map_or_else(|| "none".to_owned(), render_number);
             let missing = nothing || own.is_empty() && !logged.is_empty();
             let differs = missing || !own.is_empty() && marks.get(power).copied().unwrap_or(true);
             let (right, yours) = match (at(expected), at(own)) {
@@ -205,7 +205,7 @@ fn coefficient_rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Ro
 
 /// Returns for each power whether the coefficients differ after division by the common factor.
 fn mark_differences(expected: &[f64], own: &[f64]) -> Vec<bool> {
-    let differing = differing(expected, own, factor(expected, own));
+    let differing = differing_powers(expected, own, find_factor(expected, own));
     (0..expected.len().max(own.len())).map(|power| differing.contains(&power)).collect()
 }
 

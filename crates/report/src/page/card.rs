@@ -4,7 +4,7 @@ use fosssim_findings::Hints;
 use serde::{Deserialize, Serialize};
 
 /// The placeholder for a card's key until its page is known. The key is a control character, which no text contains.
-const KEY: &str = "\u{1}";
+const KEY_PLACEHOLDER: &str = "\u{1}";
 
 /// The placeholder for the common cause of all scenes, which is known later.
 const CAUSE_MARK: &str = "\u{2}";
@@ -31,12 +31,15 @@ impl Card {
         if case.hints == Hints::None {
             return None;
         }
-        let blocks =
-            |precision| case.evidence.map(|evidence| data::blocks(case, evidence, KEY, precision)).unwrap_or_default();
+        let blocks = |precision| {
+            case.evidence
+                .map(|evidence| data::render_blocks(case, evidence, KEY_PLACEHOLDER, precision))
+                .unwrap_or_default()
+        };
         let data = blocks(Precision::AsRoomAllows);
         let rounded = if data.len() > MIN_ROUNDED_BYTES { blocks(Precision::Rounded) } else { String::new() };
         let rounded = if rounded.len() < data.len() { rounded } else { String::new() };
-        Some(Self { html: case.trace_part(KEY, depth, CAUSE_MARK), data, rounded })
+        Some(Self { html: case.trace_part(KEY_PLACEHOLDER, depth, CAUSE_MARK), data, rounded })
     }
 
     /// Returns a card that contains only text.
@@ -75,13 +78,13 @@ impl Card {
 
     /// Renders the part without script, with its mistakes, under a key that is unique on the page.
     pub(super) fn html(&self, key: &str, mistakes: &str) -> String {
-        let html = self.html.replace(KEY, key);
+        let html = self.html.replace(KEY_PLACEHOLDER, key);
         if html.contains(CAUSE_MARK) { html.replace(CAUSE_MARK, mistakes) } else { mistakes.to_owned() + &html }
     }
 
     /// Returns the exact motions as script text, with the key replaced by `key`.
     pub(super) fn data(&self, key: &str) -> String {
-        self.data.replace(KEY, key)
+        self.data.replace(KEY_PLACEHOLDER, key)
     }
 
     /// Returns the number of bytes of rounded motions; `None` if rounding saves nothing.
@@ -91,6 +94,6 @@ impl Card {
 
     /// Returns the rounded motions as script text.
     pub(super) fn round_motions(&self, key: &str) -> String {
-        self.rounded.replace(KEY, key)
+        self.rounded.replace(KEY_PLACEHOLDER, key)
     }
 }

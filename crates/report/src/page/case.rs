@@ -1,9 +1,9 @@
 //! One judged trace on a page.
 use super::{
-    Case, call, data, document,
-    markup::{self, formula, mark_difference, text},
+    Case, call, data,
+    markup::{self, mark_difference, render_formula, text},
     packed::Precision,
-    render_template, script, strip,
+    render_document, render_template, script, strip,
 };
 use crate::{
     check::{
@@ -11,8 +11,8 @@ use crate::{
         books::verdicts,
         describe_problem,
         divergence::{self, Row, Value},
-        first::{first, is_other_scene},
-        follows, headline, notes,
+        first::{find_first, is_other_scene},
+        follows, list_notes, render_headline,
     },
     describe::pair_key,
     explain::ExplanationParts,
@@ -22,7 +22,7 @@ use crate::{
 use askama::Template;
 use fosssim_evidence::{Evidence, Focus, InspectedCall};
 use fosssim_findings::{Finding, FindingDetail, Hints};
-use fosssim_judge::{Book, BookFindings, PairWords, fair::cause};
+use fosssim_judge::{Book, BookFindings, PairWords, fair::find_cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::{
     bounded::UNIT_ROUNDOFF,
@@ -42,7 +42,7 @@ type StepCall<'e> = (u32, &'e InspectedCall);
 impl Case<'_> {
     /// Renders a page about one case; the title is that of the window.
     pub(super) fn page(&self, title: &str) -> String {
-        document(title, &self.html("0"), script())
+        render_document(title, &self.html("0"), script())
     }
 
     /// Renders the case as the whole content of a page.
@@ -55,14 +55,14 @@ impl Case<'_> {
         };
         let explanations = if is_other_scene(check) { &[][..] } else { check.explanations };
         let mistakes = self.describe_stop() + &mistakes(explanations, self.first().is_some());
-        let data = self.evidence.map(|evidence| data::blocks(self, evidence, key, Precision::AsRoomAllows));
+        let data = self.evidence.map(|evidence| data::render_blocks(self, evidence, key, Precision::AsRoomAllows));
         let content = self.trace_part(key, 1, &mistakes) + &data.unwrap_or_default();
         render_template(&CaseContent { check, key, look, content })
     }
 
     /// Returns the finding that is shown first: the official book's, or the other book's if the official book has none.
     fn first(&self) -> Option<&Finding> {
-        first(&self.check).filter(|_| self.hints == Hints::Full)
+        find_first(&self.check).filter(|_| self.hints == Hints::Full)
     }
 
     /// Renders the part about the trace, below a heading of the given depth: the motion next to its cause and the first
@@ -236,7 +236,7 @@ fn compare_cells(row: &Row) -> (String, String) {
 /// Returns a single value as HTML; its title has all digits.
 fn format_value(value: Value) -> String {
     match value {
-        Value::Number(number) => markup::number(number),
+        Value::Number(number) => markup::render_number(number),
         other => other.exact(),
     }
 }

@@ -1,17 +1,16 @@
 //! The page of a class: the points of all submissions, the hardest scenes, and the submissions with the same mistake.
 use super::{
-    document,
     graded::scene_key,
     heat, histogram,
-    markup::{count_scenes, data, note},
-    render_template,
+    markup::{count_scenes, note, render_data},
+    render_document, render_template,
     smallest::{format_pre, parts},
 };
 use crate::foreign::one_line;
 use crate::{
     grade::{
-        ClassFigures, SharedMistake, clearest_scene, find_frequent, find_hardest, format_points, likely_mistakes,
-        never_ran, points, same_programs,
+        ClassFigures, SharedMistake, clearest_scene, find_frequent, find_hardest, format_optional_points,
+        format_points, likely_mistakes, never_ran, same_programs,
     },
     smallest::title,
     words::{self, explanation::what_or},
@@ -54,7 +53,7 @@ impl ClassPage<'_> {
             mistakes: find_frequent(self.grades),
             is_compared: self.grades.iter().any(|grade| grade.before.is_some()),
         };
-        document(&format!("Class: {}", suite_name(self.grades)), &render_template(&content), SCRIPT)
+        render_document(&format!("Class: {}", suite_name(self.grades)), &render_template(&content), SCRIPT)
     }
 }
 
@@ -138,7 +137,7 @@ impl ClassContent<'_> {
         });
         let same = by_signature(grades).into_iter().map(|members| {
             let wrong: Vec<&SceneGrade> = grades[members[0]].scenes().filter(|scene| is_failed(scene)).collect();
-            let first = format!("{}: {}", wrong[0].scene, words::summary(wrong[0]));
+            let first = format!("{}: {}", wrong[0].scene, words::summarize(wrong[0]));
             let heading = match wrong.len() {
                 1 => "No mistake is named, but the same scene fails for the same reason".to_owned(),
                 count => format!("No mistake is named, but the same {count} scenes fail for the same reason"),
@@ -173,7 +172,7 @@ fn suite_name(grades: &[Grade]) -> &str {
 fn scene_names(grades: &[Grade]) -> String {
     let names: Vec<&str> =
         grades.first().iter().flat_map(|grade| grade.scenes()).map(|one| one.scene.as_str()).collect();
-    data(&serde_json::json!(names))
+    render_data(&serde_json::json!(names))
 }
 
 /// Returns points in the form by which the script sorts.
@@ -196,7 +195,7 @@ fn describe_reason(grade: &Grade) -> String {
     let likely = likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
     let likely: Vec<String> = grade.located.iter().map(words::describe_located).chain(likely).collect();
     match likely.as_slice() {
-        [] => words::reason(grade).unwrap_or_default(),
+        [] => words::describe_reason(grade).unwrap_or_default(),
         [only] => only.clone(),
         [first, others @ ..] => format!("{first} And {} more.", others.len()),
     }
@@ -257,12 +256,12 @@ fn letter_of(scene: &SceneGrade) -> char {
 /// Returns the statistics of the class, each with its name.
 fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
     let figures = ClassFigures::from_grades(grades);
-    let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_points);
+    let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_optional_points);
     let unsolved = find_hardest(grades).0.iter().filter(|(_, share)| share.accepted == 0).count();
     let rows = [
         (format!("{} of {}", figures.ran, figures.submissions), "ran".to_owned()),
         (figures.accepted.to_string(), "accepted".to_owned()),
-        (mean, format!("mean of {} points", points(figures.max_points))),
+        (mean, format!("mean of {} points", format_points(figures.max_points))),
         (median, "median, of submissions that were run".to_owned()),
         (unsolved.to_string(), "scenes without a right answer".to_owned()),
     ];
@@ -278,7 +277,7 @@ fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| likely_mistakes(grade).is_empty()) {
         let failed = grade.scenes().filter(|scene| is_failed(scene));
         let signature: Vec<_> =
-            failed.map(|scene| (scene.scene.as_str(), scene.verdict, words::summary(scene))).collect();
+            failed.map(|scene| (scene.scene.as_str(), scene.verdict, words::summarize(scene))).collect();
         if !signature.is_empty() {
             found.entry(signature).or_default().push(number);
         }

@@ -4,7 +4,7 @@ use super::{
     packed::{PackedMotions, Precision, Rounding},
 };
 use crate::{
-    check::{first::first, follows},
+    check::{first::find_first, follows},
     describe::pair_key,
 };
 use fosssim_evidence::{Evidence, InspectedPass, InspectedStep, Track};
@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 use std::fmt::Write;
 
 /// Returns all data blocks of a case.
-pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision: Precision) -> String {
+pub(super) fn render_blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision: Precision) -> String {
     // Without full hints, a page contains only data that the program itself wrote.
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
@@ -29,7 +29,7 @@ pub(super) fn blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision:
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();
     let PackedMotions { blocks, rounded } = PackedMotions::from_evidence(evidence, &tracks, precision);
     let mut out = String::new();
-    let data = markup::data(&case_data(case, evidence, rounded.as_ref()));
+    let data = markup::render_data(&case_data(case, evidence, rounded.as_ref()));
     let _ = writeln!(out, r#"<script type="application/json" id="case-{key}">{data}</script>"#);
     for ((name, _), block) in tracks.iter().zip(blocks) {
         let _ = writeln!(out, r#"<script type="application/octet-stream" id="{name}-{key}">{block}</script>"#);
@@ -52,7 +52,7 @@ fn case_data(case: &Case<'_>, evidence: &Evidence, rounded: Option<&Rounding>) -
             json!({"step": up.step, "pair": pair_key(call.pair), "zeros": zeros})
         })
     });
-    let first = first(&case.check);
+    let first = find_first(&case.check);
     let particle = first.filter(|_| is_full).and_then(|first| match first.detail {
         FindingDetail::Position { particle, .. } | FindingDetail::Velocity { particle, .. } => Some(particle),
         _ => None,

@@ -18,9 +18,10 @@ impl WhatIf {
             return None;
         }
         let row = student::find(&named.key)?;
-        let run = student::trace(scene, student::Student::new(Some(row.mistake))).unwrap_or_else(|(part, _)| part);
+        let run =
+            student::record_trace(scene, student::Student::new(Some(row.mistake))).unwrap_or_else(|(part, _)| part);
         let track = Track::read(&mut &run[..], evidence.layout, evidence.window);
-        Some(Self { id: named.key.clone(), sentence: explanation::what(named), track, equal: run == trace })
+        Some(Self { id: named.key.clone(), sentence: explanation::describe(named), track, equal: run == trace })
     }
 }
 

@@ -2,9 +2,8 @@
 use super::{
     Card,
     case::mistakes,
-    document,
     graded::{self, scene_key},
-    render_template, script, smallest,
+    render_document, render_template, script, smallest,
 };
 use crate::{case::Case, diagnosis::Diagnosis, grade::rank, words::describe_first};
 use askama::Template;
@@ -44,7 +43,7 @@ impl ExplainedPage<'_> {
             (_, wrong) => format!("{wrong} of {} traces are wrong", cases.len()),
         };
         let content = ExplainedContent { page: self, title: &title, look, wrong };
-        document(&title, &render_template(&content), script())
+        render_document(&title, &render_template(&content), script())
     }
 }
 

@@ -2,17 +2,16 @@
 use super::{
     Card,
     case::mistakes,
-    document,
     markup::{count_scenes, note, text},
-    render_template,
+    render_document, render_template,
     room::{self, OUTPUT_BUDGET, Room},
     script, smallest,
 };
 use crate::foreign::{one_line, without_codes};
 use crate::{
     grade::{
-        by_cause, change_lines, clearest_scene, count_wrong, describe_difference, describe_speed, extra, format_points,
-        is_listed, likely_mistakes, no_points, points, score, worth,
+        by_cause, change_lines, clearest_scene, count_wrong, describe_difference, describe_speed, describe_worth,
+        extra, format_optional_points, format_points, format_score, is_listed, likely_mistakes, no_points,
     },
     number::format_count,
     words,
@@ -78,7 +77,7 @@ impl GradePage<'_> {
         };
         // The viewer is left out if there are no cards, because it would be most of the page.
         let script = if content.has_scenes && !content.told.is_empty() { script() } else { "" };
-        document(&format!("{}: {}", grade.submission, grade.verdict.name()), &render_template(&content), script)
+        render_document(&format!("{}: {}", grade.submission, grade.verdict.name()), &render_template(&content), script)
     }
 }
 
@@ -174,7 +173,7 @@ fn describe_books(grade: &Grade) -> String {
 /// Returns the points of a grade, or the reason why there are none.
 fn score_or_why(grade: &Grade) -> String {
     match grade.points {
-        Some(reached) => score(reached, grade.max_points) + &extra(grade),
+        Some(reached) => format_score(reached, grade.max_points) + &extra(grade),
         None => no_points(grade).unwrap_or_default(),
     }
 }
@@ -205,7 +204,7 @@ impl<'a> Article<'a> {
         let key = scene_key(&scene.scene);
         // A detail is left out if the card already shows it with values.
         let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
-        let details = words::details(scene).into_iter().skip(usize::from(is_shown));
+        let details = words::list_details(scene).into_iter().skip(usize::from(is_shown));
         let mistakes = mistakes(&scene.settled, is_shown);
         let no_room = |what: &str| format!("<p class=\"hint\">This page has no room for {what}.</p>\n");
         let shown = match (card, room) {

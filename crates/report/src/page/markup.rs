@@ -57,18 +57,18 @@ pub(super) fn note(note: Option<&CourseNote>) -> String {
 }
 
 /// Returns a line with its formulas in HTML: mathematical signs, and letters with subscripts.
-pub(super) fn formula(line: &str) -> String {
+pub(super) fn render_formula(line: &str) -> String {
     let set = |line: String, index| line.replace(&format!("_{index}"), &format!("<sub>{index}</sub>"));
     ["cm", "a", "b", "i"].into_iter().fold(text(line), set)
 }
 
 /// Writes JSON for a data block, so that nothing in it ends the element.
-pub(super) fn data(value: &serde_json::Value) -> String {
+pub(super) fn render_data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
 /// Returns a number in a table.
-pub(super) fn number(value: f64) -> String {
+pub(super) fn render_number(value: f64) -> String {
     text(&format_g(value))
 }
 
@@ -76,7 +76,7 @@ pub(super) fn number(value: f64) -> String {
 /// as equal are shown without the digits that differ only because of rounding.
 pub(super) fn mark_difference(expected: f64, actual: f64, differs: bool) -> (String, String) {
     if !differs {
-        return (number(expected), number(actual));
+        return (render_number(expected), render_number(actual));
     }
     let (expected, actual, place) = format_pair(expected, actual);
     let marked = match place {
@@ -104,6 +104,6 @@ mod tests {
     fn hostile_text_stays_text() {
         assert_eq!(text("<b a='1'>&\"x\"\n"), "&lt;b a=&#39;1&#39;&gt;&amp;&quot;x&quot;\n");
         assert_eq!(text("a\u{202e}b\u{0}c\u{1b}[1m\u{feff}"), "a\\u{202e}b\\u{0}c\\u{1b}[1m\\u{feff}");
-        assert_eq!(data(&serde_json::json!("</script><!--")), r#""\u003c/script>\u003c!--""#);
+        assert_eq!(render_data(&serde_json::json!("</script><!--")), r#""\u003c/script>\u003c!--""#);
     }
 }

@@ -96,7 +96,7 @@ pub fn framed_digests() -> [String; 2] {
 }
 
 /// Renders a file around a body: one style sheet, at most one script, and a policy that allows only these.
-fn document(title: &str, body: &str, script: &str) -> String {
+fn render_document(title: &str, body: &str, script: &str) -> String {
     let style = style();
     let allowed = if script.is_empty() { "'none'".to_owned() } else { format!("'{}'", digest(script)) };
     let policy = format!(

@@ -52,14 +52,16 @@ impl PackedMotions {
     pub(super) fn from_evidence(evidence: &Evidence, tracks: &[(&str, &Track)], precision: Precision) -> Self {
         let raw: usize = tracks.iter().map(|(_, track)| 8 * track.values.len()).sum();
         if precision == Precision::AsRoomAllows && raw <= MAX_COMPRESSED_BYTES {
-            let blocks: Vec<String> = tracks.iter().map(|(_, track)| base64(&bytes(&track.values))).collect();
+            let blocks: Vec<String> = tracks.iter().map(|(_, track)| encode_base64(&bytes(&track.values))).collect();
             if blocks.iter().map(String::len).sum::<usize>() <= MAX_EXACT_BYTES {
                 return Self { blocks, rounded: None };
             }
         }
         let rounded = Rounding { unit: position_unit(tracks, evidence.layout.particles), exact: exact(evidence) };
-        let blocks =
-            tracks.iter().map(|(_, track)| base64(&round_track(track, evidence.layout.particles, &rounded))).collect();
+        let blocks = tracks
+            .iter()
+            .map(|(_, track)| encode_base64(&round_track(track, evidence.layout.particles, &rounded)))
+            .collect();
         Self { blocks, rounded: Some(rounded) }
     }
 }
@@ -69,7 +71,7 @@ fn bytes(values: &[f64]) -> Vec<u8> {
 }
 
 /// Deflates bytes without a header and encodes them in base64.
-fn base64(bytes: &[u8]) -> String {
+fn encode_base64(bytes: &[u8]) -> String {
     base64::engine::general_purpose::STANDARD.encode(miniz_oxide::deflate::compress_to_vec(bytes, 8))
 }
 

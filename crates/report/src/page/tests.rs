@@ -1,6 +1,6 @@
 use super::*;
 use crate::check::{StepChoice, WrongSteps};
-use fosssim_evidence::{BUDGET, Focus, StepRulings, gather};
+use fosssim_evidence::{Focus, MAX_NUMBERS, StepRulings, gather};
 use fosssim_findings::CourseNote;
 use fosssim_grading::{
     Grade, Reason, SceneResult, Verdict,
@@ -32,7 +32,7 @@ fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: 
     let outcome: Outcome = replay::judge(scene, trace, &options, &mut rulings);
     let explanations = cut(hints, diagnose::explain(scene, trace));
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
-    let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     let check = check_of(scene_name, trace_name, &outcome, &explanations);
     Case { check, scene, evidence: Some(&evidence), what_if: None, hints, has_trace: true }.page(trace_name)
 }
@@ -50,7 +50,7 @@ fn text_of(scene: &Scene, trace: &[u8]) -> String {
 
 fn of_mistake(scene: &Scene, id: &str) -> Vec<u8> {
     let mistake = student::find(id).expect("a mistake").mistake;
-    student::trace(scene, Student::new(Some(mistake))).unwrap_or_else(|(trace, _)| trace)
+    student::record_trace(scene, Student::new(Some(mistake))).unwrap_or_else(|(trace, _)| trace)
 }
 
 /// The essentials are text: without script, in print, and for who can't see pictures.
@@ -135,7 +135,7 @@ fn a_proof_is_told_of_whole_traces_only() {
     let options = replay::Options { fair: true, ..Default::default() };
     let outcome = replay::judge(&scene, &trace[..], &options, &mut rulings);
     let focus = Focus::from_outcome(&outcome);
-    let evidence = gather(&scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    let evidence = gather(&scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     let named = &diagnose::explain(&scene, &trace)[0];
     assert!(WhatIf::for_scene(&scene, named, Some(&trace), &evidence).expect("a run").equal);
     assert_eq!(WhatIf::for_scene(&scene, named, None, &evidence), None);
@@ -156,7 +156,7 @@ fn names_and_texts_that_look_like_markup_stay_text() {
 /// The policy allows the script and the style sheet that are there, by their digests, and nothing that needs more.
 #[test]
 fn the_policy_fits_the_page() {
-    let html = document("empty", "", script());
+    let html = render_document("empty", "", script());
     let between = |from: &str, to: &str| html.split_once(from).and_then(|(_, rest)| rest.split_once(to)).expect(from).0;
     assert!(html.contains(&format!("script-src '{}'", digest(between("<script>", "</script>")))));
     assert!(html.contains(&format!("style-src '{}'", digest(between("<style>", "</style>")))));
@@ -199,7 +199,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let options = replay::Options { fair: true, ..Default::default() };
     let outcome = replay::judge(scene, &trace[..], &options, &mut rulings);
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
-    let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, BUDGET);
+    let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     let all = diagnose::explain(scene, &trace);
     let explanations = cut(hints, all.clone());
     let what_if = WhatIf {

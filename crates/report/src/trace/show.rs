@@ -1,13 +1,13 @@
 //! One step of a trace, as text or JSON.
 use super::super::{
-    detect::polynomial,
+    detect::format_polynomial,
     style::{Look, Style},
     table::{Align, Table},
     view::{SCHEMA, numbers},
 };
 use fosssim_judge::{PairWords, PassWords, Role};
 use fosssim_model::trace::{Frame, Label};
-use fosssim_num::printed::exact;
+use fosssim_num::printed::format_exact;
 use serde_json::{Value, json};
 
 /// A record of the step.
@@ -78,7 +78,8 @@ impl ShownStep<'_> {
         table.heading(["particle", "x", "y", "vx", "vy"]);
         let pairs = frame.state.positions.chunks(2).zip(frame.state.velocities.chunks(2));
         for (particle, (position, velocity)) in pairs.enumerate() {
-            let cell = |values: &[f64], axis: usize| values.get(axis).copied().map(exact).unwrap_or_default().into();
+            let cell =
+                |values: &[f64], axis: usize| values.get(axis).copied().map(format_exact).unwrap_or_default().into();
             let (x, y) = (cell(position, 0), cell(position, 1));
             table.row([particle.to_string().into(), x, y, cell(velocity, 0), cell(velocity, 1)]);
         }
@@ -105,7 +106,7 @@ impl ShownStep<'_> {
             let place = label.map_or_else(String::new, |label| {
                 format!("{}, {}: ", PairWords(label.pair), Role::from_number(label.pair.kind, label.number))
             });
-            text += &format!("    {index}  {place}{}\n", polynomial(coefficients, exact));
+            text += &format!("    {index}  {place}{}\n", format_polynomial(coefficients, format_exact));
         }
         text
     }

@@ -5,7 +5,7 @@ use fosssim_model::trace::Malformation;
 use std::time::Duration;
 
 fn says(reason: Reason) -> String {
-    summary(&SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, reason))
+    summarize(&SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, reason))
 }
 
 #[test]
@@ -30,7 +30,7 @@ fn a_limit_says_how_far_the_trace_came() {
     let stopped = |limit, steps| {
         let why = Reason::Program(ProgramProgress { limit: Some(limit), steps });
         let result = SceneResult::without_run("a/b", 15, Verdict::TimeLimit, why);
-        summary(&SceneResult { ended: Some(RunEnd::WallLimit), ..result })
+        summarize(&SceneResult { ended: Some(RunEnd::WallLimit), ..result })
     };
     let time = Limit::Time(Duration::from_millis(2500));
     assert_eq!(stopped(time, 4), "the program used up its time on the clock (2.5 s) at step 5 of 15");
@@ -42,7 +42,7 @@ fn a_limit_says_how_far_the_trace_came() {
         Reason::Program(ProgramProgress { limit: None, steps: 4 }),
     );
     let crash = SceneResult { ended: Some(RunEnd::Signalled(11)), ..crash };
-    assert!(summary(&crash).ends_with("; the last complete record is that of step 4 of 15"), "{}", summary(&crash));
+    assert!(summarize(&crash).ends_with("; the last complete record is that of step 4 of 15"), "{}", summarize(&crash));
     assert!(!describe_ending(&crash).contains("step"), "the same in many scenes: {}", describe_ending(&crash));
     assert!(stopped(Limit::Memory(512 << 20), 0).ends_with("(512 MiB) at step 1 of 15"));
 }
@@ -63,7 +63,7 @@ fn a_wrong_trace_says_how_many_steps_and_where_first() {
 #[test]
 fn details_are_what_is_told_and_nothing_else() {
     let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(WrongTrace::Untold));
-    assert_eq!(details(&result), [""; 0]);
+    assert_eq!(list_details(&result), [""; 0]);
     let first = DisclosedFinding::Place { step: 4, kind: FindingKind::Position, place: FindingPlace::Particle(2) };
     let objects = DisclosedFinding::Place {
         step: 5,
@@ -95,7 +95,7 @@ fn details_are_what_is_told_and_nothing_else() {
         trailing_bytes: true,
     };
     let result = SceneResult { disclosure: Some(told), ended: Some(RunEnd::Exited(127)), ..result };
-    let lines = details(&result);
+    let lines = list_details(&result);
     assert!(lines[0].starts_with("exit code 127 usually means"));
     assert_eq!(
         lines[1..],

@@ -22,7 +22,7 @@ pub(super) struct AttackNeed {
 }
 
 impl AttackNeed {
-    const NEEDS: [Self; 7] = [
+    const DENIED_NEEDS: [Self; 7] = [
         Self::new("file rules", &[Layer::FileRules]),
         // Files of the host are forbidden or hidden.
         Self::new("hidden files", &[Layer::FileRules, Layer::Namespaces]),
@@ -112,7 +112,7 @@ impl Attack {
                     attack.wall = Some(Duration::from_millis(milliseconds));
                 }
                 "needs" => {
-                    let need = AttackNeed::NEEDS.into_iter().find(|need| need.name == value);
+                    let need = AttackNeed::DENIED_NEEDS.into_iter().find(|need| need.name == value);
                     attack.needs.push(need.ok_or_else(|| format!("unknown need: {value}"))?);
                 }
                 "leaves" => attack.leaves = Some(value.into()),
@@ -144,7 +144,7 @@ mod tests {
         let attack = Attack::parse("a", text).unwrap();
         assert_eq!(attack.policy, Policy::Tools);
         assert_eq!(attack.wall, Some(Duration::from_millis(300)));
-        assert_eq!(attack.needs, [AttackNeed::NEEDS[0]]);
+        assert_eq!(attack.needs, [AttackNeed::DENIED_NEEDS[0]]);
         let matches = |ended: &RunEnd| attack.expected.iter().any(|expected| expected.matches(ended));
         assert!(matches(&RunEnd::Exited(0)) && !matches(&RunEnd::Exited(66)));
         assert!(matches(&RunEnd::Violation { call: "ptrace".into() }));

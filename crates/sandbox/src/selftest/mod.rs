@@ -35,16 +35,16 @@ use super::{
 static SOURCES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../tests/attacks");
 
 /// The environment variable that permits the hostile programs to start.
-const PERMIT: &str = "FOSSSIM_ATTACK";
+const PERMIT_VARIABLE: &str = "FOSSSIM_ATTACK";
 /// The variables that give a hostile program the path of the grader's program, and the grader's group.
-const GRADER: &str = "FOSSSIM_GRADER";
-const GROUP: &str = "FOSSSIM_GRADER_GROUP";
+const GRADER_VARIABLE: &str = "FOSSSIM_GRADER";
+const GROUP_VARIABLE: &str = "FOSSSIM_GRADER_GROUP";
 /// The end of an attack whose forbidden call was denied, but not by the sandbox, which would have ended the attack.
-const REFUSED: RunEnd = RunEnd::Exited(77);
+const DENIED_END: RunEnd = RunEnd::Exited(77);
 /// Attacks are built without optimization, which would remove stores and loops that seem useless.
-const FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
+const COMPILER_FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
 /// The file name of the trace.
-const TRACE: &str = "trace.bin";
+const TRACE_NAME: &str = "trace.bin";
 /// The maximum size of a collected trace, in bytes.
 const MAX_TRACE_BYTES: u64 = 1 << 20;
 
@@ -132,7 +132,7 @@ pub fn run_some(
     let mut attacks = attacks();
     attacks.retain(|attack| chosen(&attack.name));
     let header = SOURCES.get_file("attack.h").map(|file| file.contents()).unwrap_or_default();
-    put(&sources.join("attack.h"), header).map_err(folder_error)?;
+    write_file(&sources.join("attack.h"), header).map_err(folder_error)?;
 
     let next = AtomicUsize::new(0);
     let done = Mutex::new((Vec::new(), &mut report));
@@ -184,8 +184,8 @@ impl Place<'_> {
         let built = self.build(attack).map_err(PromiseState::NotTested)?;
         let broken = |text: String| PromiseState::Broken(text);
         let fault = |error: &dyn std::fmt::Display| PromiseState::NotTested(format!("the test itself failed: {error}"));
-        let mut decoy =
-            Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique()))).map_err(|e| fault(&e))?;
+        let mut decoy = Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique_name())))
+            .map_err(|e| fault(&e))?;
         // Each run gets a separate copy of the program, so that surviving processes can be recognized.
         let program = decoy.bring(&built).map_err(|e| fault(&e))?;
         let before = decoy.state().map_err(|e| fault(&e))?;
@@ -194,9 +194,9 @@ impl Place<'_> {
             .readable([&decoy.scene])
             .policy(attack.policy)
             .folder_in_memory()
-            .trace(TRACE)
+            .trace(TRACE_NAME)
             .environment(environment())
-            .limits(limits(attack));
+            .limits(attack_limits(attack));
         let mut running = self.backend.start(&job).map_err(|e| fault(&e))?;
         if attack.expects_exit() && running.is_in_memory() {
             // Such runs share a supervisor, so the next run would see anything that is left in it.
@@ -211,11 +211,11 @@ impl Place<'_> {
         }
         let (outcome, folder) = running.wait_with_folder().map_err(|error| broken(error.to_string()))?;
 
-        if let Some(left) = survivor(&program) {
+        if let Some(left) = find_survivor(&program) {
             return Err(broken(format!("process {left} outlived the run")));
         }
         // In a container, the engine's filter may be the first to deny a forbidden call; then the call is not reported.
-        let refused = outcome.ended == REFUSED && attack.expects_violation() && is_filtered();
+        let refused = outcome.ended == DENIED_END && attack.expects_violation() && is_filtered();
         if !refused && !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
             return Err(broken(format!("it {}{}", outcome.ended, last_output(&outcome))));
         }
@@ -243,7 +243,7 @@ impl Place<'_> {
             .update(source.contents())
             .update(header.contents())
             .update(self.cc.as_os_str().as_encoded_bytes())
-            .update(FLAGS.join(" ").as_bytes());
+            .update(COMPILER_FLAGS.join(" ").as_bytes());
         let digest = digest.finalize().to_hex();
         let program = self.programs.join(format!("{}-{}", attack.name, &digest[..16]));
         if program.is_file() {
@@ -251,10 +251,11 @@ impl Place<'_> {
         }
         let said = |error: std::io::Error| format!("{}: {error}", self.cc.display());
         let path = self.sources.join(format!("{}.c", attack.name));
-        put(&path, source.contents()).map_err(said)?;
+        write_file(&path, source.contents()).map_err(said)?;
         // Build under a temporary name, so that an incomplete program is never used.
-        let fresh = self.programs.join(format!("{}-{}", attack.name, unique()));
-        let output = Command::new(self.cc).args(FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
+        let fresh = self.programs.join(format!("{}-{}", attack.name, unique_name()));
+        let output =
+            Command::new(self.cc).args(COMPILER_FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
         if !output.status.success() {
             let text = String::from_utf8_lossy(&output.stderr);
             return Err(format!("it does not compile here: {}", text.lines().take(3).collect::<Vec<_>>().join(" ")));
@@ -265,20 +266,20 @@ impl Place<'_> {
 }
 
 /// Returns a unique suffix, because other self-tests may use the same folder at the same time.
-fn unique() -> String {
-    static COUNT: AtomicUsize = AtomicUsize::new(0);
-    format!("{}.{}", std::process::id(), COUNT.fetch_add(1, Ordering::Relaxed))
+fn unique_name() -> String {
+    static NAME_COUNT: AtomicUsize = AtomicUsize::new(0);
+    format!("{}.{}", std::process::id(), NAME_COUNT.fetch_add(1, Ordering::Relaxed))
 }
 
 /// Writes a file atomically, because others may be reading it.
-fn put(path: &Path, contents: &[u8]) -> std::io::Result<()> {
-    let fresh = path.with_extension(unique());
+fn write_file(path: &Path, contents: &[u8]) -> std::io::Result<()> {
+    let fresh = path.with_extension(unique_name());
     std::fs::write(&fresh, contents)?;
     std::fs::rename(&fresh, path)
 }
 
 /// Returns small limits, so that the suite is fast, and harmless even if a layer is missing.
-fn limits(attack: &Attack) -> Limits {
+fn attack_limits(attack: &Attack) -> Limits {
     Limits {
         cpu: Duration::from_millis(300),
         wall: attack.wall.unwrap_or(Duration::from_secs(20)),
@@ -295,7 +296,11 @@ fn limits(attack: &Attack) -> Limits {
 /// Returns the environment of a hostile program.
 fn environment() -> [(&'static str, String); 3] {
     let grader = std::fs::read_link("/proc/self/exe").unwrap_or_default();
-    [(PERMIT, "1".into()), (GRADER, grader.display().to_string()), (GROUP, sys::group().to_string())]
+    [
+        (PERMIT_VARIABLE, "1".into()),
+        (GRADER_VARIABLE, grader.display().to_string()),
+        (GROUP_VARIABLE, sys::group_id().to_string()),
+    ]
 }
 
 /// Returns whether a system call filter, such as a container's, already applies to this process.
@@ -305,9 +310,9 @@ fn is_filtered() -> bool {
 }
 
 /// Returns a process that still runs the program, in any of its threads.
-fn survivor(program: &Path) -> Option<i32> {
-    processes::all().find(|pid| {
-        processes::threads(*pid)
+fn find_survivor(program: &Path) -> Option<i32> {
+    processes::list_all().find(|pid| {
+        processes::list_threads(*pid)
             .any(|thread| std::fs::read_link(format!("/proc/{pid}/task/{thread}/exe")).is_ok_and(|exe| exe == program))
     })
 }
@@ -326,10 +331,10 @@ fn last_output(outcome: &RunOutcome) -> String {
 
 /// Checks that the folder contains the expected trace.
 fn check_left_trace(attack: &Attack, work: &LeftFolder) -> Result<(), String> {
-    let collected = work.regular_file(TRACE, MAX_TRACE_BYTES).and_then(|(mut file, _)| {
+    let collected = work.regular_file(TRACE_NAME, MAX_TRACE_BYTES).and_then(|(mut file, _)| {
         let mut bytes = Vec::new();
         let read = std::io::Read::read_to_end(&mut file, &mut bytes);
-        read.map(|_| bytes).map_err(|source| CollectError::System { name: TRACE.into(), source })
+        read.map(|_| bytes).map_err(|source| CollectError::System { name: TRACE_NAME.into(), source })
     });
     match (attack.leaves.as_deref(), collected) {
         (None, _)

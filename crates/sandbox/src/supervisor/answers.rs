@@ -38,18 +38,18 @@ struct SharedWait {
 }
 
 impl SharedWaits {
-    const SHORTEST: Duration = Duration::from_micros(50);
+    const SHORTEST_WAIT: Duration = Duration::from_micros(50);
     const MAX_PAUSE: Duration = Duration::from_millis(2);
 
     /// Adds a waiting thread. Returns the answer if no wait is needed.
     pub(super) fn add(&mut self, announced: &PendingCall, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
         let Ok(memory) = open_memory(announced, user) else { return Some(CallAnswer::GoOn) };
         let [word, _, value, ..] = announced.arguments;
-        let limit = match limit(announced, &memory, now) {
+        let limit = match apply_limit(announced, &memory, now) {
             Ok(limit) => limit,
             Err(errno) => return Some(CallAnswer::Refused(errno)),
         };
-        let (pause, value) = (Self::SHORTEST, value as u32);
+        let (pause, value) = (Self::SHORTEST_WAIT, value as u32);
         let wait = SharedWait { id: announced.id, memory, word, value, limit, pause, due: now + pause };
         match wait.answer(now) {
             Some(CallAnswer::Done) => Some(CallAnswer::Refused(libc::EAGAIN)),
@@ -100,7 +100,7 @@ impl SharedWait {
 }
 
 /// Returns the time until which the thread waits: relative to now (`FUTEX_WAIT`), or by a clock (`FUTEX_WAIT_BITSET`).
-fn limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<Option<Instant>, i32> {
+fn apply_limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<Option<Instant>, i32> {
     let [_, operation, _, place, ..] = announced.arguments;
     if place == 0 {
         return Ok(None);
@@ -152,7 +152,7 @@ mod tests {
         let (word, now) = (7, Instant::now());
         let memory = File::open("/proc/self/mem").unwrap();
         let limit = |operation, time: [i64; 2]| {
-            limit(&announced(operation, &word, 7, Some(&time)), &memory, now).map(|limit| limit.unwrap() - now)
+            apply_limit(&announced(operation, &word, 7, Some(&time)), &memory, now).map(|limit| limit.unwrap() - now)
         };
         for (flag, real) in [(0, false), (libc::FUTEX_CLOCK_REALTIME, true)] {
             let soon = sys::time_by(real).as_secs() as i64 + 100;

@@ -19,7 +19,7 @@ macro_rules! calls {
 
 /// Calls that every program needs for its own memory, files, time, threads and signals. Landlock limits file calls; the
 /// resource limits limit amounts.
-pub(super) const ALLOWED: &[Call] = calls![
+pub(super) const ALLOWED_CALLS: &[Call] = calls![
     SYS_read SYS_write SYS_readv SYS_writev SYS_pread64 SYS_pwrite64 SYS_preadv SYS_pwritev SYS_preadv2 SYS_pwritev2
     SYS_openat SYS_close SYS_close_range SYS_lseek SYS_fstat SYS_newfstatat SYS_statx SYS_faccessat SYS_faccessat2
     SYS_readlinkat SYS_getdents64 SYS_getcwd SYS_chdir SYS_fchdir SYS_mkdirat SYS_unlinkat SYS_renameat SYS_renameat2
@@ -44,11 +44,11 @@ pub(super) const ALLOWED: &[Call] = calls![
 ];
 
 /// Calls that start a process by the older names. Compilers need them, submissions do not.
-pub(super) const FORKING: &[Call] = calls![; old: SYS_fork SYS_vfork];
+pub(super) const FORK_CALLS: &[Call] = calls![; old: SYS_fork SYS_vfork];
 
 /// Calls that create links and special files, most of which the folder's rules also forbid. They are answered with
 /// `EPERM`.
-pub(super) const LINKING: &[Call] = calls![
+pub(super) const LINK_CALLS: &[Call] = calls![
     SYS_linkat SYS_symlinkat SYS_mknodat
     ; old:
     SYS_link SYS_symlink SYS_mknod
@@ -56,17 +56,17 @@ pub(super) const LINKING: &[Call] = calls![
 
 /// Calls that change permission bits by name or descriptor. Landlock does not restrict them, so a program under the
 /// grader's user could change the grader's files.
-pub(super) const MODES: &[Call] = calls![SYS_fchmodat SYS_fchmod; old: SYS_chmod];
+pub(super) const MODE_CALLS: &[Call] = calls![SYS_fchmodat SYS_fchmod; old: SYS_chmod];
 
 /// Calls that change times of files, which Landlock does not restrict either.
-pub(super) const TIMES: &[Call] = calls![SYS_utimensat];
+pub(super) const TIME_CALLS: &[Call] = calls![SYS_utimensat];
 /// Calls that change times of files under older names. They never take an open file.
 pub(super) const TIMES_BY_NAME: &[Call] = calls![; old: SYS_utime SYS_utimes SYS_futimesat];
 
 /// Calls that libraries try but do not need. They are denied with `EPERM` or `EACCES` and do not count as an attack.
 /// For example, the C library connects to the name service by a socket. Counters of free blocks are included, because
 /// they reveal what others wrote.
-pub(super) const REFUSED: &[Call] = calls![
+pub(super) const DENIED_CALLS: &[Call] = calls![
     SYS_socket SYS_socketpair SYS_truncate SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr
     SYS_removexattr SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler SYS_sched_setparam SYS_sched_setattr
     SYS_setgroups SYS_setfsuid SYS_setfsgid
@@ -79,7 +79,7 @@ pub(super) const REFUSED: &[Call] = calls![
 
 /// Dangerous calls of the kernel. No submission makes them by accident, so the program is stopped and the call is
 /// named.
-pub(super) const FORBIDDEN: &[Call] = calls![
+pub(super) const FORBIDDEN_CALLS: &[Call] = calls![
     SYS_ptrace SYS_process_vm_readv SYS_process_vm_writev SYS_kcmp SYS_pidfd_getfd SYS_unshare SYS_setns SYS_mount
     SYS_umount2 SYS_pivot_root SYS_chroot SYS_open_tree SYS_move_mount SYS_fsopen SYS_fsconfig SYS_fsmount SYS_fspick
     SYS_mount_setattr SYS_bpf SYS_perf_event_open SYS_userfaultfd SYS_io_uring_setup SYS_io_uring_enter
@@ -93,20 +93,30 @@ pub(super) const FORBIDDEN: &[Call] = calls![
 ];
 
 /// Calls that lock whole files. They need no right to write, so only build tools may use them, in their own folder.
-pub(super) const LOCKS: &[Call] = calls![SYS_flock];
+pub(super) const LOCK_CALLS: &[Call] = calls![SYS_flock];
 
 /// Calls that change the user. The kernel denies them without privileges, which no program has; `make` sets its own
 /// user again before every command.
-pub(super) const IDENTITY: &[Call] =
+pub(super) const IDENTITY_CALLS: &[Call] =
     calls![SYS_setuid SYS_setgid SYS_setreuid SYS_setregid SYS_setresuid SYS_setresgid];
 
 /// All groups, which together hold all existing calls.
-pub(super) const GROUPS: [&[Call]; 10] =
-    [ALLOWED, FORKING, LINKING, MODES, TIMES, TIMES_BY_NAME, LOCKS, IDENTITY, REFUSED, FORBIDDEN];
+pub(super) const CALL_GROUPS: [&[Call]; 10] = [
+    ALLOWED_CALLS,
+    FORK_CALLS,
+    LINK_CALLS,
+    MODE_CALLS,
+    TIME_CALLS,
+    TIMES_BY_NAME,
+    LOCK_CALLS,
+    IDENTITY_CALLS,
+    DENIED_CALLS,
+    FORBIDDEN_CALLS,
+];
 
 /// Returns the common name of a call.
 pub(super) fn name(number: i64) -> String {
-    let known = GROUPS.into_iter().flatten().find(|(_, known)| *known == number);
+    let known = CALL_GROUPS.into_iter().flatten().find(|(_, known)| *known == number);
     known.map_or_else(|| format!("number {number}"), |(name, _)| name.trim_start_matches("SYS_").to_string())
 }
 
@@ -117,7 +127,7 @@ mod tests {
     #[test]
     fn no_call_is_in_two_groups() {
         let mut seen = std::collections::BTreeMap::new();
-        for group in GROUPS {
+        for group in CALL_GROUPS {
             for (name, number) in group {
                 assert_eq!(seen.insert(*number, *name), None, "{name} is listed twice");
             }

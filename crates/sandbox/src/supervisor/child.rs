@@ -23,11 +23,11 @@ use super::{filter, filter::Purpose, memory_folder, processes, view, walls};
 use crate::{
     mounts,
     sys::{self, Access, Resource},
-    wire::{self, EXECUTE, Failure, RawBytes, RunOrder, stage},
+    wire::{self, EXECUTE_STEP, Failure, RawBytes, RunOrder, failure_at},
 };
 
 /// The byte that announces a seccomp listener.
-pub(super) const LISTENER: u8 = b'L';
+pub(super) const LISTENER_BYTE: u8 = b'L';
 
 /// The data that the child needs, prepared by the supervisor.
 pub(super) struct ChildPlan {
@@ -62,7 +62,7 @@ pub(super) fn become_program(mut plan: ChildPlan) -> ! {
     };
     let failure = match prepare(&mut plan) {
         Err(failure) => failure,
-        Ok((arguments, environment)) => Failure::new(EXECUTE, &execute(&plan, &arguments, &environment)),
+        Ok((arguments, environment)) => Failure::new(EXECUTE_STEP, &execute(&plan, &arguments, &environment)),
     };
     // The supervisor waits for this message or for the end of the program; without readers the message is lost.
     let _ = serde_json::to_writer(&mut status, &failure).map(|()| status.flush());
@@ -73,27 +73,27 @@ type Strings = Vec<CString>;
 
 /// Sets up every layer. Returns the program's arguments and environment.
 fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
-    sys::new_session().map_err(stage("start a session"))?;
+    sys::new_session().map_err(failure_at("start a session"))?;
     for group in &mut plan.groups {
-        group.write_all(b"0").map_err(stage("enter the control group"))?;
+        group.write_all(b"0").map_err(failure_at("enter the control group"))?;
     }
-    sys::connect(&plan.input, &plan.output, &plan.error).map_err(stage("connect the standard streams"))?;
+    sys::connect(&plan.input, &plan.output, &plan.error).map_err(failure_at("connect the standard streams"))?;
     sys::default_signals(&plan.ignored);
     sys::set_file_mask(0o022);
-    sys::enter_folder(plan.folder.as_fd()).map_err(stage("enter the working folder"))?;
+    sys::enter_folder(plan.folder.as_fd()).map_err(failure_at("enter the working folder"))?;
     if plan.order.walls.namespaces && !plan.order.tools {
         // The current folder changes as well.
         view::leave_processes(&plan.order)?;
     }
     // Makes this the first process that the kernel kills when memory runs out. Some containers forbid the setting.
     let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
-    set_limits(&plan.order, plan.user.is_some()).map_err(stage("set the resource limits"))?;
+    set_limits(&plan.order, plan.user.is_some()).map_err(failure_at("set the resource limits"))?;
     if let Some(user) = plan.user {
-        sys::switch_user(user).map_err(stage("become the sandbox's user"))?;
+        sys::switch_user(user).map_err(failure_at("become the sandbox's user"))?;
     }
     // A change of user resets the parent-death signal, so the signal is set afterwards. A parent that ended earlier is
     // detected here.
-    sys::die_with_parent().map_err(stage("bind the program's life to the supervisor's"))?;
+    sys::die_with_parent().map_err(failure_at("bind the program's life to the supervisor's"))?;
     if std::os::unix::process::parent_id() != plan.supervisor {
         sys::exit_now(125);
     }
@@ -103,23 +103,23 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
         _ => return Err(Failure { stage: "pass text with a NUL byte".into(), errno: libc::EINVAL }),
     };
     for raw in &plan.order.readable {
-        if !c_string(raw).is_ok_and(|path| sys::accessible(&path, Access::READ_OK)) {
+        if !c_string(raw).is_ok_and(|path| sys::is_accessible(&path, Access::READ_OK)) {
             let stage =
                 format!("open {} for the program (every user must be able to read it)", wire::path(raw).display());
             return Err(Failure { stage, errno: libc::EACCES });
         }
     }
-    sys::no_new_privileges().map_err(stage("give up privileges"))?;
+    sys::no_new_privileges().map_err(failure_at("give up privileges"))?;
     if let Some(rules) = plan.rules.take() {
-        let rules = walls::add_own_entry(rules).map_err(stage("prepare Landlock"))?;
-        walls::enforce(rules).map_err(stage("enforce Landlock"))?;
+        let rules = walls::add_own_entry(rules).map_err(failure_at("prepare Landlock"))?;
+        walls::enforce(rules).map_err(failure_at("enforce Landlock"))?;
     }
-    sys::close_on_execute().map_err(stage("close descriptors"))?;
+    sys::close_on_execute().map_err(failure_at("close descriptors"))?;
     if let Some(script) = script_by_descriptor(plan) {
-        sys::keep_on_execute(script.file.as_fd()).map_err(stage("keep the script open"))?;
+        sys::keep_on_execute(script.file.as_fd()).map_err(failure_at("keep the script open"))?;
     }
     if plan.order.walls.seccomp {
-        filter_calls(plan).map_err(stage("install the system call filter"))?;
+        filter_calls(plan).map_err(failure_at("install the system call filter"))?;
     }
     Ok(strings)
 }
@@ -127,7 +127,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
 /// Sets the resource limits. Except for file sizes they are a second line behind the supervisor's checks.
 fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // This is the default of Linux, so that a deep recursion ends in the same way on every host.
-    const STACK: u64 = 8 << 20;
+    const STACK_BYTES: u64 = 8 << 20;
     const SPARE_MEMORY: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;
     const SPARE_PROCESSES: u64 = 16;
@@ -137,21 +137,21 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // The address sanitizer reserves 20 TiB in addition to the program's own space; other sanitizers reserve more.
     const SANITIZERS_SPACE: u64 = 64 << 40;
     // The limit is one byte instead of zero, because with zero the kernel may pipe core dumps to a handler.
-    sys::limit(Resource::Core, 1)?;
+    sys::set_limit(Resource::Core, 1)?;
     let limits = &order.limits;
-    sys::limit(Resource::Fsize, order.file_bytes())?;
-    sys::limit(Resource::Nofile, u64::from(limits.open_files))?;
+    sys::set_limit(Resource::Fsize, order.file_bytes())?;
+    sys::set_limit(Resource::Nofile, u64::from(limits.open_files))?;
     let begun = u64::from(limits.cpu.subsec_nanos() > 0);
-    sys::limit(Resource::Cpu, limits.cpu.as_secs().saturating_add(begun + SPARE_SECONDS))?;
-    sys::limit(Resource::Stack, STACK)?;
-    sys::limit(Resource::Memlock, 64 << 10)?;
-    sys::limit(Resource::Msgqueue, 0)?;
-    sys::limit(Resource::Rtprio, 0)?;
+    sys::set_limit(Resource::Cpu, limits.cpu.as_secs().saturating_add(begun + SPARE_SECONDS))?;
+    sys::set_limit(Resource::Stack, STACK_BYTES)?;
+    sys::set_limit(Resource::Memlock, 64 << 10)?;
+    sys::set_limit(Resource::Msgqueue, 0)?;
+    sys::set_limit(Resource::Rtprio, 0)?;
     // The kernel counts pending signals per user, like processes.
-    sys::limit(Resource::Sigpending, PENDING_SIGNALS)?;
+    sys::set_limit(Resource::Sigpending, PENDING_SIGNALS)?;
     // Address space is not memory: libraries reserve more than they use. The memory in use is checked separately.
     let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
-    sys::limit(Resource::As, if order.sanitizers { space.max(SANITIZERS_SPACE) } else { space })?;
+    sys::set_limit(Resource::As, if order.sanitizers { space.max(SANITIZERS_SPACE) } else { space })?;
     // The kernel counts per user or user namespace. If these are shared with other runs, the limit only stops bombs,
     // because the supervisor counts the run's own processes.
     let processes = u64::from(limits.processes) + SPARE_PROCESSES;
@@ -159,9 +159,9 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     let most_runs = if order.tools { 8 } else { 64 };
     let processes = match own_user || order.walls.namespaces {
         true => processes + SPARE_FOR_OTHERS,
-        false => most_runs * processes + processes::threads_of_user(sys::user()),
+        false => most_runs * processes + processes::threads_of_user(sys::user_id()),
     };
-    sys::limit(Resource::Nproc, processes)
+    sys::set_limit(Resource::Nproc, processes)
 }
 
 /// Filters that were compiled before the child existed, with their purpose.
@@ -193,7 +193,7 @@ fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
     for (index, program) in compiled.1.iter().enumerate() {
         let listener = sys::install_filter(program, walls.notify && index == 0)?;
         if let Some(listener) = listener {
-            sys::send_descriptors(&plan.status, LISTENER, [listener.as_fd()])?;
+            sys::send_descriptors(&plan.status, LISTENER_BYTE, [listener.as_fd()])?;
         }
     }
     Ok(())
@@ -204,9 +204,9 @@ fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
 /// A newly written file can be busy for a moment: another thread of the grader may have forked while the file was open
 /// for writing, and its child holds a copy of the descriptor until it executes. The execution is therefore retried.
 fn execute(plan: &ChildPlan, arguments: &[CString], environment: &[CString]) -> io::Error {
-    const TRIES: u32 = 25;
+    const MAX_TRIES: u32 = 25;
     const PAUSE: Duration = Duration::from_millis(20);
-    for _ in 1..TRIES {
+    for _ in 1..MAX_TRIES {
         let error = execute_once(plan, arguments, environment);
         if error.raw_os_error() != Some(libc::ETXTBSY) {
             return error;
@@ -247,7 +247,7 @@ fn arguments(plan: &ChildPlan) -> io::Result<Strings> {
 /// Returns the script if its interpreter must read it by a descriptor, because the run's user cannot reach its path.
 fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
     let opened = plan.opened.as_ref().filter(|_| plan.order.interpreter.is_some())?;
-    let readable = c_string(&plan.order.program).is_ok_and(|path| sys::accessible(&path, Access::READ_OK));
+    let readable = c_string(&plan.order.program).is_ok_and(|path| sys::is_accessible(&path, Access::READ_OK));
     (!readable).then_some(opened)
 }
 
@@ -255,8 +255,11 @@ fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
 fn environment(order: &RunOrder) -> io::Result<Strings> {
     let folder = c_string(&order.folder)?;
     // A folder whose parents are closed to the sandbox's user is used as the current folder.
-    let home =
-        if sys::accessible(&folder, Access::WRITE_OK | Access::EXEC_OK) { order.folder.clone() } else { b".".to_vec() };
+    let home = if sys::is_accessible(&folder, Access::WRITE_OK | Access::EXEC_OK) {
+        order.folder.clone()
+    } else {
+        b".".to_vec()
+    };
     let mut variables: Vec<(RawBytes, RawBytes)> = vec![
         (b"PATH".to_vec(), b"/usr/local/bin:/usr/bin:/bin".to_vec()),
         (b"LC_ALL".to_vec(), b"C".to_vec()),
@@ -300,7 +303,7 @@ impl OpenedFile {
             }
         };
         open().map_err(|error| match error.kind() {
-            io::ErrorKind::OutOfMemory => Failure::new(EXECUTE, &error),
+            io::ErrorKind::OutOfMemory => Failure::new(EXECUTE_STEP, &error),
             _ => Failure::new("open the program", &error),
         })
     }

@@ -55,7 +55,7 @@ pub(super) const LOCK_COMMANDS: [u64; 6] = [
 ];
 
 /// Queries about a process whose number is the first argument.
-const QUESTIONS: [i64; 6] = [
+const PROCESS_QUERIES: [i64; 6] = [
     libc::SYS_getsid,
     libc::SYS_getpgid,
     libc::SYS_sched_getaffinity,
@@ -134,17 +134,17 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
             instruction.k = ACTION_ANNOUNCE;
         }
     }
-    for (errno, rules) in refusals(purpose)? {
+    for (errno, rules) in denials(purpose)? {
         filters.push(compile(rules, SeccompAction::Errno(errno as u32), SeccompAction::Allow)?);
     }
     // A call in any group exists, and earlier filters decide about it. Other calls do not exist.
-    let known = calls::GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
+    let known = calls::CALL_GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
     filters.push(compile(known, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))?);
     Ok(filters)
 }
 
 /// Returns the denied calls by error number; 0 is for calls that succeed without any effect.
-fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
+fn denials(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     let mut refusals: BTreeMap<i32, CallRules> = BTreeMap::new();
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
         refusals.entry(errno).or_default().insert(call, rules);
@@ -153,12 +153,12 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     // The supervisor decides about these calls for a build tool.
     let asked = purpose.tools && purpose.announce;
     for (group, is_rejected) in [
-        (calls::REFUSED, true),
-        (calls::LINKING, !purpose.tools),
-        (calls::IDENTITY, !purpose.tools),
+        (calls::DENIED_CALLS, true),
+        (calls::LINK_CALLS, !purpose.tools),
+        (calls::IDENTITY_CALLS, !purpose.tools),
         (calls::TIMES_BY_NAME, !own_files),
-        (calls::MODES, !own_files && !asked),
-        (calls::LOCKS, !asked),
+        (calls::MODE_CALLS, !own_files && !asked),
+        (calls::LOCK_CALLS, !asked),
     ] {
         for (_, call) in group.iter().filter(|_| is_rejected) {
             let network = *call == libc::SYS_socket || *call == libc::SYS_socketpair;
@@ -174,7 +174,7 @@ fn refusals(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     // runs.
     let private = libc::FUTEX_PRIVATE_FLAG as u64;
     let harmless = if purpose.announce { [&SHARED_WAITS[..], &SHARED_WAKES].concat() } else { SHARED_WAITS.into() };
-    let shared = std::iter::once(condition(1, SeccompCmpOp::MaskedEq(private), 0)).chain(differ(1, &harmless));
+    let shared = std::iter::once(condition(1, SeccompCmpOp::MaskedEq(private), 0)).chain(differs_from(1, &harmless));
     refuse(libc::EPERM, libc::SYS_futex, vec![rule(shared.collect::<io::Result<_>>()?)?]);
     if purpose.announce {
         refuse(0, libc::SYS_futex, match_each(1, &SHARED_WAKES)?);
@@ -217,7 +217,7 @@ fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> 
         refusals.push((libc::EPERM, libc::SYS_tkill, vec![all_differ(0, &[pid])?]));
     }
     if let Some(pid) = own.filter(|_| !purpose.tools) {
-        for call in QUESTIONS {
+        for call in PROCESS_QUERIES {
             // The argument may also be a thread's number. The C library works without this call if it does not exist.
             let errno = if call == libc::SYS_sched_getaffinity { libc::ENOSYS } else { libc::EPERM };
             refusals.push((errno, call, vec![all_differ(0, &[0, pid])?]));
@@ -232,10 +232,10 @@ type CallRules = BTreeMap<i64, Vec<SeccompRule>>;
 /// Returns the calls that end the program, or that the supervisor decides about.
 fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     let always = |group: &[Call]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<CallRules>();
-    let mut rules = always(calls::FORBIDDEN);
+    let mut rules = always(calls::FORBIDDEN_CALLS);
     let mut clone = NAMESPACE_FLAGS.map(|flag| mask_rule(0, flag, flag)).into_iter().collect::<io::Result<Vec<_>>>()?;
     if !purpose.tools {
-        rules.extend(always(calls::FORKING));
+        rules.extend(always(calls::FORK_CALLS));
         clone.push(mask_rule(0, libc::CLONE_THREAD as u64, 0)?);
         // The supervisor allows the first execution, which starts the program itself. Without a listener, only
         // execution from the reserved descriptor passes the filter.
@@ -252,12 +252,12 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     }
     if purpose.tools && purpose.announce {
         // The supervisor checks the location of the file.
-        rules.extend(always(calls::LOCKS));
+        rules.extend(always(calls::LOCK_CALLS));
         rules.insert(libc::SYS_fcntl, match_each(1, &LOCK_COMMANDS)?);
     }
     if purpose.tools && purpose.announce && !purpose.own_user {
         // The supervisor itself changes the mode, only in the working folder.
-        rules.extend(always(calls::MODES));
+        rules.extend(always(calls::MODE_CALLS));
     }
     Ok(rules)
 }
@@ -276,10 +276,10 @@ fn compile(rules: CallRules, matched: SeccompAction, otherwise: SeccompAction) -
 
 /// Matches if the argument is none of the values.
 fn all_differ(argument: u8, values: &[u64]) -> io::Result<SeccompRule> {
-    rule(differ(argument, values).collect::<io::Result<_>>()?)
+    rule(differs_from(argument, values).collect::<io::Result<_>>()?)
 }
 
-fn differ(argument: u8, values: &[u64]) -> impl Iterator<Item = io::Result<SeccompCondition>> {
+fn differs_from(argument: u8, values: &[u64]) -> impl Iterator<Item = io::Result<SeccompCondition>> {
     values.iter().map(move |value| condition(argument, SeccompCmpOp::Ne, *value))
 }
 

@@ -25,7 +25,7 @@ use crate::{
 /// The maximum depth of folders. Nobody nests folders deeper by accident.
 const MAX_DEPTH: u32 = 32;
 /// The size of the blocks in which `stat` counts, in bytes.
-pub(super) const BLOCK: u64 = 512;
+pub(super) const BLOCK_BYTES: u64 = 512;
 
 /// The total size and number of the files in a folder.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
@@ -64,7 +64,7 @@ pub(super) fn in_use(folder: BorrowedFd<'_>) -> FolderUsage {
 pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> FolderUsage {
     let mut contents = FolderUsage::default();
     let whole = walk(folder, 0, &mut |_, metadata| {
-        contents.bytes += metadata.blocks() * BLOCK;
+        contents.bytes += metadata.blocks() * BLOCK_BYTES;
         contents.files += 1;
         contents.folders += u64::from(metadata.is_dir());
         contents.bytes <= most_bytes && contents.files <= most_files
@@ -75,7 +75,7 @@ pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) 
 
 /// Changes the owner of the folder and its contents to a user and group: folders, and files that have no second name
 /// (which might be elsewhere). Must be called only when no process of the program is alive.
-pub(super) fn give(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
+pub(super) fn change_owner(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
     walk(folder, 0, &mut |path, metadata| {
         let kind = metadata.file_type();
         if kind.is_dir() || (kind.is_file() && metadata.nlink() == 1) {
@@ -132,8 +132,8 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
 
 /// Returns a name that is not used in the folder.
 fn free_name(folder: BorrowedFd<'_>, from: usize) -> Option<String> {
-    const TRIES: usize = 100_000;
-    let names = (from..from + TRIES).map(|number| format!(".too-deep-{number}"));
+    const MAX_TRIES: usize = 100_000;
+    let names = (from..from + MAX_TRIES).map(|number| format!(".too-deep-{number}"));
     { names }.find(|name| path_of_open(folder).join(name).symlink_metadata().is_err())
 }
 

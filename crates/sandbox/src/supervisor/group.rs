@@ -22,7 +22,7 @@ use crate::{
 };
 
 /// The prefix of the groups' names.
-const PREFIX: &str = "fosssim-oracle-";
+const GROUP_PREFIX: &str = "fosssim-oracle-";
 /// Additional memory for pipe buffers, page tables and other data of the kernel, which count as well.
 const SPARE_MEMORY: u64 = 64 << 20;
 const SPARE_PROCESSES: u32 = 16;
@@ -186,12 +186,14 @@ impl Part {
     }
 
     fn make_in(kind: Kind, place: &Path) -> io::Result<Self> {
-        const TRIES: u32 = 10;
+        const MAX_TRIES: u32 = 10;
         let mut tries = 0;
         loop {
             match Self::try_in(kind, place) {
                 // A cleanup may have removed the group before it was locked.
-                Err(error) if error.kind() == io::ErrorKind::NotFound && tries < TRIES && place.is_dir() => tries += 1,
+                Err(error) if error.kind() == io::ErrorKind::NotFound && tries < MAX_TRIES && place.is_dir() => {
+                    tries += 1
+                }
                 done => return done,
             }
         }
@@ -231,8 +233,8 @@ impl Part {
 
 impl Drop for Part {
     fn drop(&mut self) {
-        const ROUNDS: u32 = 200;
-        for _ in 0..ROUNDS {
+        const MAX_ATTEMPTS: u32 = 200;
+        for _ in 0..MAX_ATTEMPTS {
             // Processes leave the group shortly after they were reaped. If the group cannot be removed yet, the next
             // run removes it.
             match std::fs::remove_dir(&self.path) {
@@ -258,7 +260,7 @@ fn value_of(text: &str, key: &str) -> Option<u64> {
 fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
     // In other process namespaces, a process may have the same number.
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
-    let path = place.join(format!("{PREFIX}{}-{now}", std::process::id()));
+    let path = place.join(format!("{GROUP_PREFIX}{}-{now}", std::process::id()));
     std::fs::create_dir(&path)?;
     let folder = File::open(&path)?;
     folder.try_lock().map_err(|_| io::ErrorKind::NotFound)?;
@@ -270,7 +272,7 @@ fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
 /// Removes empty groups of killed supervisors, each while its lock is held.
 fn sweep(place: &Path) {
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
-        let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(PREFIX));
+        let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(GROUP_PREFIX));
         let Some(folder) = ours.then(|| File::open(entry.path()).ok()).flatten() else { continue };
         if folder.try_lock().is_ok() {
             // A group with a process in it cannot be removed.

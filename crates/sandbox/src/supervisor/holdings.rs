@@ -8,11 +8,11 @@ use std::{
     path::Path,
 };
 
-use super::folder::BLOCK;
+use super::folder::BLOCK_BYTES;
 use crate::machine;
 
 /// The kernel's mark for a file that has no name any more.
-const GONE: &[u8] = b" (deleted)";
+const DELETED_SUFFIX: &[u8] = b" (deleted)";
 /// The names of shared memory that is in no folder.
 const SHARED_MEMORY: [&[u8]; 3] = [b"/dev/zero", b"/memfd:", b"/SYSV"];
 
@@ -36,7 +36,7 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
         let task = format!("/proc/{pid}/task/{thread}");
         let mut count = |metadata: &Metadata| {
             if metadata.is_file() && metadata.nlink() == 0 && seen.insert(metadata.ino()) {
-                holdings.nameless += metadata.blocks() * BLOCK;
+                holdings.nameless += metadata.blocks() * BLOCK_BYTES;
             }
         };
         for entry in read_dir(format!("{task}/fd")).into_iter().flatten().flatten() {
@@ -84,7 +84,7 @@ struct Mapping {
 impl Mapping {
     /// Parses a line of `maps`, such as `7f00-7f10 rw-s 00000000 00:01 1042  /dev/zero (deleted)`.
     fn parse(line: &[u8]) -> Option<Self> {
-        let line = line.strip_suffix(GONE)?;
+        let line = line.strip_suffix(DELETED_SUFFIX)?;
         let start = line.iter().position(|byte| *byte == b'/')?;
         let mut words = std::str::from_utf8(&line[..start]).ok()?.split_ascii_whitespace();
         let (from, to) = words.next()?.split_once('-')?;

@@ -31,19 +31,19 @@ use super::{
 use crate::{
     mounts,
     sys::{self, Fork, Readiness},
-    wire::{self, Event, Failure, RawBytes, RunOrder, stage},
+    wire::{self, Event, Failure, RawBytes, RunOrder, failure_at},
 };
 
 /// The time after which a keeper without orders ends, so that others can use its user.
 const MAX_IDLE: Duration = Duration::from_secs(2);
 /// The number of a program in its process namespace, where the supervisor is the first.
-const PROGRAM: i32 = 2;
+const PROGRAM_PID: i32 = 2;
 
 /// Serves the requests from standard input, a socket.
 pub(super) fn main() -> ExitCode {
     let Ok(socket) = io::stdin().as_fd().try_clone_to_owned().map(UnixStream::from) else { return ExitCode::from(2) };
     let Ok(Some(mut first)) = RunRequest::next(&socket) else { return ExitCode::from(2) };
-    ExitCode::from(match settle(&first.order) {
+    ExitCode::from(match fork_keeper(&first.order) {
         Ok(Side::Guardian { keeper, held }) => {
             // The pipe that the grader reads must be closed at the end of the run.
             drop((first, socket));
@@ -77,7 +77,7 @@ impl RunRequest {
         if length == 0 {
             return Ok(None);
         }
-        let (wire::RUN, Ok([control, answers, folder])) = (byte[0], <[OwnedFd; 3]>::try_from(descriptors)) else {
+        let (wire::RUN_BYTE, Ok([control, answers, folder])) = (byte[0], <[OwnedFd; 3]>::try_from(descriptors)) else {
             return Err(io::ErrorKind::InvalidData.into());
         };
         let order: RunOrder = wire::receive(socket)?;
@@ -97,16 +97,16 @@ enum Side {
 }
 
 /// Takes the run's exclusive resources, and prepares its namespaces in a child.
-fn settle(order: &RunOrder) -> Result<Side, Failure> {
-    sys::new_session().map_err(stage("start the supervisor's session"))?;
-    let alone = sys::single_thread().map_err(stage("fork"))?;
+fn fork_keeper(order: &RunOrder) -> Result<Side, Failure> {
+    sys::new_session().map_err(failure_at("start the supervisor's session"))?;
+    let alone = sys::single_thread().map_err(failure_at("fork"))?;
     let held = HeldResources::take(order)?;
     if let Fork::Parent(keeper) = namespaces::fork_into_namespaces()? {
         return Ok(Side::Guardian { keeper, held });
     }
-    mounts::unshare(libc::CLONE_NEWNS | libc::CLONE_NEWNET).map_err(stage("make namespaces"))?;
+    mounts::unshare(libc::CLONE_NEWNS | libc::CLONE_NEWNET).map_err(failure_at("make namespaces"))?;
     view::prepare(order)?;
-    let prepared = PreparedRun::for_order(order, PROGRAM, alone)?;
+    let prepared = PreparedRun::for_order(order, PROGRAM_PID, alone)?;
     Ok(Side::Keeper(Keeper { held: Some(held), prepared }))
 }
 
@@ -155,7 +155,7 @@ impl Keeper {
     fn supervise(&mut self, request: RunRequest) -> u8 {
         let RunRequest { order, control, mut answers, folder, files } = request;
         let Some(held) = self.held.take() else { return 1 };
-        let bound = sys::die_with_parent().map_err(stage("bind the supervisor's life to its keeper's"));
+        let bound = sys::die_with_parent().map_err(failure_at("bind the supervisor's life to its keeper's"));
         let finished = bound
             .and_then(|()| view::complete(&order, folder.as_fd(), &files))
             .and_then(|()| Run::start(order, control, held, &self.prepared))

@@ -11,7 +11,7 @@ use super::filter::LOCK_COMMANDS;
 use crate::sys::PendingCall;
 
 /// Returns whether the call locks a file. Other commands for descriptors are never announced.
-pub(super) fn concerns(call: i64) -> bool {
+pub(super) fn is_lock_call(call: i64) -> bool {
     call == libc::SYS_flock || call == libc::SYS_fcntl
 }
 

@@ -22,8 +22,8 @@ use crate::sys::{self, OFlags, PendingCall};
 const MODE_BITS: u64 = 0o1777;
 
 /// Returns whether the call changes permission bits.
-pub(super) fn concerns(call: i64) -> bool {
-    calls::MODES.iter().any(|(_, number)| *number == call)
+pub(super) fn is_mode_call(call: i64) -> bool {
+    calls::MODE_CALLS.iter().any(|(_, number)| *number == call)
 }
 
 /// Carries out the call if its file is below `folder`, whose path is `root`.
@@ -31,7 +31,7 @@ pub(super) fn concerns(call: i64) -> bool {
 /// # Errors
 ///
 /// Fails with the error number for the caller.
-pub(super) fn change(announced: &PendingCall, folder: BorrowedFd<'_>, root: &Path) -> Result<(), i32> {
+pub(super) fn change_mode(announced: &PendingCall, folder: BorrowedFd<'_>, root: &Path) -> Result<(), i32> {
     let [first, second, third, ..] = announced.arguments;
     let thread = announced.thread;
     let (file, mode) = match announced.call {
@@ -62,7 +62,7 @@ enum Start {
 /// Returns the file that the thread has open under a descriptor number, reopened by its current name.
 fn reopen_held(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
     let target = std::fs::read_link(format!("/proc/{thread}/fd/{}", number as i32)).map_err(|_| libc::EBADF)?;
-    beneath(&target, folder, root).map_err(|_| libc::EPERM)
+    open_beneath(&target, folder, root).map_err(|_| libc::EPERM)
 }
 
 /// Returns the file with the name at `address`, without following links.
@@ -73,7 +73,7 @@ fn change_named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>
         Start::Held(number) => format!("/proc/{thread}/fd/{}", *number as i32),
     };
     let from = std::fs::read_link(from).map_err(|_| libc::EBADF)?;
-    beneath(&from.join(path), folder, root).map_err(|error| match error.raw_os_error() {
+    open_beneath(&from.join(path), folder, root).map_err(|error| match error.raw_os_error() {
         Some(libc::ENOENT) => libc::ENOENT,
         _ => libc::EPERM,
     })
@@ -81,7 +81,7 @@ fn change_named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>
 
 /// Returns the file at the path, if it is below the working folder, opened only as a reference (`O_PATH`). Links on the
 /// path are not followed.
-fn beneath(path: &Path, folder: BorrowedFd<'_>, root: &Path) -> io::Result<OwnedFd> {
+fn open_beneath(path: &Path, folder: BorrowedFd<'_>, root: &Path) -> io::Result<OwnedFd> {
     let inside = path.strip_prefix(root).map_err(io::Error::other)?;
     sys::open_beneath(folder, &CString::new(inside.as_os_str().as_bytes())?, OFlags::PATH)
 }

@@ -12,7 +12,7 @@ use super::view;
 use crate::{
     mounts,
     sys::{self, Fork},
-    wire::{Failure, RunOrder, stage},
+    wire::{Failure, RunOrder, failure_at},
 };
 
 /// The process in which [`enter`] returns.
@@ -30,10 +30,10 @@ pub(super) enum Side {
 /// Fails with the name of the step that failed. The process is then between the namespaces and must end.
 pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
     match fork_into_namespaces()? {
-        Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(stage("wait"))?)),
+        Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(failure_at("wait"))?)),
         Fork::Child => {
             let rest = libc::CLONE_NEWNS | libc::CLONE_NEWNET | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
-            mounts::unshare(rest).map_err(stage("make namespaces"))?;
+            mounts::unshare(rest).map_err(failure_at("make namespaces"))?;
             view::build(order)?;
             Ok(Side::Inside)
         }
@@ -47,23 +47,23 @@ pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
 ///
 /// Fails like [`enter`].
 pub(super) fn fork_into_namespaces() -> Result<Fork, Failure> {
-    let (user, group) = (sys::user(), sys::group());
+    let (user, group) = (sys::user_id(), sys::group_id());
     if user == 0 {
-        mounts::unshare(libc::CLONE_NEWPID).map_err(stage("make a process namespace"))?;
+        mounts::unshare(libc::CLONE_NEWPID).map_err(failure_at("make a process namespace"))?;
     } else {
-        mounts::unshare(libc::CLONE_NEWUSER | libc::CLONE_NEWPID).map_err(stage("make a user namespace"))?;
+        mounts::unshare(libc::CLONE_NEWUSER | libc::CLONE_NEWPID).map_err(failure_at("make a user namespace"))?;
         // The kernel requires an ordinary user to give up supplementary groups before it sets a group.
         for (file, text) in [
             ("/proc/self/setgroups", "deny".to_string()),
             ("/proc/self/uid_map", format!("{user} {user} 1")),
             ("/proc/self/gid_map", format!("{group} {group} 1")),
         ] {
-            std::fs::write(file, text).map_err(stage("name the user in its namespace"))?;
+            std::fs::write(file, text).map_err(failure_at("name the user in its namespace"))?;
         }
     }
-    let side = sys::fork().map_err(stage("fork"))?;
+    let side = sys::fork().map_err(failure_at("fork"))?;
     if matches!(side, Fork::Child) {
-        sys::die_with_parent().map_err(stage("bind the supervisor's life to its guardian's"))?;
+        sys::die_with_parent().map_err(failure_at("bind the supervisor's life to its guardian's"))?;
     }
     Ok(side)
 }

@@ -9,12 +9,12 @@ use super::{
 
 /// Ends the processes that a lost supervisor may have left: those of its child's session and those of the child's own
 /// user. A process namespace ends all of its processes by itself, and its session numbers are not valid here.
-pub(crate) fn end(session: Option<i32>, user: Option<u32>) {
-    const ROUNDS: u32 = 1000;
+pub(crate) fn end_orphans(session: Option<i32>, user: Option<u32>) {
+    const MAX_ATTEMPTS: u32 = 1000;
     // The lock of the user ended with the supervisor, so another run may already have the user.
     let slot = user.and_then(slot::retake);
     let user = slot.as_ref().map(|slot| slot.user);
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ATTEMPTS {
         let victims = stop_then_kill(|| {
             let mut victims = session.map(find_of_session).unwrap_or_default();
             victims.extend(user.into_iter().flat_map(find_by_user));

@@ -8,7 +8,7 @@ use super::{child, filter, group::Group, slot, walls};
 use crate::{
     mounts,
     sys::{self, Fork, SingleThread},
-    wire::{Failure, RunOrder, stage},
+    wire::{Failure, RunOrder, failure_at},
 };
 
 /// The exclusive resources of a run on this machine, held until this is dropped.
@@ -25,7 +25,7 @@ impl HeldResources {
         let taken = |error: io::Error| Failure::new(format!("take a separate user ({error})"), &error);
         let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;
         let group = order.walls.group.then(|| Group::make(order)).transpose();
-        Ok(Self { slot, group: group.map_err(stage("make a control group"))? })
+        Ok(Self { slot, group: group.map_err(failure_at("make a control group"))? })
     }
 }
 
@@ -45,7 +45,7 @@ impl PreparedRun {
     pub(super) fn for_order(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
         let open = || walls::Places::for_order(order).with_high_numbers();
         let purpose = child::purpose(order, order.walls.own_user, None, number);
-        let filters = filter::filters(purpose).map_err(stage("compile the system call filter"))?;
+        let filters = filter::filters(purpose).map_err(failure_at("compile the system call filter"))?;
         let places = order.walls.landlock.then(open).flatten();
         let filters = Some(child::Filters::new((purpose, filters)));
         Ok(Self { places, filters, ignored: Some(sys::ignored_signals().into()), alone: Some(alone) })
@@ -71,8 +71,8 @@ impl PreparedRun {
     pub(super) fn rules(&self, order: &RunOrder, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
         match &self.places {
             _ if !order.walls.landlock => Ok(None),
-            Some(places) => walls::rules(order, places, folder).map(Some),
-            None => walls::rules(order, &walls::Places::for_order(order), folder).map(Some),
+            Some(places) => walls::build_ruleset(order, places, folder).map(Some),
+            None => walls::build_ruleset(order, &walls::Places::for_order(order), folder).map(Some),
         }
     }
 }

@@ -39,8 +39,8 @@ pub(super) fn main() -> ExitCode {
 }
 
 fn probe() -> io::Result<Probe> {
-    let root = sys::user() == 0;
-    let roots_group = !root && sys::group() == 0;
+    let root = sys::user_id() == 0;
+    let roots_group = !root && sys::group_id() == 0;
     let mut probe = Probe { root, roots_group, landlock_abi: sys::landlock_version(), ..Probe::default() };
     probe.reaper = failure_reason(sys::become_reaper());
     (probe.execution, probe.from_memory) = try_execution();
@@ -142,8 +142,8 @@ fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
 /// Moves into namespaces in a child that then ends, with a visible folder that every Linux has.
 fn try_namespaces() -> Option<String> {
     let order = RunOrder {
-        program: wire::raw(Path::new("/bin/sh")),
-        folder: wire::raw(Path::new("/usr")),
+        program: wire::to_raw_bytes(Path::new("/bin/sh")),
+        folder: wire::to_raw_bytes(Path::new("/usr")),
         ..RunOrder::default()
     };
     let tried = || -> io::Result<Option<String>> {
@@ -172,7 +172,8 @@ fn try_namespaces() -> Option<String> {
 
 /// Sets up one layer after the other.
 fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
-    probe.limits = failure_reason(sys::limit(Resource::Core, 0).and_then(|()| sys::limit(Resource::Fsize, 1 << 30)));
+    probe.limits =
+        failure_reason(sys::set_limit(Resource::Core, 0).and_then(|()| sys::set_limit(Resource::Fsize, 1 << 30)));
     if let Some(user) = user {
         probe.own_user = failure_reason(sys::switch_user(user));
     }

@@ -34,7 +34,7 @@ impl Stat {
         if self.state != b'Z' || !self.is_alive() {
             return self.resident_pages;
         }
-        let threads = threads(self.pid).filter_map(|thread| read_thread(self.pid, thread));
+        let threads = list_threads(self.pid).filter_map(|thread| read_thread(self.pid, thread));
         threads.map(|stat| stat.resident_pages).max().unwrap_or(0)
     }
 }
@@ -52,7 +52,7 @@ pub(super) struct Usage {
 
 /// Returns the usage of the process `pid`; with `tree`, also of all other descendants of this process. `/proc` counts
 /// time in hundredths of a second on every Linux.
-pub(super) fn usage(pid: i32, tree: bool) -> Usage {
+pub(super) fn measure_usage(pid: i32, tree: bool) -> Usage {
     let mut usage = Usage::default();
     let page = sys::page_size();
     let swap = machine::has_swap();
@@ -62,7 +62,7 @@ pub(super) fn usage(pid: i32, tree: bool) -> Usage {
         usage.threads += stat.threads;
     };
     if tree {
-        descendants().iter().for_each(&mut add);
+        list_descendants().iter().for_each(&mut add);
     } else if let Some(stat) = read(pid) {
         add(&stat);
     }
@@ -74,27 +74,27 @@ fn read_swapped(pid: i32) -> u64 {
     let of = |thread: i32| {
         machine::bytes_of(&std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?, "VmSwap:")
     };
-    of(pid).or_else(|| threads(pid).find_map(of)).unwrap_or(0)
+    of(pid).or_else(|| list_threads(pid).find_map(of)).unwrap_or(0)
 }
 
 /// Returns the process and, with `tree`, all other living descendants of this process, each with its threads. One
 /// thread is enough if all threads of a process share their descriptors and memory; a main thread that has ended shares
 /// nothing any more.
-pub(super) fn members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
-    let stats = if tree { descendants() } else { read(pid).into_iter().collect() };
+pub(super) fn group_members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
+    let stats = if tree { list_descendants() } else { read(pid).into_iter().collect() };
     let living = |stat: &Stat| {
         if stat.state != b'Z' {
             return Some((stat.pid, stat.pid));
         }
         let is_living = |stat: Stat| !matches!(stat.state, b'Z' | b'X');
         let alive = |thread: &i32| read_thread(stat.pid, *thread).is_some_and(is_living);
-        threads(stat.pid).find(alive).map(|thread| (stat.pid, thread))
+        list_threads(stat.pid).find(alive).map(|thread| (stat.pid, thread))
     };
     stats.iter().filter_map(living).collect()
 }
 
 /// Returns the threads of a process.
-pub(crate) fn threads(pid: i32) -> impl Iterator<Item = i32> {
+pub(crate) fn list_threads(pid: i32) -> impl Iterator<Item = i32> {
     numbers_in(format!("/proc/{pid}/task"))
 }
 
@@ -102,7 +102,7 @@ pub(crate) fn threads(pid: i32) -> impl Iterator<Item = i32> {
 pub(super) fn find_by_user(user: u32) -> Vec<i32> {
     use std::os::unix::fs::MetadataExt;
     let owned = |pid: &i32| std::fs::metadata(format!("/proc/{pid}")).is_ok_and(|metadata| metadata.uid() == user);
-    all().filter(owned).collect()
+    list_all().filter(owned).collect()
 }
 
 /// Returns the number of threads of a user, as counted by the kernel for its limit.
@@ -126,7 +126,7 @@ pub(super) struct LeftProcesses {
 /// free. `reaped` is called for every process that was reaped.
 pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys::ReapedProcess)) -> LeftProcesses {
     // Only a process that the kernel itself blocks (state D) lasts this long.
-    const PATIENCE: Duration = Duration::from_secs(20);
+    const MAX_WAIT: Duration = Duration::from_secs(20);
     let start = Instant::now();
     loop {
         if alone {
@@ -136,7 +136,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
             }
         }
         let victims = stop_then_kill(|| {
-            let mut victims: Vec<i32> = descendants().iter().map(|stat| stat.pid).collect();
+            let mut victims: Vec<i32> = list_descendants().iter().map(|stat| stat.pid).collect();
             victims.extend(user.into_iter().flat_map(find_by_user));
             victims
         });
@@ -144,7 +144,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
         if reap_all(&mut reaped) && user.is_none_or(|user| find_by_user(user).is_empty()) {
             return LeftProcesses::default();
         }
-        if start.elapsed() > PATIENCE {
+        if start.elapsed() > MAX_WAIT {
             let held = victims.iter().filter_map(|pid| read(*pid)).all(|stat| stat.state == b'D');
             return LeftProcesses { count: u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1), held };
         }
@@ -165,15 +165,15 @@ fn reap_all(reaped: &mut impl FnMut(sys::ReapedProcess)) -> bool {
 
 /// Returns the living processes of a session.
 pub(super) fn find_of_session(session: i32) -> Vec<i32> {
-    let members = all().filter_map(read).filter(|stat| stat.session == session && stat.is_alive());
+    let members = list_all().filter_map(read).filter(|stat| stat.session == session && stat.is_alive());
     members.map(|stat| stat.pid).collect()
 }
 
 /// Stops the victims until no new one appears, then kills and returns all of them.
 pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
-    const ROUNDS: u32 = 100;
+    const MAX_ATTEMPTS: u32 = 100;
     let mut stopped = BTreeSet::new();
-    for _ in 0..ROUNDS {
+    for _ in 0..MAX_ATTEMPTS {
         let fresh: Vec<i32> = victims().into_iter().filter(|pid| !stopped.contains(pid)).collect();
         if fresh.is_empty() {
             break;
@@ -193,8 +193,8 @@ pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
 
 /// Returns all living descendants of this process. As their reaper it is an ancestor even of processes whose parents
 /// have died.
-fn descendants() -> Vec<Stat> {
-    let mut stats: Vec<Stat> = all().filter_map(read).collect();
+fn list_descendants() -> Vec<Stat> {
+    let mut stats: Vec<Stat> = list_all().filter_map(read).collect();
     let mut family = vec![std::process::id() as i32];
     let mut found = Vec::new();
     // Parents may have larger numbers than their children, so this repeats until no process is added.
@@ -212,7 +212,7 @@ fn descendants() -> Vec<Stat> {
 }
 
 /// Returns all process ids.
-pub(crate) fn all() -> impl Iterator<Item = i32> {
+pub(crate) fn list_all() -> impl Iterator<Item = i32> {
     numbers_in("/proc")
 }
 
@@ -264,7 +264,7 @@ mod tests {
 
     #[test]
     fn the_threads_of_this_user_are_counted() {
-        assert!(threads_of_user(sys::user()) >= usage(std::process::id() as i32, false).threads.min(1));
+        assert!(threads_of_user(sys::user_id()) >= measure_usage(std::process::id() as i32, false).threads.min(1));
         assert_eq!(threads_of_user(u32::MAX - 7), 0);
     }
 
@@ -296,7 +296,7 @@ mod tests {
 
     #[test]
     fn this_process_is_seen_to_use_memory() {
-        let usage = usage(std::process::id() as i32, false);
+        let usage = measure_usage(std::process::id() as i32, false);
         assert!(usage.memory > 100_000 && usage.threads >= 1);
     }
 }

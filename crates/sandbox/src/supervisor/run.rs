@@ -29,11 +29,11 @@ use super::{
 use crate::{
     outcome::RunEnd,
     sys::{self, CallAnswer, Fork, OFlags, Readiness},
-    wire::{self, Event, Failure, Report, RunOrder, stage},
+    wire::{self, Event, Failure, Report, RunOrder, failure_at},
 };
 
 /// The time between two checks of clocks and counters. A check takes about ten microseconds.
-const TICK: Duration = Duration::from_millis(10);
+const TICK_INTERVAL: Duration = Duration::from_millis(10);
 /// The divisor that limits checks of the folder to a share of the total time.
 const FOLDER_SHARE: u32 = 20;
 
@@ -44,8 +44,8 @@ pub(super) fn main() -> ExitCode {
     };
     let Ok((mut control, mut answers)) = streams() else { return ExitCode::from(2) };
     let settled = wire::receive::<RunOrder>(&mut control)
-        .map_err(stage("read the order"))
-        .and_then(|order| settle(order, control));
+        .map_err(failure_at("read the order"))
+        .and_then(|order| prepare_run(order, control));
     ExitCode::from(match settled {
         Ok(SettledRun::Here(run)) => report_end(run.finish(&mut answers), &mut answers),
         // The process inside has reported everything.
@@ -74,9 +74,9 @@ enum SettledRun {
 }
 
 /// Finds a user and sets up namespaces for the run, and starts it there.
-fn settle(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
+fn prepare_run(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
     // In a separate session, the supervisor does not receive the terminal's Ctrl-C; the grader sends it the stop.
-    sys::new_session().map_err(stage("start the supervisor's session"))?;
+    sys::new_session().map_err(failure_at("start the supervisor's session"))?;
     let held = HeldResources::take(&order)?;
     if order.walls.namespaces
         && let Side::Outside(code) = namespaces::enter(&order)?
@@ -126,48 +126,54 @@ impl Run {
         prepared: &PreparedRun,
     ) -> Result<Self, Failure> {
         let (order, HeldResources { slot, group }) = (Rc::new(order), held);
-        sys::become_reaper().map_err(stage("become the reaper"))?;
-        let folder: OwnedFd = File::open(wire::path(&order.folder)).map_err(stage("open the working folder"))?.into();
+        sys::become_reaper().map_err(failure_at("become the reaper"))?;
+        let folder: OwnedFd =
+            File::open(wire::path(&order.folder)).map_err(failure_at("open the working folder"))?.into();
         let trace = order.trace.clone().map(CString::new).transpose();
         let trace = trace.map_err(|error| Failure::new("name the trace", &error.into()))?;
         let slot = slot.map(|slot| owner_before(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
-        let slot = slot.map_err(stage("change the owner of the working folder"))?;
+        let slot = slot.map_err(failure_at("change the owner of the working folder"))?;
         if order.volatile {
-            send_folder(&control, folder.as_fd()).map_err(stage("send the working folder to the grader"))?;
+            send_folder(&control, folder.as_fd()).map_err(failure_at("send the working folder to the grader"))?;
         }
-        let (stdout, output) = io::pipe().map_err(stage("make a pipe"))?;
-        let (stderr, error) = io::pipe().map_err(stage("make a pipe"))?;
-        let (status, child_status) = UnixStream::pair().map_err(stage("make a socket"))?;
-        status.set_nonblocking(true).map_err(stage("make a socket"))?;
+        let (stdout, output) = io::pipe().map_err(failure_at("make a pipe"))?;
+        let (stderr, error) = io::pipe().map_err(failure_at("make a pipe"))?;
+        let (status, child_status) = UnixStream::pair().map_err(failure_at("make a socket"))?;
+        status.set_nonblocking(true).map_err(failure_at("make a socket"))?;
         let opened = OpenedFile::new(&wire::path(&order.program), slot.is_some(), order.limits.memory)?;
-        let entrance = entrance(&order, &opened)?;
-        let rules = prepared.rules(&order, folder.as_fd()).map_err(stage("prepare Landlock"))?;
+        let entrance = open_entrance(&order, &opened)?;
+        let rules = prepared.rules(&order, folder.as_fd()).map_err(failure_at("prepare Landlock"))?;
         let plan = ChildPlan {
             supervisor: std::process::id(),
-            folder: folder.try_clone().map_err(stage("open the working folder"))?,
+            folder: folder.try_clone().map_err(failure_at("open the working folder"))?,
             opened: Some(opened),
             entrance,
             rules,
             filters: prepared.filters.clone(),
             ignored: prepared.ignored_signals(),
-            groups: group.as_ref().map_or(Ok(Vec::new()), Group::entrances).map_err(stage("open the control group"))?,
+            groups: group
+                .as_ref()
+                .map_or(Ok(Vec::new()), Group::entrances)
+                .map_err(failure_at("open the control group"))?,
             user: slot.as_ref().map(|(slot, _)| slot.user),
-            input: File::open("/dev/null").map_err(stage("open /dev/null"))?.into(),
+            input: File::open("/dev/null").map_err(failure_at("open /dev/null"))?.into(),
             output: output.into(),
             error: error.into(),
             status: child_status,
             order: order.clone(),
         };
         let began = Instant::now();
-        let child = match prepared.fork().map_err(stage("fork"))? {
+        let child = match prepared.fork().map_err(failure_at("fork"))? {
             Fork::Child => child::become_program(plan),
             Fork::Parent(pid) => pid,
         };
         // The child's descriptors are closed here, so that the ends of pipes and sockets can be detected.
         drop(plan);
         Ok(Self {
-            stdout: CapturedStream::new(stdout, order.limits.output_bytes).map_err(stage("read standard output"))?,
-            stderr: CapturedStream::new(stderr, order.limits.output_bytes).map_err(stage("read standard error"))?,
+            stdout: CapturedStream::new(stdout, order.limits.output_bytes)
+                .map_err(failure_at("read standard output"))?,
+            stderr: CapturedStream::new(stderr, order.limits.output_bytes)
+                .map_err(failure_at("read standard error"))?,
             order,
             control,
             folder,
@@ -214,23 +220,24 @@ impl Run {
         self.stdout.read_rest();
         self.stderr.read_rest();
         self.read_messages();
-        let mut after = contents(&self.order, self.folder.as_fd());
+        let mut after = measure_folder(&self.order, self.folder.as_fd());
         // Most programs create no folders.
         let shallow = match after.over || after.folders > 0 {
             true => {
                 let shallow = folder::open_up(self.folder.as_fd());
-                after = contents(&self.order, self.folder.as_fd());
+                after = measure_folder(&self.order, self.folder.as_fd());
                 shallow
             }
             false => true,
         };
         // Only root reads files that a submission leaves in memory.
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
-            folder::give(self.folder.as_fd(), *owner, *group).map_err(stage("restore the folder's owner"))?;
+            folder::change_owner(self.folder.as_fd(), *owner, *group)
+                .map_err(failure_at("restore the folder's owner"))?;
         }
         // Cleaning up counts for the run.
         let wall = self.began.elapsed();
-        watched.map_err(stage("watch the program"))?;
+        watched.map_err(failure_at("watch the program"))?;
         if self.orphaned {
             return Ok(None);
         }
@@ -239,7 +246,7 @@ impl Run {
         let told = Some(&self.told[..]).filter(|told| !told.is_empty());
         let failure: Option<Failure> = told.and_then(|told| serde_json::from_slice(told).ok());
         let exec_errno = match failure {
-            Some(failure) if failure.stage == wire::EXECUTE => Some(failure.errno),
+            Some(failure) if failure.stage == wire::EXECUTE_STEP => Some(failure.errno),
             Some(failure) => return Err(failure),
             None => None,
         };
@@ -251,7 +258,7 @@ impl Run {
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
         self.record_cause(out_of_memory, RunEnd::MemoryLimit);
-        let (cpu, largest) = sys::children_usage().map_err(stage("ask for the usage"))?;
+        let (cpu, largest) = sys::children_usage().map_err(failure_at("ask for the usage"))?;
         let report = Report {
             cause: self.cause.take(),
             status: main_status.unwrap_or(0),
@@ -272,7 +279,7 @@ impl Run {
 
     /// Watches until the main process has ended or there is a reason to end it.
     fn watch(&mut self) -> io::Result<()> {
-        let (mut next_look, mut next_folder) = (Instant::now() + TICK, Instant::now() + TICK);
+        let (mut next_look, mut next_folder) = (Instant::now() + TICK_INTERVAL, Instant::now() + TICK_INTERVAL);
         while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
             let found = sys::poll(
                 [
@@ -315,11 +322,11 @@ impl Run {
             if now >= next_look || ready[5] {
                 self.reap();
                 self.check_limits();
-                next_look = Instant::now() + TICK;
+                next_look = Instant::now() + TICK_INTERVAL;
             }
             if now >= next_folder {
                 self.check_folder();
-                next_folder = Instant::now() + TICK.max(now.elapsed() * FOLDER_SHARE);
+                next_folder = Instant::now() + TICK_INTERVAL.max(now.elapsed() * FOLDER_SHARE);
             }
         }
         Ok(())
@@ -384,13 +391,15 @@ impl Run {
                 None => return Ok(()),
                 answer => answer,
             },
-            call if locks::concerns(call) => {
+            call if locks::is_lock_call(call) => {
                 Some(unless(sys::with_files_of(user, || locks::is_inside(&announced, &root))))
             }
-            call if modes::concerns(call) => Some(match modes::change(&announced, self.folder.as_fd(), &root) {
-                Ok(()) => CallAnswer::Done,
-                Err(errno) => CallAnswer::Refused(errno),
-            }),
+            call if modes::is_mode_call(call) => {
+                Some(match modes::change_mode(&announced, self.folder.as_fd(), &root) {
+                    Ok(()) => CallAnswer::Done,
+                    Err(errno) => CallAnswer::Refused(errno),
+                })
+            }
             _ => None,
         };
         if let Some(answer) = answer {
@@ -430,7 +439,7 @@ impl Run {
         if self.main_status.is_some() {
             return;
         }
-        let usage = processes::usage(self.child, self.has_children());
+        let usage = processes::measure_usage(self.child, self.has_children());
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
@@ -469,7 +478,7 @@ impl Run {
             return;
         }
         let user = self.user();
-        let members = processes::members(self.child, self.has_children());
+        let members = processes::group_members(self.child, self.has_children());
         let root = wire::path(&self.order.folder);
         let page_tables = self.order.sanitizers;
         let held = sys::with_files_of(user, || holdings::measure(&members, &root, self.order.tools, page_tables));
@@ -498,7 +507,7 @@ impl Run {
 }
 
 /// Returns the contents of the order's folder.
-fn contents(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
+fn measure_folder(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
     let contents = folder::measure(folder, u64::MAX, u64::MAX);
     if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
 }
@@ -506,23 +515,23 @@ fn contents(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
 /// Changes the owner of the working folder to the run's own user, and returns the previous owner.
 fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
     let owner = File::from(folder.try_clone_to_owned()?).metadata()?;
-    folder::give(folder, user, user)?;
+    folder::change_owner(folder, user, user)?;
     Ok((owner.uid(), owner.gid()))
 }
 
 /// Returns the descriptor number from which alone the program can be executed, if only the filter decides that.
-fn entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
+fn open_entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
     if !order.walls.seccomp || order.walls.notify || order.tools {
         return Ok(None);
     }
     let open = |path| OpenedFile::new(&wire::path(path), false, order.limits.memory);
     let interpreter = order.interpreter.as_ref().map(open).transpose()?;
     let entrance = interpreter.as_ref().unwrap_or(opened).under_number(order.limits.open_files);
-    entrance.map(Some).map_err(stage("open the program once more"))
+    entrance.map(Some).map_err(failure_at("open the program once more"))
 }
 
 /// Sends the folder to the grader.
 fn send_folder(control: &File, folder: BorrowedFd<'_>) -> io::Result<()> {
     let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
-    sys::send_descriptors(&socket, wire::FOLDER, [folder])
+    sys::send_descriptors(&socket, wire::FOLDER_BYTE, [folder])
 }

@@ -16,7 +16,7 @@ use super::processes;
 
 /// The first id (systemd uses ids from 61184 on).
 const FIRST_USER: u32 = 61_000;
-const COUNT: u32 = 184;
+const USER_COUNT: u32 = 184;
 
 /// A user id that is reserved until this is dropped.
 pub(super) struct Slot {
@@ -25,7 +25,7 @@ pub(super) struct Slot {
 }
 
 /// The maximum wait for an id. No run within its limits lasts this long.
-const PATIENCE: Duration = Duration::from_secs(3600);
+const MAX_WAIT: Duration = Duration::from_secs(3600);
 
 /// Takes the first id that no run holds and that has no processes. If all are taken, waits for one.
 ///
@@ -33,7 +33,7 @@ const PATIENCE: Duration = Duration::from_secs(3600);
 ///
 /// Fails if no id becomes free for an hour, the grader has ended, or the folder of locks has another owner.
 pub(super) fn take() -> io::Result<Slot> {
-    take_of(&folder()?, FIRST_USER..FIRST_USER + COUNT, PATIENCE)
+    take_of(&folder()?, FIRST_USER..FIRST_USER + USER_COUNT, MAX_WAIT)
 }
 
 /// Returns the id of a run that has lost its supervisor. `None` if another run has taken the id, which then had no
@@ -116,7 +116,7 @@ mod tests {
         let first = take(Duration::ZERO).unwrap();
         assert!(take(Duration::ZERO).is_err(), "it is held");
         std::thread::scope(|scope| {
-            let second = scope.spawn(|| take(PATIENCE).map(|slot| slot.user));
+            let second = scope.spawn(|| take(MAX_WAIT).map(|slot| slot.user));
             drop(first);
             assert_eq!(second.join().unwrap().unwrap(), 4_000_000_000);
         });

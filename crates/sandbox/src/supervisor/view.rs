@@ -20,14 +20,14 @@ use super::{memory_folder, walls};
 use crate::{
     mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY},
     sys,
-    wire::{self, Failure, RawBytes, RunOrder, stage},
+    wire::{self, Failure, RawBytes, RunOrder, failure_at},
 };
 
 /// The folder in which the new root is built, which every Linux has. It becomes visible again after the roots have
 /// changed.
 const BUILD_ROOT: &str = "/proc";
 /// The old root's temporary name below the new root.
-const HOST: &str = "/.host";
+const OLD_ROOT_NAME: &str = "/.host";
 /// The place at which an ordinary user's prepared root shows processes, so that its copies may show them.
 const PROC_PLACEHOLDER: &str = "/.processes";
 /// The maximum number of links on a path, the same as the kernel's.
@@ -56,7 +56,7 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
             let real = real.ok_or(io::ErrorKind::NotFound)?;
             mount_copy(&real, &on_host(&real), order)
         });
-        laid.map_err(stage("put the working folder into memory"))?;
+        laid.map_err(failure_at("put the working folder into memory"))?;
     }
     hide_own(order, Path::new("/"))?;
     add_processes(order)?;
@@ -72,10 +72,10 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
 pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
     begin(order)?;
     hide_own(order, Path::new("/"))?;
-    if sys::user() != 0 {
+    if sys::user_id() != 0 {
         // The kernel lets an ordinary user show processes only if others are visible.
-        std::fs::create_dir(PROC_PLACEHOLDER).map_err(stage("make /proc"))?;
-        mounts::mount(c"proc", &text(Path::new(PROC_PLACEHOLDER))?, c"", false).map_err(stage("mount /proc"))?;
+        std::fs::create_dir(PROC_PLACEHOLDER).map_err(failure_at("make /proc"))?;
+        mounts::mount(c"proc", &text(Path::new(PROC_PLACEHOLDER))?, c"", false).map_err(failure_at("mount /proc"))?;
     }
     leave_host()
 }
@@ -88,14 +88,14 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
 /// Fails like [`build`].
 pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBytes, Vec<u8>)]) -> Result<(), Failure> {
     add_processes(order)?;
-    if sys::user() != 0 {
-        mounts::detach(&text(Path::new(PROC_PLACEHOLDER))?).map_err(stage("leave other processes"))?;
+    if sys::user_id() != 0 {
+        mounts::detach(&text(Path::new(PROC_PLACEHOLDER))?).map_err(failure_at("leave other processes"))?;
     }
     let real = wire::path(&order.folder);
     let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
     mount_copy(&real, &from, order)
         .and_then(|()| memory_folder::add(&real, files))
-        .map_err(stage("put the working folder into memory"))?;
+        .map_err(failure_at("put the working folder into memory"))?;
     hide_own(order, &real)?;
     close_root()
 }
@@ -103,33 +103,33 @@ pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBy
 /// Returns a new root with all visible files outside the working folder, and with that folder unless it is in memory.
 fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     sys::set_file_mask(0o022);
-    mounts::make_mounts_private().map_err(stage("keep mounts to itself"))?;
+    mounts::make_mounts_private().map_err(failure_at("keep mounts to itself"))?;
     let (site, room) = (text(Path::new(BUILD_ROOT))?, text(Path::new(ROOT_OPTIONS))?);
-    mounts::mount(c"tmpfs", &site, &room, false).map_err(stage("make a root folder"))?;
-    let old = PathBuf::from(format!("{BUILD_ROOT}{HOST}"));
-    std::fs::create_dir(&old).map_err(stage("make a root folder"))?;
-    mounts::change_root(&site, &text(&old)?).map_err(stage("change the root folder"))?;
+    mounts::mount(c"tmpfs", &site, &room, false).map_err(failure_at("make a root folder"))?;
+    let old = PathBuf::from(format!("{BUILD_ROOT}{OLD_ROOT_NAME}"));
+    std::fs::create_dir(&old).map_err(failure_at("make a root folder"))?;
+    mounts::change_root(&site, &text(&old)?).map_err(failure_at("change the root folder"))?;
     let mut view = FileView { placed: Vec::new() };
     let mut readable = walls::visible_paths(order);
     readable.sort_by_key(|path| path.as_os_str().len());
     for (path, access) in readable
         .into_iter()
         .map(|path| (path, Access::Read))
-        .chain(walls::DEVICES.map(|path| (path.into(), Access::Device)))
+        .chain(walls::DEVICE_FILES.map(|path| (path.into(), Access::Device)))
         .chain((!order.volatile).then(|| (wire::path(&order.folder), Access::Write)))
     {
         view.mount_place(&path, access)
             .map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
-    let folders = walls::LIBRARIES.map(PathBuf::from);
+    let folders = walls::LIBRARY_FOLDERS.map(PathBuf::from);
     for path in folders.into_iter().chain(order.named.iter().map(wire::path)) {
         // Only the links on the path are created; their targets are among the executable files, or were replaced.
         view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
     for (name, number) in [("/dev/fd", ""), ("/dev/stdin", "/0"), ("/dev/stdout", "/1"), ("/dev/stderr", "/2")] {
-        symlink(format!("/proc/self/fd{number}"), name).map_err(stage("make /dev"))?;
+        symlink(format!("/proc/self/fd{number}"), name).map_err(failure_at("make /dev"))?;
     }
-    std::fs::create_dir_all("/proc").map_err(stage("make /proc"))?;
+    std::fs::create_dir_all("/proc").map_err(failure_at("make /proc"))?;
     Ok(view)
 }
 
@@ -140,9 +140,9 @@ fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     // The sample may be graded at its own path, as a demonstration.
-    let program = wire::path(&order.program).canonicalize().map_err(stage("look at the program"))?;
+    let program = wire::path(&order.program).canonicalize().map_err(failure_at("look at the program"))?;
     for path in own.iter().filter(|path| **path != program) {
-        hide(path).map_err(stage("hide the grader's own files"))?;
+        hide(path).map_err(failure_at("hide the grader's own files"))?;
     }
     Ok(())
 }
@@ -161,7 +161,7 @@ fn hide(path: &Path) -> io::Result<()> {
 /// Makes the run's processes visible.
 fn add_processes(order: &RunOrder) -> Result<(), Failure> {
     let shown = if order.tools { c"" } else { c"subset=pid" };
-    mounts::mount(c"proc", c"/proc", shown, false).map_err(stage("mount /proc"))
+    mounts::mount(c"proc", c"/proc", shown, false).map_err(failure_at("mount /proc"))
 }
 
 /// Hides `/proc` from this process except its own entry, in a plain folder, because the link count of `/proc` reveals
@@ -190,16 +190,16 @@ pub(super) fn leave_processes(order: &RunOrder) -> Result<(), Failure> {
         }
         mounts::restrict_at(c"/proc", READ_ONLY)
     };
-    leave().map_err(stage("leave other processes"))
+    leave().map_err(failure_at("leave other processes"))
 }
 
 fn leave_host() -> Result<(), Failure> {
-    mounts::detach(&text(Path::new(HOST))?).map_err(stage("leave the host's files"))?;
-    std::fs::remove_dir(HOST).map_err(stage("leave the host's files"))
+    mounts::detach(&text(Path::new(OLD_ROOT_NAME))?).map_err(failure_at("leave the host's files"))?;
+    std::fs::remove_dir(OLD_ROOT_NAME).map_err(failure_at("leave the host's files"))
 }
 
 fn close_root() -> Result<(), Failure> {
-    mounts::restrict_at(c"/", READ_ONLY).map_err(stage("close the root folder"))
+    mounts::restrict_at(c"/", READ_ONLY).map_err(failure_at("close the root folder"))
 }
 
 /// Mounts a file system in memory at the path, with a copy of another folder's contents.
@@ -211,7 +211,7 @@ fn mount_copy(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
 }
 
 fn text(path: &Path) -> Result<CString, Failure> {
-    c_string(path).map_err(stage("read a path"))
+    c_string(path).map_err(failure_at("read a path"))
 }
 
 fn c_string(path: &Path) -> io::Result<CString> {
@@ -220,7 +220,7 @@ fn c_string(path: &Path) -> io::Result<CString> {
 
 /// Returns the path at which a file of the host is reached while the view is built.
 fn on_host(path: &Path) -> PathBuf {
-    let mut host = OsString::from(HOST);
+    let mut host = OsString::from(OLD_ROOT_NAME);
     host.push(path);
     host.into()
 }
@@ -238,7 +238,7 @@ impl FileView {
         if real == Path::new("/") {
             return Err(io::ErrorKind::InvalidInput.into());
         }
-        if real.starts_with("/proc") || self.shows(&real, access) {
+        if real.starts_with("/proc") || self.is_visible(&real, access) {
             return Ok(());
         }
         let source = on_host(&real);
@@ -264,7 +264,7 @@ impl FileView {
     }
 
     /// Returns whether the path is already visible, with the same access.
-    fn shows(&self, path: &Path, access: Access) -> bool {
+    fn is_visible(&self, path: &Path, access: Access) -> bool {
         self.placed.iter().any(|(shown, granted)| path.starts_with(shown) && *granted == access)
     }
 

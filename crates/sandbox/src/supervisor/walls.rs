@@ -29,12 +29,12 @@ use crate::{
 /// The newest supported and tested rules. Older kernels enforce a part of them, which [`LayerReport`] names.
 ///
 /// [`LayerReport`]: crate::LayerReport
-const NEWEST: ABI = ABI::V6;
+const NEWEST_ABI: ABI = ABI::V6;
 
 /// The folders of shared libraries, loaders and the libraries of interpreters.
-pub(super) const LIBRARIES: [&str; 5] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib"];
+pub(super) const LIBRARY_FOLDERS: [&str; 5] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib"];
 /// Files from which loaders and runtimes read about the machine: its libraries, its processors and its time zone.
-const MACHINE: [&str; 6] = [
+const MACHINE_FILES: [&str; 6] = [
     "/etc/ld.so.cache",
     "/etc/ld.so.preload",
     "/etc/localtime",
@@ -54,11 +54,11 @@ pub(super) fn unguarded_entry() -> impl Iterator<Item = &'static str> {
 }
 
 /// Devices without side effects.
-pub(super) const DEVICES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"];
+pub(super) const DEVICE_FILES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"];
 /// The system's programs, for compilers and build tools.
-const TOOLS: [&str; 4] = ["/usr", "/bin", "/lib", "/lib64"];
+const TOOL_FOLDERS: [&str; 4] = ["/usr", "/bin", "/lib", "/lib64"];
 /// Settings that compilers and build tools read.
-const SETTINGS: [&str; 8] = [
+const SETTINGS_FILES: [&str; 8] = [
     "/proc/cpuinfo",
     "/etc/alternatives",
     "/etc/ld.so.conf",
@@ -72,8 +72,8 @@ const SETTINGS: [&str; 8] = [
 /// Returns every path outside the working folder that must be visible to the order's program, except devices.
 pub(super) fn visible_paths(order: &RunOrder) -> Vec<PathBuf> {
     let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
-    let tools = if order.tools { [&TOOLS[..], &SETTINGS[..]] } else { [&[][..], &[]] };
-    let fixed = LIBRARIES.into_iter().chain(MACHINE).chain(tools.concat()).map(PathBuf::from);
+    let tools = if order.tools { [&TOOL_FOLDERS[..], &SETTINGS_FILES[..]] } else { [&[][..], &[]] };
+    let fixed = LIBRARY_FOLDERS.into_iter().chain(MACHINE_FILES).chain(tools.concat()).map(PathBuf::from);
     fixed.chain(named).collect()
 }
 
@@ -88,16 +88,16 @@ impl Places {
         let own: Vec<PathBuf> = order.own.iter().map(wire::path).collect();
         let own = own.as_slice();
         let mut places = Self(Vec::new());
-        for path in MACHINE {
+        for path in MACHINE_FILES {
             places.add(Path::new(path), read);
         }
         // The kernel must be able to execute the loader. The filter prevents all other executions.
         let libraries: BTreeSet<PathBuf> =
-            LIBRARIES.iter().filter_map(|folder| Path::new(folder).canonicalize().ok()).collect();
+            LIBRARY_FOLDERS.iter().filter_map(|folder| Path::new(folder).canonicalize().ok()).collect();
         for folder in &libraries {
             places.add_around(folder, execute, own);
         }
-        for path in DEVICES {
+        for path in DEVICE_FILES {
             // Bytes written to shared mappings of /dev/zero would be memory that no counter shows.
             let access = if path == "/dev/zero" { BitFlags::EMPTY } else { AccessFs::WriteFile.into() };
             places.add(Path::new(path), access | AccessFs::ReadFile);
@@ -109,10 +109,10 @@ impl Places {
             places.add(&wire::path(raw), execute);
         }
         if order.tools {
-            for path in TOOLS {
+            for path in TOOL_FOLDERS {
                 places.add_around(Path::new(path), execute, own);
             }
-            for path in SETTINGS {
+            for path in SETTINGS_FILES {
                 places.add(Path::new(path), read);
             }
         }
@@ -122,9 +122,11 @@ impl Places {
     /// Moves the files to descriptor numbers that no program may have, so that they do not count for the limit of a
     /// child. `None` if this process itself may not have as many.
     pub(super) fn with_high_numbers(self) -> Option<Self> {
-        const FIRST: u32 = 800;
-        let moved =
-            self.0.into_iter().map(|(opened, access)| Some((sys::duplicate_from(opened.as_fd(), FIRST).ok()?, access)));
+        const FIRST_DESCRIPTOR: u32 = 800;
+        let moved = self
+            .0
+            .into_iter()
+            .map(|(opened, access)| Some((sys::duplicate_from(opened.as_fd(), FIRST_DESCRIPTOR).ok()?, access)));
         moved.collect::<Option<_>>().map(Self)
     }
 
@@ -132,7 +134,7 @@ impl Places {
     fn add(&mut self, path: &Path, access: BitFlags<AccessFs>) {
         let Ok(opened) = at_place(path) else { return };
         let is_folder = opened.metadata().is_ok_and(|metadata| metadata.is_dir());
-        let access = if is_folder { access } else { access & AccessFs::from_file(NEWEST) };
+        let access = if is_folder { access } else { access & AccessFs::from_file(NEWEST_ABI) };
         self.0.push((opened.into(), access));
     }
 
@@ -153,8 +155,8 @@ fn at_place(path: &Path) -> io::Result<File> {
 }
 
 /// Prepares the rules for an order whose working folder is open as `folder`.
-pub(super) fn rules(order: &RunOrder, places: &Places, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
-    let version = version(order.walls.landlock_version);
+pub(super) fn build_ruleset(order: &RunOrder, places: &Places, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
+    let version = to_abi(order.walls.landlock_version);
     let mut ruleset = begin_ruleset(order.walls.scopes, version)?;
     for (opened, access) in &places.0 {
         ruleset = ruleset.add_rule(PathBeneath::new(opened.as_fd(), *access)).map_err(from_ruleset_error)?;
@@ -191,12 +193,12 @@ pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
 
 /// Returns a ruleset that allows nothing, for the probe.
 pub(super) fn deny_all_ruleset(scopes: bool) -> io::Result<RulesetCreated> {
-    begin_ruleset(scopes, NEWEST)
+    begin_ruleset(scopes, NEWEST_ABI)
 }
 
 /// Returns the rules of an older kernel, to test them; 0 means the newest.
-fn version(number: u8) -> ABI {
-    [NEWEST, ABI::V1, ABI::V2, ABI::V3, ABI::V4, ABI::V5].get(usize::from(number)).copied().unwrap_or(NEWEST)
+fn to_abi(number: u8) -> ABI {
+    [NEWEST_ABI, ABI::V1, ABI::V2, ABI::V3, ABI::V4, ABI::V5].get(usize::from(number)).copied().unwrap_or(NEWEST_ABI)
 }
 
 /// Returns a ruleset that denies everything that the running kernel can deny, unless a rule allows it.
@@ -210,7 +212,7 @@ fn begin_ruleset(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
         ruleset = ruleset.handle_access(network).map_err(from_ruleset_error)?;
     }
     if scopes {
-        ruleset = ruleset.scope(Scope::from_all(NEWEST)).map_err(from_ruleset_error)?;
+        ruleset = ruleset.scope(Scope::from_all(NEWEST_ABI)).map_err(from_ruleset_error)?;
     }
     ruleset.create().map_err(from_ruleset_error)
 }

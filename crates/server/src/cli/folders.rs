@@ -97,7 +97,7 @@ impl ServiceFolders {
         Ok(())
     }
 
-    pub(super) fn work(&self, worker: &str) -> PathBuf {
+    pub(super) fn work_folder(&self, worker: &str) -> PathBuf {
         self.data.join("work").join(worker)
     }
 

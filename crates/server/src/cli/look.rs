@@ -8,7 +8,7 @@ use std::fs::File;
 /// Prints the kind of the file, or the reason for rejecting it, as JSON.
 pub(super) fn run(arguments: &LookThroughArguments) -> Result<()> {
     let answer = match &arguments.into {
-        Some(folder) => fosssim_intake::unpack(File::open(&arguments.file)?, folder, ArchiveLimits::USUAL)
+        Some(folder) => fosssim_intake::unpack(File::open(&arguments.file)?, folder, ArchiveLimits::DEFAULT)
             .map(|_| None)
             .map_err(|error| error.to_string()),
         None => {

@@ -3,7 +3,7 @@ use super::{
     arguments::{AdminLinkArguments, ProviderArguments, ServiceArguments, StorageArguments, WorkerTokenArguments},
     folders::ServiceFolders,
     heartbeat, until_signalled,
-    worker::{LocalWorkers, find_grader, policy},
+    worker::{LocalWorkers, find_grader, queue_policy},
 };
 use crate::{
     db::{self, Address, Database},
@@ -34,7 +34,7 @@ const DAY_SECONDS: u64 = 24 * 3600;
 const MIB: u64 = 1 << 20;
 
 /// The name of the file in the data folder that contains the server's public address.
-const ADDRESS: &str = "address";
+const ADDRESS_FILE: &str = "address";
 
 /// The maximum time to wait for the grader's answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
@@ -56,8 +56,8 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     let notifier = Notifier::default();
     let local = format!("http://{}", listener.local_addr()?);
     let public = arguments.public_url.clone().unwrap_or_else(|| local.clone());
-    std::fs::write(folders.data.join(ADDRESS), &public)?;
-    let policy = policy(&arguments.work);
+    std::fs::write(folders.data.join(ADDRESS_FILE), &public)?;
+    let policy = queue_policy(&arguments.work);
     let patience = Duration::from_secs(arguments.patience);
     let provider = provider(&arguments.provider)?;
     let lti = Arc::new(Lti::new(arguments.lti_over_http));
@@ -101,7 +101,7 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
         async move { local.work(&arguments.work, slots, None, stop).await }
     });
     let example = arguments.example.then_some(folders.flawed_program.as_path());
-    greet(&app, [&local, &public], example, arguments.work.grader.as_deref()).await?;
+    print_greeting(&app, [&local, &public], example, arguments.work.grader.as_deref()).await?;
     heartbeat::say_ready();
     let seen = database.clone();
     tokio::spawn(heartbeat::send_heartbeats(folders.data.clone(), async move || seen.is_healthy().await));
@@ -132,7 +132,12 @@ fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
 
 /// Prints the server's address and a way to sign in to standard output, for people and scripts. The log is on standard
 /// error and contains no secrets. With an example, the path of its program is printed, too.
-async fn greet(app: &App, [local, public]: [&str; 2], example: Option<&Path>, grader: Option<&Path>) -> Result<()> {
+async fn print_greeting(
+    app: &App,
+    [local, public]: [&str; 2],
+    example: Option<&Path>,
+    grader: Option<&Path>,
+) -> Result<()> {
     let link = app.first_link().await.map_err(|problem| anyhow!("{}", problem.detail))?;
     let mut output = std::io::stdout();
     writeln!(output, "Listening on {local}")?;
@@ -198,15 +203,15 @@ async fn run_grader(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
 
 /// Updates the tables. A copy of a SQLite database with data is made first.
 async fn update_tables(database: &Database, folders: &ServiceFolders, address: &Address) -> Result<()> {
-    let version = db::version(database).await?;
-    if version > 0 && version < db::LATEST && matches!(address, Address::Sqlite(_)) {
+    let version = db::read_version(database).await?;
+    if version > 0 && version < db::NEWEST && matches!(address, Address::Sqlite(_)) {
         let copy = back_up(database, &folders.backups, version).await;
         let copy = copy.context("the backup before the tables change")?;
         tracing::info!(copy = %copy.display(), "the database was copied before its tables change");
     }
     let applied = db::migrate(database).await?;
     if applied > 0 {
-        tracing::info!(version = db::LATEST, "the tables are up to date");
+        tracing::info!(version = db::NEWEST, "the tables are up to date");
     }
     Ok(())
 }
@@ -241,7 +246,7 @@ async fn open(place: &StorageArguments, public: String) -> Result<(App, Database
 }
 
 pub(super) async fn admin_link(arguments: &AdminLinkArguments) -> Result<()> {
-    let known = || std::fs::read_to_string(arguments.place.data.join(ADDRESS)).ok();
+    let known = || std::fs::read_to_string(arguments.place.data.join(ADDRESS_FILE)).ok();
     let public = arguments.public_url.clone().or_else(known).unwrap_or_else(|| "http://127.0.0.1:8080".to_owned());
     let (app, database) = open(&arguments.place, public).await?;
     let link = app.admin_link(&arguments.login).await.map_err(|problem| anyhow!("{}", problem.detail))?;

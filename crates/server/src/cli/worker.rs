@@ -29,7 +29,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
     }
     let folders = ServiceFolders::find_database(&arguments.place)?;
     let (database, address) = folders.open_database(&arguments.place).await?;
-    if db::version(&database).await? != db::LATEST {
+    if db::read_version(&database).await? != db::NEWEST {
         bail!("the tables of {address} have another version; start the server first, which updates them");
     }
     let store = folders.store(&arguments.place)?;
@@ -39,7 +39,7 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
         database: database.clone(),
         store,
         notifier,
-        policy: policy(&arguments.work),
+        policy: queue_policy(&arguments.work),
         grader: find_grader(arguments.work.grader.as_deref())?,
     };
     heartbeat::say_ready();
@@ -64,11 +64,11 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let name = unique_name(arguments.name.as_deref());
     folders.clear()?;
     let source = RemoteSource::new(server, token, &name);
-    let folder = folders.work(&name);
+    let folder = folders.work_folder(&name);
     heartbeat::say_ready();
     // A worker that can't reach its server is healthy: it keeps trying, and keeps its jobs.
     tokio::spawn(heartbeat::send_heartbeats(folders.data.clone(), async || true));
-    let slots = slots(arguments.slots);
+    let slots = slot_count(arguments.slots);
     tracing::info!(worker = name, server, slots, grader = %grader.display(), "working");
     let program = Program::new(grader, arguments.work.threads.get());
     let worked = worker::work(source, program, slots, folder.clone(), stop).await;
@@ -85,12 +85,12 @@ fn unique_name(name: Option<&str>) -> String {
 }
 
 /// Returns the requested number of slots, or the number of cores.
-fn slots(slots: Option<NonZeroUsize>) -> usize {
+fn slot_count(slots: Option<NonZeroUsize>) -> usize {
     slots.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
 
 /// Returns the queue's policy from the arguments.
-pub(super) fn policy(work: &WorkloadArguments) -> QueuePolicy {
+pub(super) fn queue_policy(work: &WorkloadArguments) -> QueuePolicy {
     let lease = Duration::from_secs(work.lease);
     QueuePolicy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
 }
@@ -128,16 +128,16 @@ impl LocalWorkers {
     ) -> Result<()> {
         let name = unique_name(name);
         self.folders.clear()?;
-        let slots = self::slots(slots);
+        let slots = self::slot_count(slots);
         tracing::info!(worker = name, slots, grader = %self.grader.display(), "working");
         let source = LocalSource::new(
-            self.database.first(),
+            self.database.with_priority(),
             self.store.clone(),
             self.notifier.clone(),
             self.policy,
             name.clone(),
         );
-        let folder = self.folders.work(&name);
+        let folder = self.folders.work_folder(&name);
         let program = Program::new(self.grader.clone(), work.threads.get());
         worker::work(source, program, slots, folder.clone(), stop).await?;
         drop(std::fs::remove_dir_all(folder));

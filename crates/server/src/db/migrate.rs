@@ -1,7 +1,7 @@
 //! The tables and their changes. A change is a separate file, which is applied once and never edited afterwards. All
 //! missing changes are applied in one transaction, so that a database is never between two versions.
 use super::{Database, DbError, Dialect};
-use crate::{secret::hex, values};
+use crate::{secret::to_hex, values};
 use sha2::{Digest, Sha256};
 use thiserror::Error;
 
@@ -39,7 +39,7 @@ const MIGRATIONS: [(&str, &str); 29] = [
 ];
 
 /// The version of the tables that this program uses.
-pub const LATEST: i64 = MIGRATIONS.len() as i64;
+pub const NEWEST: i64 = MIGRATIONS.len() as i64;
 
 /// PostgreSQL's number of the lock that prevents two servers from migrating in parallel; an arbitrary number.
 const LOCK_NUMBER: i64 = 0x6673_6f5f_6d69_6772;
@@ -49,7 +49,7 @@ const LOCK_NUMBER: i64 = 0x6673_6f5f_6d69_6772;
 pub enum MigrateError {
     /// A newer program has changed the tables.
     #[error(
-        "the database has version {found}, this program knows versions up to {LATEST}: start the newer program, or \
+        "the database has version {found}, this program knows versions up to {NEWEST}: start the newer program, or \
         restore the backup that it made"
     )]
     Newer {
@@ -73,7 +73,7 @@ pub enum MigrateError {
 ///
 /// # Errors
 /// Fails if the database does not answer.
-pub async fn version(database: &Database) -> Result<i64, DbError> {
+pub async fn read_version(database: &Database) -> Result<i64, DbError> {
     let mut transaction = database.read().await?;
     let there = match transaction.dialect() {
         Dialect::Sqlite => "SELECT count(*) AS n FROM sqlite_master WHERE name = 'schema_change'",
@@ -107,12 +107,12 @@ pub async fn migrate(database: &Database) -> Result<usize, MigrateError> {
         .await?;
     let applied = transaction.rows("SELECT number, digest FROM schema_change ORDER BY number", values![]).await?;
     let found = applied.last().map_or(Ok(0), |row| row.int("number"))?;
-    if found > LATEST {
+    if found > NEWEST {
         return Err(MigrateError::Newer { found });
     }
     let mut count = 0;
     for (number, (name, script)) in (1..).zip(MIGRATIONS) {
-        let digest = hex(&Sha256::digest(script));
+        let digest = to_hex(&Sha256::digest(script));
         if let Some(row) = applied.iter().find(|row| row.int("number").is_ok_and(|applied| applied == number)) {
             if row.text("digest")? != digest {
                 return Err(MigrateError::Changed { number, name });
@@ -136,7 +136,7 @@ mod tests {
     #[test]
     fn changes_that_databases_have_stay_as_they_are() {
         let known = MIGRATIONS[..29].iter().fold(Sha256::new(), |known, (_, script)| known.chain_update(script));
-        let digest = hex(&known.finalize());
+        let digest = to_hex(&known.finalize());
         assert_eq!(digest, "c299705b0d6cbf6af7edd79ce5f0c2168df8d4ca4dbd4e4a7d0e038b47ab2e09");
     }
 }

@@ -14,7 +14,7 @@ mod value;
 
 pub use address::Address;
 pub use fault::DbError;
-pub use migrate::{LATEST, MigrateError, migrate, version};
+pub use migrate::{MigrateError, NEWEST, migrate, read_version};
 pub use transaction::Transaction;
 use transaction::{Faults, Inner, Turn};
 pub use value::{Column, FromRow, Row, Value};
@@ -156,12 +156,12 @@ impl Database {
     /// Returns a handle to the same database with priority, for callers such as workers, whose leases expire. Grades
     /// are stored and waiting jobs are claimed even during many uploads.
     #[must_use]
-    pub fn first(&self) -> Self {
+    pub fn with_priority(&self) -> Self {
         Self { goes_first: true, ..self.clone() }
     }
 
     /// Waits for a turn, if one is needed.
-    async fn turn(&self) -> Result<Turn, sqlx::Error> {
+    async fn acquire_turn(&self) -> Result<Turn, sqlx::Error> {
         if self.goes_first {
             return Ok(None);
         }
@@ -215,8 +215,8 @@ impl Database {
     /// Returns whether the database answers and has no tables of a newer program. If a newer program has changed the
     /// tables, nothing is written from then on.
     pub async fn is_healthy(&self) -> bool {
-        let version = version(self).await;
-        if version.as_ref().is_ok_and(|version| *version > LATEST) {
+        let version = read_version(self).await;
+        if version.as_ref().is_ok_and(|version| *version > NEWEST) {
             self.is_outdated.store(true, Ordering::Relaxed);
         }
         version.is_ok()
@@ -245,7 +245,7 @@ impl Database {
         in_turn: bool,
     ) -> Result<Transaction, DbError> {
         let begun = async {
-            let turn = if in_turn { self.turn().await? } else { None };
+            let turn = if in_turn { self.acquire_turn().await? } else { None };
             Ok::<_, sqlx::Error>(Transaction::new(make(begin().await?), self.faults.clone(), turn))
         }
         .await;

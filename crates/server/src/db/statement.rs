@@ -3,7 +3,7 @@ use super::Dialect;
 
 /// Returns the parts of a script for an engine: lines between `-- only sqlite` or `-- only postgres` and `-- end` are
 /// for one engine only.
-pub(super) fn parts(script: &str, dialect: Dialect) -> String {
+pub(super) fn join_parts(script: &str, dialect: Dialect) -> String {
     let other = match dialect {
         Dialect::Sqlite => "-- only postgres",
         Dialect::Postgres => "-- only sqlite",

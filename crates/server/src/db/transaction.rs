@@ -150,7 +150,7 @@ impl Transaction {
 
     /// Runs several statements that are separated by semicolons and take no values, such as definitions of tables.
     pub(super) async fn script(&mut self, script: &str) -> Result<(), DbError> {
-        let script = statement::parts(script, self.dialect());
+        let script = statement::join_parts(script, self.dialect());
         let text = AssertSqlSafe(statement::text(&script, self.dialect()));
         match &mut self.inner {
             Inner::Sqlite(inner) => sqlx::raw_sql(text).execute(&mut **inner).await.map(|_| ())?,

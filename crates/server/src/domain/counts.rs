@@ -71,7 +71,7 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
         FROM (SELECT sum(bytes) AS bytes FROM kept_bytes GROUP BY course) AS of_courses";
     let row = transaction.one(statement, values![]).await?;
     metrics.kept = [row.int("bytes")?, row.int("most")?];
-    let recent = health::recent(policy);
+    let recent = health::recency_millis(policy);
     let statement =
         "SELECT count(*) AS n, CAST(coalesce(sum(slots), 0) AS {int}) AS slots, count(aside_since) AS aside,
            count(CASE WHEN aside_since IS NULL AND EXISTS (SELECT 1 FROM job

@@ -407,7 +407,7 @@ pub(super) async fn submission(
     let found: Option<Submission> = transaction.find(statement, values![id, course]).await?;
     let Some(mut submission) = found else { return Ok(None) };
     if let Some(job) = submission.job
-        && let Some(place) = queue::place(transaction, &app.0.policy, Lane::Grading, job).await?
+        && let Some(place) = queue::queue_place(transaction, &app.0.policy, Lane::Grading, job).await?
     {
         submission.ahead = Some(place.ahead);
         submission.lacks_worker = !place.is_served;
@@ -533,7 +533,7 @@ pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Qu
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'running') AS running,
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'buried' AND replaced = 0) AS buried";
     let counts = &transaction.one(statement, values![]).await?;
-    let recent = health::recent(&app.0.policy);
+    let recent = health::recency_millis(&app.0.policy);
     let statement = "SELECT name, version, slots, seen_at, aside_since, faults, fault, fault_at,
            (SELECT count(*) FROM job WHERE job.state = 'running' AND job.worker = worker.name) AS running
         FROM worker WHERE seen_at > {now} - ? AND seen_at <= {now} + ? ORDER BY name LIMIT 1000";

@@ -19,16 +19,16 @@ use url::Url;
 
 /// The scopes of tokens (AGS 3.1, NRPS 2.1).
 pub(crate) mod scope {
-    pub(crate) const SCORE: &str = "https://purl.imsglobal.org/spec/lti-ags/scope/score";
+    pub(crate) const SCORE_SCOPE: &str = "https://purl.imsglobal.org/spec/lti-ags/scope/score";
     pub(crate) const LINE_ITEM: &str = "https://purl.imsglobal.org/spec/lti-ags/scope/lineitem";
-    pub(crate) const MEMBERS: &str = "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly";
+    pub(crate) const MEMBERS_SCOPE: &str = "https://purl.imsglobal.org/spec/lti-nrps/scope/contextmembership.readonly";
 }
 
 /// The maximum time to wait for a platform's answer.
 const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
 
 /// The maximum size of an answer, in bytes.
-const ANSWER: u64 = 8 << 20;
+const MAX_ANSWER_BYTES: u64 = 8 << 20;
 
 /// The lifetime of this service's assertions, in seconds.
 const ASSERTION_LIFETIME: u64 = 300;
@@ -134,7 +134,7 @@ struct Token {
 
 impl Client {
     pub(super) fn new(over_http: bool) -> Self {
-        Self { agent: net::agent(over_http, ANSWER_TIMEOUT), over_http, tokens: Mutex::default() }
+        Self { agent: net::new_agent(over_http, ANSWER_TIMEOUT), over_http, tokens: Mutex::default() }
     }
 
     /// Downloads a public file of a platform.
@@ -153,7 +153,8 @@ impl Client {
         };
         let (agent, ask) = (self.agent.clone(), ask.clone());
         let authorization = token.map(|token| format!("Bearer {token}"));
-        let asked = tokio::task::spawn_blocking(move || blocking(&agent, &url, &ask, authorization.as_deref())).await;
+        let asked =
+            tokio::task::spawn_blocking(move || send_blocking(&agent, &url, &ask, authorization.as_deref())).await;
         asked.map_err(ServiceFault::from_outage)?
     }
 
@@ -221,7 +222,12 @@ pub(super) fn now_seconds() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs())
 }
 
-fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) -> Result<ServiceAnswer, ServiceFault> {
+fn send_blocking(
+    agent: &Agent,
+    url: &Url,
+    ask: &Ask,
+    authorization: Option<&str>,
+) -> Result<ServiceAnswer, ServiceFault> {
     let mut request = Request::builder().uri(url.as_str()).header("Accept", ask.accept);
     if let Some(authorization) = authorization {
         request = request.header("Authorization", authorization);
@@ -239,6 +245,7 @@ fn blocking(agent: &Agent, url: &Url, ask: &Ask, authorization: Option<&str>) ->
     // The value is in seconds; a date is ignored, and the queue's own delay applies.
     let after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
     let status = answer.status().as_u16();
-    let body = answer.body_mut().with_config().limit(ANSWER).read_to_vec().map_err(ServiceFault::from_outage)?;
+    let body =
+        answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().map_err(ServiceFault::from_outage)?;
     Ok(ServiceAnswer { status, body, link, after: after.map(|after| after.min(MAX_WAIT)) })
 }

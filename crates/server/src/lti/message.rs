@@ -259,7 +259,7 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     }
     let endpoint = claims.endpoint.unwrap_or_default();
     let may = |wanted: &str| endpoint.scope.iter().any(|scope| scope == wanted);
-    let scores = may(scope::SCORE);
+    let scores = may(scope::SCORE_SCOPE);
     let columns = scores && may(scope::LINE_ITEM);
     Ok(Message {
         person: LtiPerson {
@@ -290,10 +290,10 @@ pub(super) fn name_of(whole: Option<String>, parts: [Option<String>; 2]) -> Opti
 /// Returns the role of a person in the course from the platform's roles (LTI A.2.3). Roles in the institution or system
 /// give no role in the course, except for a sole role as administrator.
 pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
-    const COURSE: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
+    const COURSE_ROLES: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
     // The simple names are deprecated, but still in use.
     let in_course = |role: &str| -> Option<String> {
-        let rest = role.strip_prefix(COURSE)?;
+        let rest = role.strip_prefix(COURSE_ROLES)?;
         // A principal role, or a sub-role: #Instructor, /Instructor#TeachingAssistant.
         match rest.strip_prefix('/') {
             Some(part) => part.split('#').next().map(str::to_owned),

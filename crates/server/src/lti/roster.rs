@@ -47,7 +47,7 @@ pub async fn fetch(
     for _ in 0..MAX_PAGES {
         let Some(address) = next else { return Ok(members) };
         let ask = Ask { address, accept: MEDIA_TYPE, body: None };
-        let told = client.call(database, platform, scope::MEMBERS, &ask).await?;
+        let told = client.call(database, platform, scope::MEMBERS_SCOPE, &ask).await?;
         let page: RosterPage = told.read("its members")?;
         members.extend(page.members.into_iter().filter_map(to_person));
         if members.len() > MAX_MEMBERS {

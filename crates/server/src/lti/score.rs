@@ -76,7 +76,7 @@ async fn enqueue(transaction: &mut Transaction, rows: &[Row], again: bool) -> Re
     for row in rows {
         let order = Order { link: row.int("link")?, account: row.int("account")?, again };
         let turn = Turn::Score(order.link, order.account);
-        if !again && queue::waits(transaction, turn).await? {
+        if !again && queue::is_waiting(transaction, turn).await? {
             continue;
         }
         let payload = &serde_json::to_string(&order).map_err(|error| DbError::Other(error.to_string()))?;
@@ -119,7 +119,9 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
         WHERE platform_link.id = ?";
     let row = transaction.row(statement, values![order.account, order.link]).await?;
     let Some(row) = row else { return Ok(None) };
-    let Some(content) = content(transaction, row.int("assignment")?, order.account).await? else { return Ok(None) };
+    let Some(content) = score_content(transaction, row.int("assignment")?, order.account).await? else {
+        return Ok(None);
+    };
     let text = content.to_string();
     let statement = "SELECT content, stamp, sent_at FROM platform_score WHERE link = ? AND account = ? {for update}";
     let before = transaction.row(statement, values![order.link, order.account]).await?;
@@ -152,7 +154,7 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
 /// Returns the score of a person's work on an assignment: the most points of all submissions. Before there are points,
 /// the platform receives the state `Pending`, or `PendingManual` if the grader failed; it never receives an
 /// undeserved zero. Hidden, unpublished groups are left out, because platforms show every score.
-async fn content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
+async fn score_content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown,
            mark.points AS mark, submission.created_at, assignment.settings, extension.due_at AS own_due FROM submission
         LEFT JOIN extension ON extension.assignment = submission.assignment AND extension.account = submission.account
@@ -248,7 +250,11 @@ pub(super) enum ColumnState {
 
 /// Returns the state of the column of a link; a caller that receives [`ColumnState::Unclaimed`] must create the column
 /// soon.
-pub(super) async fn column(transaction: &mut Transaction, link: i64, at_most: i64) -> Result<ColumnState, DbError> {
+pub(super) async fn find_column(
+    transaction: &mut Transaction,
+    link: i64,
+    at_most: i64,
+) -> Result<ColumnState, DbError> {
     let statement = "UPDATE platform_link SET making_until = {now} + ?
         WHERE id = ? AND line_item IS NULL
            AND (coalesce(making_until, 0) < {now} OR making_until > {now} + ?)";

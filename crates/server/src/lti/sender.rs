@@ -163,7 +163,7 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Pa
         accept: "application/json",
         body: Some(("application/vnd.ims.lis.v1.score+json", body.to_string().into_bytes())),
     };
-    match lti.client.call(database, &parcel.platform, scope::SCORE, &ask).await {
+    match lti.client.call(database, &parcel.platform, scope::SCORE_SCOPE, &ask).await {
         Ok(_) => Ok(Some(parcel)),
         // The platform has a newer score already (AGS 3.4.8).
         Err(ServiceFault::Refused(said)) if said.starts_with("409") => Ok(Some(parcel)),
@@ -194,7 +194,7 @@ async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<St
     let link = parcel.order.link;
     for _ in 0..MAX_POLLS {
         let mut transaction = database.begin().await?;
-        let column = score::column(&mut transaction, link, COLUMN_CREATION_TIME).await?;
+        let column = score::find_column(&mut transaction, link, COLUMN_CREATION_TIME).await?;
         transaction.commit().await?;
         match column {
             ColumnState::Known(address) => return Ok(address),
@@ -231,8 +231,12 @@ async fn find_or_make(
     let item = json!({
         "scoreMaximum": most, "label": parcel.title, "resourceId": parcel.slug, "resourceLinkId": parcel.resource,
     });
-    const KIND: &str = "application/vnd.ims.lis.v2.lineitem+json";
-    let ask = Ask { address: container.to_owned(), accept: KIND, body: Some((KIND, item.to_string().into_bytes())) };
+    const LINE_ITEM_TYPE: &str = "application/vnd.ims.lis.v2.lineitem+json";
+    let ask = Ask {
+        address: container.to_owned(),
+        accept: LINE_ITEM_TYPE,
+        body: Some((LINE_ITEM_TYPE, item.to_string().into_bytes())),
+    };
     let told = lti.client.call(database, &parcel.platform, scope::LINE_ITEM, &ask).await?;
     Ok(told.read::<LineItem>("its columns")?.id)
 }

@@ -97,7 +97,7 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
 /// # Errors
 ///
 /// Fails if the database fails.
-pub async fn waits(transaction: &mut Transaction, turn: Turn) -> Result<bool, DbError> {
+pub async fn is_waiting(transaction: &mut Transaction, turn: Turn) -> Result<bool, DbError> {
     let statement = "SELECT id FROM job WHERE fair_key = ? AND state = 'waiting' LIMIT 1 {for update}";
     let row = transaction.row(statement, values![turn.key()]).await?;
     Ok(row.is_some())

@@ -123,7 +123,7 @@ pub async fn fail(
     let failures = row.int("failures")? + 1;
     let (deaths, wait) = (row.int("deaths")?, policy.retry_delay(failures).max(least).min(MAX_PLATFORM_WAIT));
     let loss = Loss { job: lease.job, failures, deaths, wait, fault };
-    lose(transaction, loss, failures >= i64::from(policy.max_failures)).await
+    lose_job(transaction, loss, failures >= i64::from(policy.max_failures)).await
 }
 
 /// A failed try, with the updated counts of its job.
@@ -137,7 +137,7 @@ struct Loss<'a> {
 }
 
 /// Records that the worker of a job was lost. This transaction has locked `row`, which contains the job's counts.
-pub(super) async fn die(
+pub(super) async fn give_up_worker(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
     row: &Row,
@@ -145,11 +145,11 @@ pub(super) async fn die(
 ) -> Result<Failure, DbError> {
     let (failures, deaths) = (row.int("failures")?, row.int("deaths")? + 1);
     let loss = Loss { job: row.int("id")?, failures, deaths, wait: policy.wait_after_death(deaths), fault };
-    lose(transaction, loss, deaths >= policy.max_deaths()).await
+    lose_job(transaction, loss, deaths >= policy.max_deaths()).await
 }
 
 /// Gives a job up after its last try, or lets it wait again.
-async fn lose(transaction: &mut Transaction, loss: Loss<'_>, is_last: bool) -> Result<Failure, DbError> {
+async fn lose_job(transaction: &mut Transaction, loss: Loss<'_>, is_last: bool) -> Result<Failure, DbError> {
     let Loss { job, failures, deaths, wait, fault } = loss;
     if is_last {
         let statement = "UPDATE job SET state = 'buried', failures = ?, deaths = ?, finished_at = {now},

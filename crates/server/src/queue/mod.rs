@@ -16,10 +16,10 @@ mod place;
 mod tick;
 
 pub use claim::{Claimant, claim, is_due};
-pub use enqueue::{NewJob, Turn, enqueue, waits};
+pub use enqueue::{NewJob, Turn, enqueue, is_waiting};
 pub use hold::{Completion, Failure, Progress, complete, fail, payload, release, renew};
 pub use notifier::{Notifier, Subscription};
-pub use place::{Place, place};
+pub use place::{Place, queue_place};
 pub use tick::{BuriedJob, Tick, tick};
 
 use crate::secret;
@@ -102,14 +102,14 @@ impl QueuePolicy {
     }
 
     /// Returns the maximum wait of a job after `failures` failures.
-    fn longest(&self, failures: i64) -> Duration {
+    fn max_delay(&self, failures: i64) -> Duration {
         let steps = u32::try_from(failures.max(1) - 1).unwrap_or(u32::MAX).min(16);
         self.first_wait.saturating_mul(4_u32.saturating_pow(steps)).min(self.longest_wait)
     }
 
     /// Returns a random wait, so that jobs that failed at the same time do not retry at the same time.
     fn retry_delay(&self, failures: i64) -> Duration {
-        let longest = self.longest(failures);
+        let longest = self.max_delay(failures);
         longest - longest / 4 * secret::random_byte().into() / 255
     }
 }
@@ -155,9 +155,9 @@ mod tests {
     #[test]
     fn each_failure_waits_longer_up_to_a_limit() {
         let policy = QueuePolicy::default();
-        let waits: Vec<u64> = (1..=6).map(|failures| policy.longest(failures).as_secs()).collect();
+        let waits: Vec<u64> = (1..=6).map(|failures| policy.max_delay(failures).as_secs()).collect();
         assert_eq!(waits, [1, 4, 16, 64, 120, 120]);
-        assert_eq!(policy.longest(i64::MAX), policy.longest_wait);
+        assert_eq!(policy.max_delay(i64::MAX), policy.longest_wait);
         let some: std::collections::BTreeSet<Duration> = (0..100).map(|_| policy.retry_delay(3)).collect();
         assert!(some.len() > 10 && some.first() >= Some(&Duration::from_secs(12)), "{some:?}");
         assert!(some.last() <= Some(&Duration::from_secs(16)), "{some:?}");

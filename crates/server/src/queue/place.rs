@@ -26,7 +26,7 @@ pub struct Place {
 /// # Errors
 ///
 /// Fails if the database fails.
-pub async fn place(
+pub async fn queue_place(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
     lane: Lane,

@@ -3,7 +3,7 @@
 //! Every live process ticks, and leases expire only while one does. A gap between ticks means that the database was
 //! unavailable and no worker could renew, so all leases start again. Therefore a restart of PostgreSQL does not count
 //! as a failure of any job.
-use super::{Failure, QueuePolicy, hold::die, millis};
+use super::{Failure, QueuePolicy, hold::give_up_worker, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
@@ -72,7 +72,7 @@ async fn give_up(transaction: &mut Transaction, policy: &QueuePolicy, lost: Vec<
     for row in lost {
         let (job, attempt) = (row.int("id")?, row.int("attempt")?);
         let worker = row.maybe_text("worker")?.unwrap_or_default();
-        match die(transaction, policy, &row, SILENT_WORKER).await? {
+        match give_up_worker(transaction, policy, &row, SILENT_WORKER).await? {
             Failure::Buried => tick.buried.push(BuriedJob { job, attempt, worker, fault: SILENT_WORKER.to_owned() }),
             Failure::Retried | Failure::Late => tick.retried += 1,
         }

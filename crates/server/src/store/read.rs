@@ -1,6 +1,6 @@
 //! Reading of artifacts in pieces, so that memory is the same for artifacts of any size.
-use super::{Digest, KEPT_FOLDER, Store, StoreError, TRASH};
-use crate::secret::hex;
+use super::{Digest, KEPT_FOLDER, Store, StoreError, TRASH_FOLDER};
+use crate::secret::to_hex;
 use axum::body::Bytes;
 use futures_util::{StreamExt, TryStreamExt, stream::BoxStream};
 use object_store::ObjectStoreExt;
@@ -27,7 +27,7 @@ impl Store {
         let mut found = self.objects.get(&digest.key(KEPT_FOLDER)).await;
         // The sweep may have moved the file to the trash before a row referred to it again, so restore it.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
-            found = self.objects.get(&digest.key(TRASH)).await;
+            found = self.objects.get(&digest.key(TRASH_FOLDER)).await;
         }
         let found = match found {
             Err(object_store::Error::NotFound { .. }) => return Err(StoreError::Missing(digest.clone())),
@@ -75,7 +75,7 @@ fn verify(
             let next = pieces.try_next().await?;
             if let Some(piece) = &next {
                 hasher.update(piece);
-            } else if hex(&hasher.finalize_reset()) != digest.as_str() {
+            } else if to_hex(&hasher.finalize_reset()) != digest.as_str() {
                 return Err(StoreError::Damaged(digest));
             }
             ended = next.is_none();

@@ -1,5 +1,5 @@
 //! Removes unreferenced artifacts in batches, so that memory is the same for any number of artifacts.
-use super::{Digest, KEPT_FOLDER, Key, Store, StoreError, TRASH, age};
+use super::{Digest, KEPT_FOLDER, Key, Store, StoreError, TRASH_FOLDER, age};
 use futures_util::{StreamExt, TryStreamExt};
 use object_store::ObjectStoreExt;
 use std::{
@@ -37,23 +37,23 @@ impl Store {
             let digests: Vec<Digest> = batch.into_iter().map(|(digest, _)| digest).collect();
             let named = named(digests.clone()).await?;
             for digest in digests.iter().filter(|digest| !named.contains(digest)) {
-                self.rename(&digest.key(KEPT_FOLDER), &digest.key(TRASH)).await?;
+                self.rename(&digest.key(KEPT_FOLDER), &digest.key(TRASH_FOLDER)).await?;
                 // In a bucket, a moved object is a new copy with a new age.
                 if let Some(folder) = &self.folder {
-                    renew(&folder.join(digest.key(TRASH).as_ref()));
+                    renew(&folder.join(digest.key(TRASH_FOLDER).as_ref()));
                 }
             }
         }
         let mut given_up = 0;
-        let mut batches = self.list(TRASH).try_chunks(BATCH_SIZE);
+        let mut batches = self.list(TRASH_FOLDER).try_chunks(BATCH_SIZE);
         while let Some(batch) = batches.next().await {
             let batch = batch.map_err(|error| error.1)?;
             let named = named(batch.iter().map(|(digest, _)| digest.clone()).collect()).await?;
             for (digest, age) in batch {
                 if named.contains(&digest) {
-                    self.rename(&digest.key(TRASH), &digest.key(KEPT_FOLDER)).await?;
+                    self.rename(&digest.key(TRASH_FOLDER), &digest.key(KEPT_FOLDER)).await?;
                 } else if age >= least {
-                    match self.objects.delete(&digest.key(TRASH)).await {
+                    match self.objects.delete(&digest.key(TRASH_FOLDER)).await {
                         Ok(()) => given_up += 1,
                         Err(object_store::Error::NotFound { .. }) => {}
                         Err(error) => return Err(StoreError::from(error).into()),
@@ -70,7 +70,7 @@ impl Store {
 
     /// Returns all artifacts; one that is moved to the trash during the listing may be returned twice.
     pub fn digests(&self) -> impl futures_util::Stream<Item = Result<Digest, StoreError>> + Unpin {
-        self.list(KEPT_FOLDER).chain(self.list(TRASH)).map_ok(|(digest, _)| digest)
+        self.list(KEPT_FOLDER).chain(self.list(TRASH_FOLDER)).map_ok(|(digest, _)| digest)
     }
 
     /// Moves an object, unless another server has moved it.
@@ -106,7 +106,8 @@ fn renew(file: &Path) {
 /// until they are complete, and listings leave them out.
 fn remove_parts(folder: &Path, least: Duration) -> usize {
     let below = |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten();
-    let folders = [KEPT_FOLDER, TRASH].into_iter().flat_map(|kept| below(&folder.join(kept)).map(|entry| entry.path()));
+    let folders =
+        [KEPT_FOLDER, TRASH_FOLDER].into_iter().flat_map(|kept| below(&folder.join(kept)).map(|entry| entry.path()));
     let mut removed = 0;
     for entry in folders.filter(|path| path.is_dir()).flat_map(|path| below(&path)) {
         let is_part = entry.file_name().to_str().is_some_and(|name| name.contains('#'));

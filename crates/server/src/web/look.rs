@@ -31,7 +31,7 @@ pub(super) async fn examine(
     let wrong = || Problem::invalid("form must be program, sources or traces");
     let form = said.map(|name| Form::from_name(name).ok_or_else(wrong)).transpose()?;
     let mut start = Vec::new();
-    std::fs::File::open(file)?.take(fosssim_intake::START as u64).read_to_end(&mut start)?;
+    std::fs::File::open(file)?.take(fosssim_intake::START_BYTES as u64).read_to_end(&mut start)?;
     ensure(!start.is_empty(), Problem::unusable("the file is empty"))?;
     match (form, is_program(&start)) {
         (None | Some(Form::Program), true) => return Ok(Form::Program),
@@ -43,8 +43,8 @@ pub(super) async fn examine(
     }
     let archives = [Form::Sources, Form::Traces].into_iter().filter(|form| settings.takes(*form));
     let archives: Vec<&str> = archives.map(Form::name).collect();
-    let archives =
-        (!archives.is_empty()).then(|| format!("an archive of {} ({})", archives.join(" or "), fosssim_intake::KNOWN));
+    let archives = (!archives.is_empty())
+        .then(|| format!("an archive of {} ({})", archives.join(" or "), fosssim_intake::KNOWN_EXTENSIONS));
     let program = settings.takes(Form::Program).then(|| PROGRAM_DESCRIPTION.to_owned());
     let wanted = program.into_iter().chain(archives).collect::<Vec<_>>().join(", or ");
     let mut words = vec!["--wanted", &wanted];
@@ -71,7 +71,7 @@ async fn check_in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<R
     let mut command = Command::new("/proc/self/exe");
     command.arg("look-through").args(words).arg("--").arg(file);
     command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());
-    worker::limit(&mut command, MAX_MEMORY, MAX_SECONDS);
+    worker::set_limits(&mut command, MAX_MEMORY, MAX_SECONDS);
     let looked = tokio::process::Command::from(command).kill_on_drop(true).output();
     let answer = match tokio::time::timeout(Duration::from_secs(MAX_SECONDS), looked).await {
         Ok(output) => serde_json::from_slice(&output?.stdout).ok(),

@@ -27,7 +27,7 @@ pub(super) struct Child {
 }
 
 /// Limits the memory and the processor time of a command, and lets the kernel kill it when this process ends.
-pub(crate) fn limit(command: &mut Command, memory: u64, seconds: u64) {
+pub(crate) fn set_limits(command: &mut Command, memory: u64, seconds: u64) {
     // SAFETY: these calls may be made between fork and exec.
     unsafe {
         command.pre_exec(move || {

@@ -13,7 +13,7 @@ mod slots;
 mod source;
 mod suite_check;
 
-pub(crate) use child::limit;
+pub(crate) use child::set_limits;
 pub use grader::{Grader, GraderFault, GradingOutput, NewFile, PROGRESS_FILE};
 pub use local::LocalSource;
 use program::GRACE_PERIOD;

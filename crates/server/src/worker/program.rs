@@ -275,7 +275,7 @@ async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), G
         let archive = fs::File::open(archive).map_err(|error| error.to_string())?;
         fs::create_dir(&folder).map_err(|error| error.to_string())?;
         let files =
-            fosssim_intake::unpack(archive, &folder, ArchiveLimits::USUAL).map_err(|error| error.to_string())?;
+            fosssim_intake::unpack(archive, &folder, ArchiveLimits::DEFAULT).map_err(|error| error.to_string())?;
         Ok::<_, String>((fosssim_intake::top_folder(&folder, &files), folder))
     });
     let unpacked = unpacking.await.map_err(|error| GraderFault::Failed(error.to_string()))?;

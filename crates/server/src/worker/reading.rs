@@ -4,15 +4,15 @@ use std::{fs, path::Path};
 
 /// The supported schemas of `grade.json`. During an upgrade, a grader may be older than the server; the parts that are
 /// read are the same in all of them.
-const SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
+const SUPPORTED_SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 
 /// Reads a grade. Numbers are kept as the text that the grader wrote.
 pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
     let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
     let damaged = |error: serde_json::Error| format!("grade.json can't be read: {error}");
     let report: GradeFile = serde_json::from_slice(&bytes).map_err(damaged)?;
-    if !SCHEMAS.contains(&report.schema) {
-        let (first, last) = SCHEMAS.into_inner();
+    if !SUPPORTED_SCHEMAS.contains(&report.schema) {
+        let (first, last) = SUPPORTED_SCHEMAS.into_inner();
         return Err(format!("grade.json has schema {}, this server reads {first} to {last}", report.schema));
     }
     let [grade] = report.grades.as_slice() else {
@@ -50,7 +50,7 @@ mod tests {
     fn grades_are_read_as_the_grader_writes_them() {
         let file = concat!(env!("CARGO_MANIFEST_DIR"), "/../../schemas/grade.schema.json");
         let schema: Value = serde_json::from_slice(&std::fs::read(file).expect("the schema")).expect("JSON");
-        assert_eq!(schema["properties"]["schema"]["const"], *SCHEMAS.end());
+        assert_eq!(schema["properties"]["schema"]["const"], *SUPPORTED_SCHEMAS.end());
         let text = schema.to_string();
         for name in ["code", "verdict", "scene"] {
             assert!(text.contains(&format!("\"{name}\"")), "the schema has no {name}");

@@ -91,7 +91,8 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
                 let done = tokio::spawn(run(source.clone(), health.clone(), job, stop.clone()));
                 if let Err(error) = done.await {
                     tracing::error!(job = lease.job, %error, "the worker failed");
-                    settle(&source, &lease, JobEnding::Failed(format!("the worker failed: {error}")), &stop).await;
+                    report_ending(&source, &lease, JobEnding::Failed(format!("the worker failed: {error}")), &stop)
+                        .await;
                 }
             }
             Err(error) => {
@@ -162,7 +163,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
         }
         ending => ending,
     };
-    settle(&source, &job.lease, ending, &stop).await;
+    report_ending(&source, &job.lease, ending, &stop).await;
     keeping.abort();
 }
 
@@ -215,12 +216,12 @@ async fn attempt<D: JobSource, G: Grader>(
 ) -> Result<Outcome, GraderFault> {
     let start = Instant::now();
     let submission = folder.join("submission");
-    retry(|| source.fetch(&job.lease, &job.task.submission.artifact.digest, &submission)).await?;
+    retry_request(|| source.fetch(&job.lease, &job.task.submission.artifact.digest, &submission)).await?;
     let suite = match &job.task.suite {
         Suite::Named(_) => None,
         Suite::Archive(digest) => {
             let file = folder.join("suite");
-            retry(|| source.fetch(&job.lease, digest, &file)).await?;
+            retry_request(|| source.fetch(&job.lease, digest, &file)).await?;
             Some(file)
         }
     };
@@ -229,7 +230,7 @@ async fn attempt<D: JobSource, G: Grader>(
     let graded = grader.grade(&job.task, &submission, suite.as_deref(), &work, halt).await?;
     let mut files = Vec::new();
     for file in &graded.files {
-        let artifact = retry(|| source.store(&job.lease, &file.path)).await?;
+        let artifact = retry_request(|| source.store(&job.lease, &file.path)).await?;
         files.push(OutputFile { name: file.name.clone(), media_type: file.media_type.clone(), artifact });
     }
     let seconds = format!("{:.3}", start.elapsed().as_secs_f64());
@@ -238,7 +239,7 @@ async fn attempt<D: JobSource, G: Grader>(
 
 /// Repeats a request to a source that does not answer, so that a short failure of the network does not count as a
 /// failure of the job.
-async fn retry<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
+async fn retry_request<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
     let mut wait = FIRST_WAIT;
     for _ in 0..MAX_FETCHES {
         match ask().await {
@@ -253,7 +254,7 @@ async fn retry<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> 
 
 /// Reports the result to the source, with any number of tries, because a lost result would have to be computed again. A
 /// worker that must stop tries only a few times; then the lease expires.
-async fn settle<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop: &CancellationToken) {
+async fn report_ending<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop: &CancellationToken) {
     let mut wait = FIRST_WAIT;
     let mut tries_after_stop = 3;
     loop {

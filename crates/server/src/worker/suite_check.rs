@@ -1,6 +1,6 @@
 //! The check whether a suite can be used, which the grader makes before a submission is graded by it.
 use super::{
-    child::{Child, End, limit},
+    child::{Child, End, set_limits},
     program::isolate,
 };
 use crate::health::without_paths;
@@ -26,7 +26,7 @@ pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     command.args(["suite", "check", "suite.toml"]);
     isolate(&mut command, folder);
     command.stderr(messages.reopen().map_err(|error| error.to_string())?);
-    limit(&mut command, MAX_MEMORY, MAX_SECONDS);
+    set_limits(&mut command, MAX_MEMORY, MAX_SECONDS);
     let child = Child::start(command).map_err(|error| format!("cannot start the grader: {error}"))?;
     let Ok(end) = tokio::time::timeout(Duration::from_secs(MAX_SECONDS), child.wait()).await else {
         child.kill();

@@ -6,7 +6,7 @@ use fosssim_server::{
 };
 
 async fn several_servers_may_start_at_once(fresh: Fresh) {
-    assert_eq!(db::version(&fresh.database).await.expect("a version"), 0);
+    assert_eq!(db::read_version(&fresh.database).await.expect("a version"), 0);
     let servers: Vec<_> = (0..4)
         .map(|_| {
             let address = fresh.address.clone();
@@ -22,14 +22,14 @@ async fn several_servers_may_start_at_once(fresh: Fresh) {
     }
     applied.sort_unstable();
     assert_eq!(applied[..3], [0, 0, 0]);
-    assert_eq!(i64::try_from(applied[3]).expect("few"), db::LATEST);
-    assert_eq!(db::version(&fresh.database).await.expect("a version"), db::LATEST);
+    assert_eq!(i64::try_from(applied[3]).expect("few"), db::NEWEST);
+    assert_eq!(db::read_version(&fresh.database).await.expect("a version"), db::NEWEST);
 }
 
 async fn a_newer_database_is_left_alone(fresh: Fresh) {
     db::migrate(&fresh.database).await.expect("tables");
     let mut transaction = fresh.database.begin().await.expect("a transaction");
-    let newer = db::LATEST + 1;
+    let newer = db::NEWEST + 1;
     transaction
         .execute("INSERT INTO schema_change VALUES (?, 'from the future', 'x', {now})", values![newer])
         .await

@@ -292,7 +292,7 @@ async fn the_place_in_the_queue_counts_down(fresh: Fresh) {
     let database = &fresh.database;
     let place = async |job| {
         let mut transaction = database.read().await.expect("a transaction");
-        queue::place(&mut transaction, &POLICY, Lane::Grading, job).await.expect("a place")
+        queue::queue_place(&mut transaction, &POLICY, Lane::Grading, job).await.expect("a place")
     };
     let regrade = enqueue(database, Turn::Campaign(1)).await;
     let mut jobs = Vec::new();

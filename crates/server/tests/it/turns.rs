@@ -37,7 +37,7 @@ async fn workers_go_before_requests(fresh: Fresh) {
     };
     let mut tasks: Vec<_> = (0..20).map(|_| task("request", fresh.database.clone())).collect();
     asked(&asks, 20).await;
-    let worker = task("worker", fresh.database.first());
+    let worker = task("worker", fresh.database.with_priority());
     if fresh.database.dialect() == Dialect::Postgres {
         // Some connections are only for workers.
         worker.await.expect("no panic");

@@ -1,17 +1,17 @@
 //! All rows of all tables of mistakes.
 use super::{
-    states::{EDITS, STEPS},
+    states::{EDIT_ROWS, STEPS},
     t2m2::{CATALOGUE, Mistake, Row},
 };
 use std::sync::LazyLock;
 
 /// The rows that are shared by all milestones: mistakes in forces, integrators and simple collisions.
-static STATES: LazyLock<Vec<Row>> =
-    LazyLock::new(|| EDITS.iter().chain(STEPS).map(|row| row.with_mistake(Mistake::Step(row.mistake))).collect());
+static SHARED_ROWS: LazyLock<Vec<Row>> =
+    LazyLock::new(|| EDIT_ROWS.iter().chain(STEPS).map(|row| row.with_mistake(Mistake::Step(row.mistake))).collect());
 
 /// Returns all rows, in the order of the assignments, with forces and integrators first.
 pub fn all_rows() -> impl Iterator<Item = &'static Row> {
-    STATES.iter().chain(CATALOGUE)
+    SHARED_ROWS.iter().chain(CATALOGUE)
 }
 
 /// Returns the row with the given id.

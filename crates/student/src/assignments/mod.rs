@@ -22,7 +22,7 @@ pub fn probe_scenes(assignment: Assignment) -> Vec<(String, Scene)> {
         (name.to_owned(), loaded.scene)
     };
     let probes = match assignment {
-        Assignment::T2M2 => t2m2::probes::PROBES,
+        Assignment::T2M2 => t2m2::probes::PROBE_SCENES,
         _ => states::probes::probes_for(assignment),
     };
     probes.iter().map(read).collect()

@@ -53,7 +53,7 @@ fn interpolate(degree: usize, value: impl Fn(f64) -> f64) -> Vec<f64> {
 
 /// Returns the overlap and approach of two particles, from values.
 pub fn particle_particle([one, two]: &[PointMotion; 2], radii: [f64; 2]) -> Vec<Vec<f64>> {
-    let n = |t| two.at(t) - one.at(t);
+    let n = |t| two.position_at(t) - one.position_at(t);
     let reach = radii[0] + radii[1];
     let closing = one.shift - two.shift;
     vec![interpolate(2, |t| reach * reach - n(t).dot(&n(t))), interpolate(1, |t| closing.dot(&n(t)))]
@@ -61,7 +61,7 @@ pub fn particle_particle([one, two]: &[PointMotion; 2], radii: [f64; 2]) -> Vec<
 
 /// Returns the overlap and approach of a particle and a half-plane, from values.
 pub fn particle_half_plane(one: &PointMotion, radius: f64, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
-    let away = |t| (point - one.at(t)).dot(&normal);
+    let away = |t| (point - one.position_at(t)).dot(&normal);
     let reach = radius * radius * normal.dot(&normal);
     let speed = one.shift.dot(&normal);
     vec![interpolate(2, |t| reach - away(t) * away(t)), interpolate(1, |t| speed * away(t))]
@@ -74,7 +74,7 @@ pub fn overlap_from_values(bodies: &[PointMotion; 3], square: f64) -> Vec<f64> {
 
 /// Returns the overlap of a particle and an edge at one time.
 fn overlap([one, two, three]: &[PointMotion; 3], square: f64, t: f64) -> f64 {
-    let (along, beside) = (three.at(t) - two.at(t), one.at(t) - two.at(t));
+    let (along, beside) = (three.position_at(t) - two.position_at(t), one.position_at(t) - two.position_at(t));
     let cross = along.x * beside.y - along.y * beside.x;
     square * along.dot(&along) - cross * cross
 }
@@ -83,8 +83,10 @@ fn overlap([one, two, three]: &[PointMotion; 3], square: f64, t: f64) -> f64 {
 pub fn particle_edge(bodies @ [one, two, three]: &[PointMotion; 3], square: f64) -> [Vec<f64>; 3] {
     [
         overlap_from_values(bodies, square),
-        interpolate(2, |t| (one.at(t) - two.at(t)).dot(&(three.at(t) - two.at(t)))),
-        interpolate(2, |t| (one.at(t) - three.at(t)).dot(&(two.at(t) - three.at(t)))),
+        interpolate(2, |t| (one.position_at(t) - two.position_at(t)).dot(&(three.position_at(t) - two.position_at(t)))),
+        interpolate(2, |t| {
+            (one.position_at(t) - three.position_at(t)).dot(&(two.position_at(t) - three.position_at(t)))
+        }),
     ]
 }
 

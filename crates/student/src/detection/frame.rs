@@ -4,14 +4,14 @@ use fosssim_num::vector::Vec2;
 use crate::{Area, Mistake, author::Student};
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::Handover];
+const MODULE_AREAS: &[Area] = &[Area::Handover];
 
 /// The origin of a program whose coordinates are shifted.
 const ORIGIN: Vec2 = Vec2::new(2.7, -1.3);
 
 /// The cosine and sine of the angle by which a program rotates its coordinates. The angle of 3-4-5 would not do,
 /// because its products are often exact.
-const TURN: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
+const ROTATION: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
 
 /// The coordinate axes in which a program computes.
 #[derive(Clone, Copy)]
@@ -29,7 +29,7 @@ pub enum Axes {
 impl Axes {
     /// Returns the axes in which a student computes.
     pub fn for_student(student: Student) -> Self {
-        match student.mistake_in(HERE) {
+        match student.mistake_in(MODULE_AREAS) {
             Some(Mistake::FrameShifted) => Self::Shifted,
             Some(Mistake::FrameComoving) => Self::Comoving,
             Some(Mistake::FrameRotated) => Self::Rotated,
@@ -39,18 +39,18 @@ impl Axes {
 
     /// Converts a point of the scene to these axes; `particle` is the position of the pair's first particle at the same
     /// time.
-    pub fn point(self, point: Vec2, particle: Vec2) -> Vec2 {
+    pub fn transform_point(self, point: Vec2, particle: Vec2) -> Vec2 {
         match self {
             Self::Scene => point,
             Self::Shifted => point - ORIGIN,
             Self::Comoving => point - particle,
-            Self::Rotated => self.direction(point),
+            Self::Rotated => self.transform_direction(point),
         }
     }
 
     /// Converts a difference of points to these axes.
-    pub fn direction(self, v: Vec2) -> Vec2 {
-        let (cosine, sine) = TURN;
+    pub fn transform_direction(self, v: Vec2) -> Vec2 {
+        let (cosine, sine) = ROTATION;
         match self {
             Self::Rotated => Vec2::new(cosine * v.x - sine * v.y, sine * v.x + cosine * v.y),
             _ => v,
@@ -59,7 +59,7 @@ impl Axes {
 
     /// Converts a difference of points back to the scene's axes.
     pub fn turn_back(self, v: Vec2) -> Vec2 {
-        let (cosine, sine) = TURN;
+        let (cosine, sine) = ROTATION;
         match self {
             Self::Rotated => Vec2::new(cosine * v.x + sine * v.y, cosine * v.y - sine * v.x),
             _ => v,
@@ -74,9 +74,9 @@ mod tests {
 
     #[test]
     fn the_turn_is_a_rotation() {
-        let (cosine, sine) = TURN;
+        let (cosine, sine) = ROTATION;
         assert!((cosine * cosine + sine * sine - 1.0).abs() < f64::EPSILON);
         let v = Vec2::new(3.0, -7.0);
-        assert!(length(Axes::Rotated.turn_back(Axes::Rotated.direction(v)) - v) < 1e-14);
+        assert!(length(Axes::Rotated.turn_back(Axes::Rotated.transform_direction(v)) - v) < 1e-14);
     }
 }

@@ -4,7 +4,7 @@ use fosssim_num::polynomial::Polynomial;
 use crate::{Area, Mistake, author::Student, objects::Object, rounding::round_to_f32};
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::Handover];
+const MODULE_AREAS: &[Area] = &[Area::Handover];
 
 /// Passes on the polynomials of one pair, without small leading coefficients: unchanged, or changed by this student's
 /// mistake.
@@ -17,7 +17,7 @@ pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Ve
         lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= factor);
     }
     let edge = matches!(object, Object::Edge(_));
-    match student.mistake_in(HERE) {
+    match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::HandoverLowestFirst) => lists.iter_mut().for_each(|list| list.reverse()),
         Some(Mistake::HandoverNegated) => lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= -1.0),
         Some(Mistake::HandoverSwapped) => lists.swap(0, 1),
@@ -35,7 +35,7 @@ pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Ve
 
 /// Returns the positive factor of the correct variants that rescale their polynomials.
 fn factor(student: Student, object: Object) -> Option<f64> {
-    let factor = match (student.mistake_in(HERE)?, object) {
+    let factor = match (student.mistake_in(MODULE_AREAS)?, object) {
         (Mistake::ScaleTwo, _) | (Mistake::ScaleParticleParticleTwo, Object::Particle(_)) => 2.0,
         (Mistake::ScaleHalf, _) => 0.5,
         (Mistake::ScaleThree, _)

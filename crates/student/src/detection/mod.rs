@@ -5,7 +5,7 @@ use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{
     first_time::first_time_counted,
     polynomial::Polynomial,
-    vector::{Vec2, at, length, unit},
+    vector::{Vec2, length, unit, vector_at},
 };
 
 use crate::{
@@ -37,10 +37,10 @@ use particle_edge::alpha;
 fosssim_model::drops_leading!();
 
 /// The areas whose mistakes are made in contact vectors.
-const VECTORS: &[Area] = &[Area::ContactVector, Area::Handover];
+const VECTOR_AREAS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// The mistakes that reject a contact with a right time.
-const REJECTIONS: &[Mistake] = &[
+const REJECTION_MISTAKES: &[Mistake] = &[
     Mistake::DecisionOverlapAtEnd,
     Mistake::DecisionOverlapAtStart,
     Mistake::DecisionAlphaAtStart,
@@ -58,7 +58,7 @@ const USUAL_SEARCH: u64 = 128;
 const ENDLESS_SEARCH: u64 = 1000;
 
 /// The areas of the mistakes in the formulas of each kind of pair.
-const FORMULAS: [Area; 3] = [Area::ParticleParticle, Area::ParticleEdge, Area::ParticleHalfPlane];
+const FORMULA_AREAS: [Area; 3] = [Area::ParticleParticle, Area::ParticleEdge, Area::ParticleHalfPlane];
 
 /// Returns the motion of a pair, as this student's program reads it from its lists.
 fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> PairMotion {
@@ -68,10 +68,10 @@ fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Pai
     let slip = IndexSlip::for_student(student, kind);
     let body = |index: usize| {
         let place = |list: &[f64]| {
-            if slip.is_single { Vec2::new(list[index], list[index + 1]) } else { at(list, index) }
+            if slip.is_single { Vec2::new(list[index], list[index + 1]) } else { vector_at(list, index) }
         };
-        let start = frame.point(place(q_start), at(q_start, pair.particle));
-        let end = frame.point(place(q_end), at(q_end, pair.particle));
+        let start = frame.transform_point(place(q_start), vector_at(q_start, pair.particle));
+        let end = frame.transform_point(place(q_end), vector_at(q_end, pair.particle));
         PointMotion { start, shift: end - start }
     };
     let radius_of = |role: usize, index: usize| {
@@ -100,8 +100,8 @@ fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Pai
         Object::HalfPlane(index) => {
             let index = if student.makes(Mistake::HalfPlaneFirst) { 0 } else { index };
             let plane = world.scene.half_planes[index];
-            let point = frame.point(plane.point, at(q_start, pair.particle));
-            PairMotion::HalfPlane { center, radius, point, normal: frame.direction(plane.normal) }
+            let point = frame.transform_point(plane.point, vector_at(q_start, pair.particle));
+            PairMotion::HalfPlane { center, radius, point, normal: frame.transform_direction(plane.normal) }
         }
     }
 }
@@ -118,7 +118,7 @@ fn polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
         }
     };
     let kind = motion.kind();
-    if let Some(edit) = student.mistake_in(&[FORMULAS[kind as usize]]).and_then(Mistake::edit) {
+    if let Some(edit) = student.mistake_in(&[FORMULA_AREAS[kind as usize]]).and_then(Mistake::edit) {
         let approach = usize::from(student.approach_is_right());
         edit.apply(&Inputs::new(motion), &mut lists, Subject::all_of_kind(kind), approach);
     }
@@ -140,7 +140,7 @@ fn contact_vector(student: Student, motion: &PairMotion, t: f64) -> Vec2 {
 
 /// Returns the speed at which the objects approach each other at time `t`, which is their relative displacement along
 /// the contact vector.
-fn closing(motion: &PairMotion, t: f64) -> f64 {
+fn closing_speed(motion: &PairMotion, t: f64) -> f64 {
     let relative = match motion {
         PairMotion::Particles { centers: [one, two], .. } => one.shift - two.shift,
         PairMotion::Edge { center, ends: [first, second], .. } => {
@@ -152,7 +152,7 @@ fn closing(motion: &PairMotion, t: f64) -> f64 {
 }
 
 /// Returns the distance at which the objects touch.
-fn reach(motion: &PairMotion) -> f64 {
+fn contact_distance(motion: &PairMotion) -> f64 {
     match motion {
         PairMotion::Particles { radii, .. } | PairMotion::Edge { radii, .. } => radii[0] + radii[1],
         PairMotion::HalfPlane { radius, .. } => *radius,
@@ -176,7 +176,7 @@ enum RadiusSlip {
 
 impl IndexSlip {
     fn for_student(student: Student, kind: usize) -> Self {
-        let (is_single, radius) = match student.mistake_in(&[FORMULAS[kind]]) {
+        let (is_single, radius) = match student.mistake_in(&[FORMULA_AREAS[kind]]) {
             Some(
                 Mistake::ParticleParticlePositionIndex
                 | Mistake::ParticleEdgePositionIndex
@@ -282,7 +282,12 @@ fn searched_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, S
 }
 
 /// Returns the contacts of one pass over all pairs, without responses in between.
-pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) -> Result<Vec<Contact>, StepFailure> {
+pub fn detect_contacts(
+    world: &World,
+    q_start: &[f64],
+    q_end: &[f64],
+    log: &mut StepLog,
+) -> Result<Vec<Contact>, StepFailure> {
     let mut contacts = Vec::new();
     for pair in world.pairs() {
         contacts.extend(detect(world, pair, q_start, q_end, log)?);
@@ -292,8 +297,9 @@ pub fn pass(world: &World, q_start: &[f64], q_end: &[f64], log: &mut StepLog) ->
 
 /// Returns whether a time of impact is within the step.
 fn within_step(student: Student, time: f64, time_step: f64) -> bool {
-    let is_of_time =
-        |mistake: &Mistake| [Area::Decision, Area::Process].contains(&mistake.area()) && !REJECTIONS.contains(mistake);
+    let is_of_time = |mistake: &Mistake| {
+        [Area::Decision, Area::Process].contains(&mistake.area()) && !REJECTION_MISTAKES.contains(mistake)
+    };
     match student.mistakes().find(is_of_time) {
         Some(Mistake::DecisionOpenEnd) => time < 1.0,
         Some(Mistake::DecisionOpenStart) => 0.0 < time && time <= 1.0,
@@ -311,20 +317,20 @@ fn within_step(student: Student, time: f64, time_step: f64) -> bool {
 /// Returns whether a further test rejects the impact. Some programs make such tests, which are wrong.
 fn is_rejected(student: Student, motion: &PairMotion, time: f64) -> bool {
     let distance = |t: f64| length(contact_vector(student, motion, t));
-    match (student.mistake_among(REJECTIONS), motion) {
-        (Some(Mistake::DecisionOverlapAtEnd), _) => distance(1.0) >= reach(motion),
-        (Some(Mistake::DecisionOverlapAtStart), _) => time == 0.0 && distance(0.0) < reach(motion),
+    match (student.mistake_among(REJECTION_MISTAKES), motion) {
+        (Some(Mistake::DecisionOverlapAtEnd), _) => distance(1.0) >= contact_distance(motion),
+        (Some(Mistake::DecisionOverlapAtStart), _) => time == 0.0 && distance(0.0) < contact_distance(motion),
         (Some(mistake), PairMotion::Edge { center, ends: [first, second], .. }) => {
             let alpha = |t: f64| alpha(&[*center, *first, *second], t);
             match mistake {
                 Mistake::DecisionAlphaAtStart => !(0.0..=1.0).contains(&alpha(0.0)),
                 Mistake::DecisionAlphaAtEnd => !(0.0..=1.0).contains(&alpha(1.0)),
                 Mistake::DecisionAlphaMargin => !(0.05..=0.95).contains(&alpha(time)),
-                Mistake::DecisionApproachMargin => closing(motion, time) <= 1e-6,
+                Mistake::DecisionApproachMargin => closing_speed(motion, time) <= 1e-6,
                 _ => false,
             }
         }
-        (Some(Mistake::DecisionApproachMargin), _) => closing(motion, time) <= 1e-6,
+        (Some(Mistake::DecisionApproachMargin), _) => closing_speed(motion, time) <= 1e-6,
         (Some(Mistake::DecisionHalfPlaneOneSided), PairMotion::HalfPlane { center, point, normal, .. }) => {
             (center.start - *point).dot(normal) < 0.0
         }

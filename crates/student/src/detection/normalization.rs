@@ -7,11 +7,11 @@ use fosssim_num::vector::Vec2;
 use crate::{Area, Mistake, author::Student};
 
 /// The areas whose mistakes are made in this module.
-const HERE: &[Area] = &[Area::Handover];
+const MODULE_AREAS: &[Area] = &[Area::Handover];
 
 /// Divides the polynomials like this student, if at all.
 pub fn normalize(student: Student, motion: &PairMotion, lists: &mut [Vec<f64>]) {
-    let size: fn(&PairMotion, &[f64]) -> f64 = match student.mistake_in(HERE) {
+    let size: fn(&PairMotion, &[f64]) -> f64 = match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::NormalizedLargest) => |_, list| list.iter().fold(0.0, |most, c| most.max(c.abs())),
         Some(Mistake::NormalizedNorm) => |_, list| list.iter().map(|c| c * c).sum::<f64>().sqrt(),
         Some(Mistake::NormalizedPerPair) => |motion, _| length_for_pair(motion),

@@ -4,7 +4,7 @@ use fosssim_model::sim::PointMotion;
 use fosssim_num::vector::Vec2;
 
 use super::{
-    VECTORS,
+    VECTOR_AREAS,
     arithmetic::{self, FusedDouble},
     basis, factorized, quintic,
     wide_numbers::WideNumber,
@@ -12,12 +12,12 @@ use super::{
 use crate::{Area, Mistake, author::Student};
 
 /// The areas whose variants are made in the polynomials.
-const FORMULAS: &[Area] = &[Area::ParticleEdge, Area::Handover, Area::ContactVector];
+const FORMULA_AREAS: &[Area] = &[Area::ParticleEdge, Area::Handover, Area::ContactVector];
 
 /// Returns the overlap (quartic), alpha > 0 (quadratic), alpha < 1 (quadratic) and approach (quintic), right except for
 /// round-off.
 pub fn polynomials(student: Student, bodies: &[PointMotion; 3], radii: [f64; 2]) -> Vec<Vec<f64>> {
-    let variant = student.mistake_in(FORMULAS);
+    let variant = student.mistake_in(FORMULA_AREAS);
     let reach = radii[0] + radii[1];
     let square = reach * reach;
     match variant {
@@ -99,8 +99,8 @@ pub fn alpha([one, two, three]: &[PointMotion; 3], t: f64) -> f64 {
 
 /// Returns the vector from the particle to the closest point of the line at time `t`.
 pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Vec2 {
-    let mistake = student.mistake_in(VECTORS);
-    let held = |body: PointMotion| PointMotion { start: body.at(1.0), shift: Vec2::zeros() };
+    let mistake = student.mistake_in(VECTOR_AREAS);
+    let held = |body: PointMotion| PointMotion { start: body.position_at(1.0), shift: Vec2::zeros() };
     let [mut one, mut two, mut three] = *bodies;
     match mistake {
         Some(Mistake::ParticleEdgeContactParticleAtEnd) => one = held(one),
@@ -126,8 +126,8 @@ pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Ve
         _ => alpha(bodies, t),
     };
     match mistake {
-        Some(Mistake::ParticleEdgeContactReversed) => -(two.at(t) + alpha * along - one.start - t * one.shift),
-        Some(Mistake::ParticleEdgeContactParticleStill) => two.at(t) + alpha * along - one.start,
+        Some(Mistake::ParticleEdgeContactReversed) => -(two.position_at(t) + alpha * along - one.start - t * one.shift),
+        Some(Mistake::ParticleEdgeContactParticleStill) => two.position_at(t) + alpha * along - one.start,
         Some(Mistake::ParticleEdgeContactEdgeStill) => {
             two.start + alpha * (three.start - two.start) - one.start - t * one.shift
         }
@@ -135,9 +135,9 @@ pub fn contact_vector(student: Student, bodies: &[PointMotion; 3], t: f64) -> Ve
         Some(Mistake::FusedArithmetic) => arithmetic::vector_to_edge::<FusedDouble>(bodies, t),
         Some(Mistake::ContactOtherFormula) => {
             let across = Vec2::new(-along.y, along.x);
-            (two.at(t) - one.at(t)).dot(&across) / along.dot(&along) * across
+            (two.position_at(t) - one.position_at(t)).dot(&across) / along.dot(&along) * across
         }
-        _ => two.at(t) + alpha * along - one.start - t * one.shift,
+        _ => two.position_at(t) + alpha * along - one.start - t * one.shift,
     }
 }
 

@@ -4,7 +4,7 @@ use fosssim_model::sim::PointMotion;
 use fosssim_num::vector::{Vec2, unit};
 
 use super::{
-    VECTORS,
+    VECTOR_AREAS,
     arithmetic::{self, FusedDouble},
     basis,
     wide_numbers::WideNumber,
@@ -12,11 +12,11 @@ use super::{
 use crate::{Area, Mistake, author::Student};
 
 /// The areas whose variants are made in the polynomials.
-const FORMULAS: &[Area] = &[Area::ParticleHalfPlane, Area::Handover, Area::ContactVector];
+const FORMULA_AREAS: &[Area] = &[Area::ParticleHalfPlane, Area::Handover, Area::ContactVector];
 
 /// Returns the overlap (quadratic) and approach (linear), right except for round-off.
 pub fn polynomials(student: Student, one: &PointMotion, radius: f64, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
-    let variant = student.mistake_in(FORMULAS);
+    let variant = student.mistake_in(FORMULA_AREAS);
     match variant {
         Some(Mistake::ExtendedPrecision) => {
             return arithmetic::particle_half_plane::<WideNumber>(one, radius, point, normal);
@@ -50,17 +50,17 @@ fn rearranged_overlap(radius: f64, s: f64, w: f64, q: Vec2) -> Vec<f64> {
 pub fn contact_vector(student: Student, one: &PointMotion, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
     let offset = point - one.start - t * one.shift;
     let square = normal.dot(&normal);
-    match student.mistake_in(VECTORS) {
+    match student.mistake_in(VECTOR_AREAS) {
         Some(Mistake::HalfPlaneContactUndivided) => offset.dot(&normal) * normal,
         Some(Mistake::HalfPlaneContactDividedByLength) => offset.dot(&normal) / square.sqrt() * normal,
         Some(Mistake::HalfPlaneContactIsNormal) => normal,
         Some(Mistake::HalfPlaneContactReversed) => -(offset.dot(&normal) / square * normal),
         Some(Mistake::HalfPlaneContactAtStart) => (point - one.start).dot(&normal) / square * normal,
-        Some(Mistake::HalfPlaneContactAtEnd) => (point - one.at(1.0)).dot(&normal) / square * normal,
+        Some(Mistake::HalfPlaneContactAtEnd) => (point - one.position_at(1.0)).dot(&normal) / square * normal,
         Some(Mistake::HalfPlaneContactToPoint) => offset,
         Some(Mistake::HalfPlaneUnitNormal | Mistake::ContactOtherFormula) => {
             let u = unit(normal);
-            (point - one.at(t)).dot(&u) * u
+            (point - one.position_at(t)).dot(&u) * u
         }
         Some(Mistake::ExtendedPrecision) => arithmetic::to_half_plane::<WideNumber>(one, point, normal, t),
         Some(Mistake::FusedArithmetic) => arithmetic::to_half_plane::<FusedDouble>(one, point, normal, t),

@@ -3,7 +3,7 @@ use fosssim_model::sim::PointMotion;
 use fosssim_num::vector::Vec2;
 
 use super::{
-    VECTORS,
+    VECTOR_AREAS,
     arithmetic::{self, FusedDouble},
     basis,
     wide_numbers::WideNumber,
@@ -11,11 +11,11 @@ use super::{
 use crate::{Area, Mistake, author::Student};
 
 /// The areas whose variants are made in the polynomials.
-const FORMULAS: &[Area] = &[Area::ParticleParticle, Area::Handover, Area::ContactVector];
+const FORMULA_AREAS: &[Area] = &[Area::ParticleParticle, Area::Handover, Area::ContactVector];
 
 /// Returns the overlap (quadratic) and approach (linear), right except for round-off.
 pub fn polynomials(student: Student, centers: &[PointMotion; 2], radii: [f64; 2]) -> Vec<Vec<f64>> {
-    let variant = student.mistake_in(FORMULAS);
+    let variant = student.mistake_in(FORMULA_AREAS);
     match variant {
         Some(Mistake::ExtendedPrecision) => return arithmetic::particle_particle::<WideNumber>(centers, radii),
         Some(Mistake::FusedArithmetic) => return arithmetic::particle_particle::<FusedDouble>(centers, radii),
@@ -49,17 +49,17 @@ fn rearranged_overlap([one, two]: &[PointMotion; 2], reach: f64) -> Vec<f64> {
 /// Returns the vector from the first center to the second at time `t`.
 pub fn contact_vector(student: Student, centers: &[PointMotion; 2], t: f64) -> Vec2 {
     let [one, two] = centers;
-    match student.mistake_in(VECTORS) {
+    match student.mistake_in(VECTOR_AREAS) {
         Some(Mistake::ParticleParticleContactAtStart) => two.start - one.start,
-        Some(Mistake::ParticleParticleContactAtEnd) => two.at(1.0) - one.at(1.0),
-        Some(Mistake::ParticleParticleContactReversed) => one.at(t) - two.at(t),
-        Some(Mistake::ParticleParticleContactFirstStill) => two.at(t) - one.start,
-        Some(Mistake::ParticleParticleContactSecondStill) => two.start - one.at(t),
-        Some(Mistake::ParticleParticleContactFirstAtEnd) => two.at(t) - one.at(1.0),
-        Some(Mistake::ParticleParticleContactSecondAtEnd) => two.at(1.0) - one.at(t),
+        Some(Mistake::ParticleParticleContactAtEnd) => two.position_at(1.0) - one.position_at(1.0),
+        Some(Mistake::ParticleParticleContactReversed) => one.position_at(t) - two.position_at(t),
+        Some(Mistake::ParticleParticleContactFirstStill) => two.position_at(t) - one.start,
+        Some(Mistake::ParticleParticleContactSecondStill) => two.start - one.position_at(t),
+        Some(Mistake::ParticleParticleContactFirstAtEnd) => two.position_at(t) - one.position_at(1.0),
+        Some(Mistake::ParticleParticleContactSecondAtEnd) => two.position_at(1.0) - one.position_at(t),
         Some(Mistake::ExtendedPrecision) => arithmetic::vector_between_particles::<WideNumber>(centers, t),
         Some(Mistake::FusedArithmetic) => arithmetic::vector_between_particles::<FusedDouble>(centers, t),
         Some(Mistake::ContactOtherFormula) => (two.start - one.start) + t * (two.shift - one.shift),
-        _ => two.at(t) - one.at(t),
+        _ => two.position_at(t) - one.position_at(t),
     }
 }

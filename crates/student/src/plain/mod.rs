@@ -4,13 +4,13 @@
 //! hand in many places; this check enforces the rule.
 
 /// Names of polynomials in the assignment, which do not count as formulas.
-const NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
+const POLYNOMIAL_NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
 
 /// Returns the first part of a formula in a sentence: a number, an operator, a product with a dot, a function's
 /// argument, or a letter of a quantity. `None` if there are only words; `alpha > 0` and `alpha < 1` count as names.
 #[must_use]
 pub fn formula_in(sentence: &str) -> Option<String> {
-    let text = NAMES.iter().fold(sentence.to_owned(), |text, name| text.replace(name, "alpha"));
+    let text = POLYNOMIAL_NAMES.iter().fold(sentence.to_owned(), |text, name| text.replace(name, "alpha"));
     let letters: Vec<char> = text.chars().collect();
     let at = |index: Option<usize>| index.and_then(|index| letters.get(index)).copied().unwrap_or(' ');
     for (index, &letter) in letters.iter().enumerate() {

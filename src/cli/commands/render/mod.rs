@@ -12,7 +12,7 @@ use crate::{
     render::{
         Extent, Painter, PictureOptions, Raster, Size,
         film::{Gif, Rate, write_png},
-        number::short,
+        number::format_short,
         shape::Shape,
         svg,
     },
@@ -63,10 +63,10 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
         true => error.context(format!("cannot write {place}")),
         false => error,
     })?;
-    stopped.iter().for_each(console::complain);
+    stopped.iter().for_each(console::print_error);
     let summary = format!("{words} into {place}\n");
     if to_stdout {
-        console::complain(&summary);
+        console::print_error(&summary);
     } else {
         console::report(&summary)?;
     }
@@ -235,7 +235,7 @@ impl RenderTarget {
             every => format!(", every {every}th"),
         };
         let film = |bytes: u64| {
-            let seconds = short(f64::from(pictures) / f64::from(rate.per_second()));
+            let seconds = format_short(f64::from(pictures) / f64::from(rate.per_second()));
             let bytes = if bytes > 0 { format!(", {}", format_count(bytes, "byte")) } else { String::new() };
             let per_second = rate.per_second();
             format!("{counted_pictures} of {size}: {steps}{every}, {per_second} per second, {seconds} s{bytes},")
@@ -253,10 +253,10 @@ impl RenderTarget {
                     let bytes = picture(form, &mut raster, background, step, shapes)?;
                     folder.write(&names(number), &bytes)
                 })?;
-                if folder.holds(&names(pictures + 1)) {
+                if folder.contains(&names(pictures + 1)) {
                     let line =
                         format!("{} also holds older pictures, from {} on\n", folder.name(), names(pictures + 1));
-                    console::complain(&line);
+                    console::print_error(&line);
                 }
                 let files = match pictures {
                     1 => names(1),
@@ -304,7 +304,7 @@ fn picture(
     shapes: &[Shape],
 ) -> Result<Vec<u8>> {
     if form == RenderFormat::Svg {
-        return Ok(svg::document(raster.size(), background, &format!("step {step}"), shapes).into_bytes());
+        return Ok(svg::render_document(raster.size(), background, &format!("step {step}"), shapes).into_bytes());
     }
     raster.draw(background, shapes);
     let mut bytes = Vec::new();

@@ -40,7 +40,7 @@ impl Picks {
         self.first + (number - 1) * self.every
     }
 
-    fn holds(self, step: u32) -> bool {
+    fn contains(self, step: u32) -> bool {
         (self.first..=self.last).contains(&step) && (step - self.first).is_multiple_of(self.every)
     }
 }
@@ -95,7 +95,7 @@ impl<'a> FilmKeeper<'a> {
     }
 
     fn step(&mut self, step: u32, positions: &[f64]) -> Result<()> {
-        if self.picks.holds(step) {
+        if self.picks.contains(step) {
             self.extent.add(self.scene, positions);
             for value in positions {
                 self.file.write_all(&value.to_le_bytes()).context("cannot write a temporary file")?;
@@ -180,7 +180,7 @@ mod tests {
     fn picks_are_counted_without_overflow() {
         let picks = Picks { first: 0, every: 3, last: 10 };
         assert_eq!((picks.count(), picks.step(4)), (4, 9));
-        assert_eq!((0..=10).filter(|&step| picks.holds(step)).collect::<Vec<_>>(), [0, 3, 6, 9]);
+        assert_eq!((0..=10).filter(|&step| picks.contains(step)).collect::<Vec<_>>(), [0, 3, 6, 9]);
         assert_eq!(Picks { first: 5, every: 5, last: 4 }.count(), 0);
         let all = Picks { first: 1, every: 1, last: i32::MAX as u32 };
         assert_eq!((all.count(), all.step(all.count())), (i32::MAX as u32, i32::MAX as u32));

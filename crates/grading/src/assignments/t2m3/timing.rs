@@ -11,7 +11,7 @@ pub struct MadeScene {
 }
 
 /// All timing scenes, in alphabetical order.
-pub static TIMING: [MadeScene; 2] = [
+pub static TIMING_SCENES: [MadeScene; 2] = [
     MadeScene { name: "TimingTests/box-of-balls", make: box_of_balls, text: OnceLock::new() },
     MadeScene { name: "TimingTests/pile-of-ribbons", make: pile_of_ribbons, text: OnceLock::new() },
 ];
@@ -106,7 +106,7 @@ mod tests {
 
     #[test]
     fn timing_scenes_are_of_the_courses_size() {
-        for (made, [particles, edges]) in TIMING.iter().zip([[15_004, 4], [4800, 4680]]) {
+        for (made, [particles, edges]) in TIMING_SCENES.iter().zip([[15_004, 4], [4800, 4680]]) {
             let scene = scene::read(made.name, made.xml()).expect("a sound scene").scene;
             assert_eq!((scene.assignment(), scene.steps()), (Assignment::T2M3, 20));
             assert_eq!([scene.particles.len(), scene.edges.len()], [particles, edges]);

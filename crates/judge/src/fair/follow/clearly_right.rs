@@ -16,7 +16,7 @@ use fosssim_num::{
     lanes::Plane,
     polynomial::{MAX_COEFFICIENTS, Polynomial},
     tolerances::FAIR_UNITS,
-    vector::{Vec2, at},
+    vector::{Vec2, vector_at},
 };
 
 /// The comparisons of a call's polynomials that are clearly right.
@@ -71,7 +71,7 @@ fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
         high = [high[0].max(place.x), high[1].max(place.y)];
     };
     for particle in 0..scene.particles.len() {
-        let [start, end] = [q_start, q_end].map(|places| at(places, particle));
+        let [start, end] = [q_start, q_end].map(|places| vector_at(places, particle));
         [start, end].into_iter().for_each(&mut widen);
         shift = shift.max(extent(end - start));
     }
@@ -138,7 +138,7 @@ mod tests {
     struct Closest<'a>(&'a Scene, f64);
 
     impl Observer for Closest<'_> {
-        fn detection(&mut self, detection: &Detection<'_>) {
+        fn observe_detection(&mut self, detection: &Detection<'_>) {
             let &Detection { pair, q_start, q_end, .. } = detection;
             let floors = floors(self.0, q_start, q_end)[pair.kind];
             let expected = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();

@@ -22,7 +22,7 @@ pub(super) struct OwnImpact {
 
 impl Follower<'_> {
     /// Returns the decision with which the step continues. If the trace shows the submission's decision, that is used.
-    pub(super) fn settle(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
+    pub(super) fn choose_decision(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
         let call = self.decisions.len();
         let findings = self.judged.total();
         let own = self.call.own.take();
@@ -55,7 +55,7 @@ impl Follower<'_> {
     pub(super) fn resolve_dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
         self.call.own = Some(OwnImpact { time, lost: false });
-        if self.searchable(self.place(pair).index, pair.kind.polynomials()).is_none() {
+        if self.searchable_polynomials(self.place(pair).index, pair.kind.polynomials()).is_none() {
             return by_own;
         }
         (self.call.is_disputed, self.has_disputes) = (true, true);
@@ -74,11 +74,11 @@ impl Follower<'_> {
         if (actual <= 1.0) != hits {
             if contact::decides(motion, expected) == Some(hits) {
                 let place = self.place(pair);
-                self.charge(FindingDetail::TrimmedDecision { place, collides: hits });
+                self.add_finding(FindingDetail::TrimmedDecision { place, collides: hits });
             }
         } else if hits && !contact::is_time_without_losses(expected, own.time, actual) {
             let (place, expected) = (self.place(pair), contact::possible_time(expected));
-            self.charge(FindingDetail::TrimmedTime { place, expected, actual });
+            self.add_finding(FindingDetail::TrimmedTime { place, expected, actual });
         }
     }
 
@@ -108,7 +108,7 @@ impl Follower<'_> {
 
     /// Returns the logged impulse for the pair's decision.
     fn logged_impulse(&mut self, pair: Pair) -> Option<LoggedImpulse> {
-        let index = self.contacts.about(key(pair)?).find(|index| !self.used[*index])?;
+        let index = self.contacts.indices_of(key(pair)?).find(|index| !self.used[*index])?;
         self.used[index] = true;
         Some(self.records.end.impulses[index])
     }
@@ -123,12 +123,12 @@ impl Follower<'_> {
                 let own = Impulse { pair, normal, time };
                 let known = self.expected_polynomials();
                 let finding = contact::hit(self.records.before, known.as_ref(), own, &actual, &mut self.judged);
-                finding.into_iter().for_each(|detail| self.charge(detail));
+                finding.into_iter().for_each(|detail| self.add_finding(detail));
                 contact::logged_decision(actual).unwrap_or(Decision::Hit { time, normal })
             }
             (Decision::Hit { time, normal }, None) => {
                 if !self.is_borderline(call) {
-                    self.charge(FindingDetail::MissedCollision { expected: Impulse { pair, normal, time } });
+                    self.add_finding(FindingDetail::MissedCollision { expected: Impulse { pair, normal, time } });
                 }
                 Decision::Miss { time: Time::Found(time) }
             }
@@ -138,9 +138,9 @@ impl Follower<'_> {
                     let (known, judged) = (self.expected_polynomials(), &mut self.judged);
                     let finding =
                         contact::possible_hit(self.context, &self.records, known.as_ref(), pair, &actual, judged);
-                    finding.into_iter().for_each(|detail| self.charge(detail));
+                    finding.into_iter().for_each(|detail| self.add_finding(detail));
                 } else {
-                    self.charge(FindingDetail::SuperfluousCollision { actual });
+                    self.add_finding(FindingDetail::SuperfluousCollision { actual });
                 }
                 contact::logged_decision(actual).unwrap_or(own)
             }
@@ -154,13 +154,13 @@ impl Follower<'_> {
                 continue;
             }
             let actual = self.records.end.impulses[index];
-            let repeats = self.contacts.about(logged_key(&actual)).next() < Some(index);
+            let repeats = self.contacts.indices_of(logged_key(&actual)).next() < Some(index);
             let detail = if repeats && !self.is_hybrid() {
                 FindingDetail::RepeatedCollision { actual }
             } else {
                 FindingDetail::SuperfluousCollision { actual }
             };
-            self.charge(detail);
+            self.add_finding(detail);
         }
     }
 }

@@ -28,7 +28,7 @@ use fosssim_model::{
 use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial, vector::same_bits};
 
 /// The initial capacity of the list of decisions.
-const DECISIONS: usize = 1 << 14;
+const DECISIONS_CAPACITY: usize = 1 << 14;
 
 /// Follows one step. The simulation calls it as an observer; [`super::step`] reads the result.
 pub(super) struct Follower<'a> {
@@ -129,7 +129,7 @@ impl<'a> Follower<'a> {
         };
         follower.count_passes();
         let passes = follower.logged_passes.map_or(1, |[before, after]| before + after);
-        follower.decisions.reserve(passes.saturating_mul(context.pairs).min(DECISIONS));
+        follower.decisions.reserve(passes.saturating_mul(context.pairs).min(DECISIONS_CAPACITY));
         follower
     }
 
@@ -140,7 +140,7 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns the logged polynomials of a call, if their root search certainly ends.
-    fn searchable(&self, index: usize, count: usize) -> Option<[Polynomial; PairKind::MAX_POLYNOMIALS]> {
+    fn searchable_polynomials(&self, index: usize, count: usize) -> Option<[Polynomial; PairKind::MAX_POLYNOMIALS]> {
         let mut found = [Polynomial::default(); PairKind::MAX_POLYNOMIALS];
         for (number, polynomial) in found[..count].iter_mut().enumerate() {
             let logged = self.records.end.polynomials.get(index + number);
@@ -177,14 +177,14 @@ impl<'a> Follower<'a> {
         let explained = unapplied::explain(self.context, &tolerances, before, own, &end.state);
         if let Some((pairs, faulty)) = explained {
             self.judged = known;
-            pairs.into_iter().for_each(|detail| self.charge(detail));
+            pairs.into_iter().for_each(|detail| self.add_finding(detail));
             contact::compare_states(&mut self.judged, frame, &faulty, &end.state, &tolerances);
         }
     }
 
-    fn charge(&mut self, detail: FindingDetail) {
+    fn add_finding(&mut self, detail: FindingDetail) {
         let (step, frame) = (self.records.step, self.records.frame);
-        self.judged.charge(Finding { step, frame, detail });
+        self.judged.add_finding(Finding { step, frame, detail });
     }
 }
 
@@ -208,7 +208,7 @@ impl Observer for Follower<'_> {
         });
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         if !detection.decision.collides() {
             return;
         }
@@ -224,7 +224,7 @@ impl Observer for Follower<'_> {
         }
     }
 
-    fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
+    fn observe_failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
         for &particle in zone.particles {
             self.moved[particle as usize] = true;
         }
@@ -275,7 +275,7 @@ impl Steer for Follower<'_> {
             let lost = differ && lengths().any(|(own, logged)| logged < own);
             self.call.own = contact::time_of(polynomials).map(|time| OwnImpact { time, lost });
         }
-        let Some(searched) = self.searchable(index, count) else { return };
+        let Some(searched) = self.searchable_polynomials(index, count) else { return };
         if let (true, Some(OwnImpact { time, lost: false }), Some(SeenCall { motion, .. })) =
             (is_right, self.call.own, &self.call.seen)
             && let Some(other) = contact::time_of(&searched[..count])
@@ -293,7 +293,7 @@ impl Steer for Follower<'_> {
 
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
         let decision = if self.call.misses_logged { self.resolve_dispute(pair, decision) } else { decision };
-        let decision = self.settle(pair, decision);
+        let decision = self.choose_decision(pair, decision);
         self.decisions.push(FollowedDecision { pair, pass: self.pass, decision });
         decision
     }
@@ -304,7 +304,11 @@ impl Steer for Follower<'_> {
             && logged[0] != self.passes[0]
             && !self.tainted[0]
         {
-            self.charge(FindingDetail::PassCount { part: Part::Impulses, expected: self.passes[0], actual: logged[0] });
+            self.add_finding(FindingDetail::PassCount {
+                part: Part::Impulses,
+                expected: self.passes[0],
+                actual: logged[0],
+            });
             self.tainted[0] = true;
         }
         if !self.tainted[0] {

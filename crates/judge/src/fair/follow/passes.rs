@@ -28,7 +28,7 @@ impl<'a> Follower<'a> {
         let Some(logged) = self.logged_passes else {
             let (expected, actual) =
                 ((self.passes[0] + self.passes[1]) * self.context.per_pass, self.records.end.polynomials.len());
-            self.charge(FindingDetail::PolynomialCount { expected, actual, per_pass: self.context.per_pass });
+            self.add_finding(FindingDetail::PolynomialCount { expected, actual, per_pass: self.context.per_pass });
             self.tainted[1] = true;
             return;
         };
@@ -37,7 +37,11 @@ impl<'a> Follower<'a> {
             let follows = index == 1 && self.tainted[0];
             if logged[index] != self.passes[index] {
                 if !self.tainted[index] && !follows {
-                    self.charge(FindingDetail::PassCount { part, expected: self.passes[index], actual: logged[index] });
+                    self.add_finding(FindingDetail::PassCount {
+                        part,
+                        expected: self.passes[index],
+                        actual: logged[index],
+                    });
                 }
                 self.tainted[index] = true;
                 self.tainted[1] = true;

@@ -134,14 +134,14 @@ impl<'a> Follower<'a> {
             if self.is_moved(logged.place.pair) {
                 // A formula that is known to be wrong is wrong at all positions.
                 if !self.wrong_formulas[kind][number] {
-                    self.charge(FindingDetail::PassPositions { place: logged.place });
+                    self.add_finding(FindingDetail::PassPositions { place: logged.place });
                     self.tainted[part] = true;
                 }
                 return;
             }
         }
         self.wrong_formulas[kind][number] = true;
-        self.charge(wrong_polynomial(logged, expected.polynomial(number), mismatch));
+        self.add_finding(wrong_polynomial(logged, expected.polynomial(number), mismatch));
     }
 
     /// Notes the form of an approach polynomial that is identical to the reference's.

@@ -2,7 +2,7 @@
 use crate::{
     fair::{FairRefusal, FairVerdict, Judgement, context::Context},
     finding::{FindingDetail, FindingKind},
-    samples::{BOUNCE, ZONES, changed_trace, judge_by_both, relog, run, scene, write_frames},
+    samples::{BOUNCE_SCENE, ZONES_SCENE, changed_trace, judge_by_both, relog, run, scene, write_frames},
 };
 use fosssim_model::{
     scene::{Collision, Scene, original},
@@ -185,7 +185,7 @@ fn a_large_factor_does_not_vouch_for_garbage() {
 /// Factors that the rules do not accept as factors.
 #[test]
 fn what_is_no_positive_number_is_no_factor() {
-    let scene = scene(BOUNCE);
+    let scene = scene(BOUNCE_SCENE);
     for factor in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -1e-9, 0.0, 5e-324, 1e-320] {
         let forged = changed_trace(&scene, |frames| {
             for frame in frames {
@@ -233,10 +233,10 @@ const NOWHERE: [f64; 7] = [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, 1e100, -1
 /// A run that is lost in its first step, and does nothing wrong afterwards, because nothing is left to be right.
 #[test]
 fn steps_that_lead_nowhere_are_never_right() {
-    for text in [BOUNCE, ZONES] {
+    for text in [BOUNCE_SCENE, ZONES_SCENE] {
         let scene = scene(text);
         for value in NOWHERE {
-            if text == BOUNCE && value.abs() < 1.0 {
+            if text == BOUNCE_SCENE && value.abs() < 1.0 {
                 // One ball alone may be anywhere near.
                 continue;
             }
@@ -352,7 +352,7 @@ impl Observer for Moved<'_> {
         self.steps.push(Vec::new());
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let particles = self.context.particles(detection.pair);
         let is_moved = particles.iter().flatten().any(|&particle| self.is_moved[particle]);
         let step = self.steps.last_mut().expect("a step has begun");
@@ -532,7 +532,7 @@ fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
 /// Nothing has collided before the first step.
 #[test]
 fn the_initial_record_has_no_lists() {
-    let scene = scene(BOUNCE);
+    let scene = scene(BOUNCE_SCENE);
     let frames = run(&scene, ());
     let later = frames.iter().find(|frame| !frame.impulses.is_empty()).expect("a contact");
     for (impulses, polynomials) in [(true, false), (false, true), (true, true)] {

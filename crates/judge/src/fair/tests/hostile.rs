@@ -1,7 +1,7 @@
 //! Traces whose numbers no simulation should hold: judging them has to come to an end, with a verdict.
 use crate::{
     fair::FairVerdict,
-    samples::{BOUNCE, ZONES, changed_trace, judge_by_both, scene},
+    samples::{BOUNCE_SCENE, ZONES_SCENE, changed_trace, judge_by_both, scene},
 };
 use fosssim_model::trace::Frame;
 
@@ -19,7 +19,7 @@ fn blown_up(frames: &mut [Frame], from: usize, to: usize, value: f64) {
 /// A simulation that blows up within a step: its records are absurd, its polynomials still small.
 #[test]
 fn states_of_any_size_are_judged_without_a_panic() {
-    for text in [BOUNCE, ZONES] {
+    for text in [BOUNCE_SCENE, ZONES_SCENE] {
         let scene = scene(text);
         let records = changed_trace(&scene, |_| {}).len();
         assert!(records > 0);

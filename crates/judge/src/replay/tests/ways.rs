@@ -2,7 +2,7 @@
 use crate::{
     options::Options,
     replay,
-    samples::{BOUNCE, ZONES, changed_trace, relog, scene},
+    samples::{BOUNCE_SCENE, ZONES_SCENE, changed_trace, relog, scene},
 };
 use fosssim_model::{scene::Scene, sim::RootSearch, trace::Frame};
 
@@ -80,7 +80,7 @@ fn both_ways_say_the_same_to_the_last_field() {
         |frames| relog(&mut frames[1], |index, own| rounded(own, if index == 1 { 1.0 } else { 0.0 })),
         |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| 2e4 * c).collect())),
     ];
-    for text in [BOUNCE, ZONES, LARGE, SPIN] {
+    for text in [BOUNCE_SCENE, ZONES_SCENE, LARGE, SPIN] {
         let scene = scene(text);
         for (number, change) in changes.into_iter().enumerate() {
             let trace = changed_trace(&scene, change);
@@ -128,7 +128,7 @@ fn audited_searches_judge_the_same() {
         |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| rounded(own, 40.0))),
         |frames| relog(&mut frames[1], |_, own| own.iter().map(|c| c + 1e-3).collect()),
     ];
-    for scene in [BOUNCE, ZONES, SPIN].map(scene) {
+    for scene in [BOUNCE_SCENE, ZONES_SCENE, SPIN].map(scene) {
         for change in changes {
             let trace = changed_trace(&scene, change);
             let [needed, audited] = [RootSearch::WhereNeeded, RootSearch::Audit].map(|root_search| {

@@ -9,18 +9,18 @@ use fosssim_oracle::num::{
 };
 
 /// The number of rounding units that the fair rules allow.
-const UNITS: f64 = 64.0;
+const FAIR_ROUNDING_UNITS: f64 = 64.0;
 
 /// The reasons why the root finder and the certified decision differ: intentional rules of the original, or its
 /// rounding.
-const REASONS: [&str; 3] = [
+const DIFFERENCE_REASONS: [&str; 3] = [
     "c t^m counts as nowhere positive in the original",
     "the original drops small leading coefficients",
     "the search rounds",
 ];
 
 /// The descriptions of the decisions' levels, in order.
-const LEVELS: [&str; Level::ALL.len()] =
+const LEVEL_NAMES: [&str; Level::ALL.len()] =
     ["signs of coefficients", "Bernstein coefficients", "subintervals of the step", "exact arithmetic"];
 
 /// Returns the result of the search as text.
@@ -38,8 +38,8 @@ pub(super) struct Decisions {
     levels: [u64; Level::ALL.len()],
     certainties: [u64; 3],
     /// The differences by reason: `[certainly no, but the search hits; certainly yes, but it does not]`.
-    differ: [[u64; 2]; REASONS.len()],
-    first: [Option<(u64, String)>; REASONS.len()],
+    differ: [[u64; 2]; DIFFERENCE_REASONS.len()],
+    first: [Option<(u64, String)>; DIFFERENCE_REASONS.len()],
 }
 
 impl Decisions {
@@ -53,7 +53,7 @@ impl Decisions {
         time: Option<f64>,
     ) {
         let slices: Vec<&[BoundedValue]> = lists.iter().map(Vec::as_slice).collect();
-        let decision = decide(&slices, UNITS);
+        let decision = decide(&slices, FAIR_ROUNDING_UNITS);
         self.levels[decision.level as usize] += 1;
         self.certainties[decision.certainty as usize] += 1;
         let Some(time) = time else { return };
@@ -104,10 +104,10 @@ impl Decisions {
     pub(super) fn report(&self, name: &str, text: &mut String) {
         let [yes, no, borderline] = self.certainties;
         let _ = writeln!(text, "{name}: an impact in {yes}, none in {no}, undecidable in {borderline}. Decided by");
-        for (words, count) in LEVELS.iter().zip(self.levels) {
+        for (words, count) in LEVEL_NAMES.iter().zip(self.levels) {
             let _ = writeln!(text, "  {words:<22} {count:>12}");
         }
-        for ((reason, [hits, misses]), first) in REASONS.iter().zip(self.differ).zip(&self.first) {
+        for ((reason, [hits, misses]), first) in DIFFERENCE_REASONS.iter().zip(self.differ).zip(&self.first) {
             if hits + misses > 0 {
                 let _ = writeln!(text, "  {reason}: it reports {hits} false impacts, and misses {misses}");
             }

@@ -33,16 +33,16 @@ mod states;
 use decisions::Decisions;
 
 /// The number of detections that one thread draws at a time.
-const BLOCK: u64 = 10_000;
+const BLOCK_DETECTIONS: u64 = 10_000;
 
 fn main() -> ExitCode {
     let words: Vec<String> = std::env::args().skip(1).collect();
     let numbers: Option<Vec<u64>> = words.iter().map(|word| word.parse().ok()).collect();
     match (words.first().map(String::as_str), numbers.as_deref()) {
         (Some("states"), _) if words.len() <= 2 => states::run(words.get(1).map(Path::new)),
-        (_, Some([])) => certificates(1_000_000, 1),
-        (_, Some([detections])) => certificates(*detections, 1),
-        (_, Some([detections, seed])) => certificates(*detections, *seed),
+        (_, Some([])) => audit_certificates(1_000_000, 1),
+        (_, Some([detections])) => audit_certificates(*detections, 1),
+        (_, Some([detections, seed])) => audit_certificates(*detections, *seed),
         _ => {
             eprintln!("usage: audit [detections [seed]], or audit states [CORPUS]");
             ExitCode::from(2)
@@ -51,35 +51,35 @@ fn main() -> ExitCode {
 }
 
 /// Compares `detections` detections.
-fn certificates(detections: u64, seed: u64) -> ExitCode {
+fn audit_certificates(detections: u64, seed: u64) -> ExitCode {
     let audited = |block: u64| {
         let (mut tally, mut random) = (AuditTally::default(), Random::new(seed, block));
-        for index in 0..BLOCK.min(detections - block * BLOCK) {
-            tally.audit(block * BLOCK + index, &mut random);
+        for index in 0..BLOCK_DETECTIONS.min(detections - block * BLOCK_DETECTIONS) {
+            tally.audit(block * BLOCK_DETECTIONS + index, &mut random);
         }
         tally
     };
-    let blocks = (0..detections.div_ceil(BLOCK)).into_par_iter();
-    let total = blocks.map(audited).reduce(AuditTally::default, AuditTally::and);
+    let blocks = (0..detections.div_ceil(BLOCK_DETECTIONS)).into_par_iter();
+    let total = blocks.map(audited).reduce(AuditTally::default, AuditTally::merge);
     print!("{}", total.report());
     ExitCode::from(u8::from(total.disagreements > 0))
 }
 
 /// The descriptions of the certificate's levels, in order.
-const LEVELS: [&str; Level::ALL.len()] = ["nowhere positive", "a line", "a parabola", "Bernstein coefficients"];
+const LEVEL_NAMES: [&str; Level::ALL.len()] = ["nowhere positive", "a line", "a parabola", "Bernstein coefficients"];
 
 /// The three pair types, in the order of collisions.md 1, and bare products.
-const PAIRS: [&str; 4] = ["particle-particle", "particle-edge", "particle-half-plane", "product"];
+const PAIR_NAMES: [&str; 4] = ["particle-particle", "particle-edge", "particle-half-plane", "product"];
 
 /// Counts per pair type; the last entry of a row counts undecided detections.
 #[derive(Default)]
 struct AuditTally {
-    decided: [[u64; Level::ALL.len() + 1]; PAIRS.len()],
-    needless: [u64; PAIRS.len()],
-    endless: [u64; PAIRS.len()],
+    decided: [[u64; Level::ALL.len() + 1]; PAIR_NAMES.len()],
+    needless: [u64; PAIR_NAMES.len()],
+    endless: [u64; PAIR_NAMES.len()],
     disagreements: u64,
     first: Option<(u64, String)>,
-    decisions: [Decisions; PAIRS.len()],
+    decisions: [Decisions; PAIR_NAMES.len()],
 }
 
 impl AuditTally {
@@ -102,10 +102,10 @@ impl AuditTally {
             self.disagreements += 1;
             if self.first.as_ref().is_none_or(|&(first, _)| index < first) {
                 let lists: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
-                let certificate = level.map_or("one polynomial alone", |level| LEVELS[level as usize]);
+                let certificate = level.map_or("one polynomial alone", |level| LEVEL_NAMES[level as usize]);
                 let what = format!(
                     "{} ({geometry}): {certificate} excludes an impact, but {}\n{lists:?}",
-                    PAIRS[pair],
+                    PAIR_NAMES[pair],
                     decisions::describe_time(time.ok())
                 );
                 self.first = Some((index, what));
@@ -114,8 +114,8 @@ impl AuditTally {
         self.decisions[pair].compare(index, geometry, &lists, &polynomials, time.ok());
     }
 
-    fn and(mut self, other: Self) -> Self {
-        for pair in 0..PAIRS.len() {
+    fn merge(mut self, other: Self) -> Self {
+        for pair in 0..PAIR_NAMES.len() {
             for (sum, count) in self.decided[pair].iter_mut().zip(other.decided[pair]) {
                 *sum += count;
             }
@@ -132,12 +132,12 @@ impl AuditTally {
 
     fn report(&self) -> String {
         let mut text = String::new();
-        for (pair, name) in PAIRS.iter().enumerate() {
+        for (pair, name) in PAIR_NAMES.iter().enumerate() {
             let row = &self.decided[pair];
             let sum: u64 = row.iter().sum();
             let share = |count: u64| 100.0 * count as f64 / sum.max(1) as f64;
             let _ = writeln!(text, "{name}: {sum} detections. An impact within the step is excluded by");
-            for (words, count) in LEVELS.iter().chain(["nothing: searched"].iter()).zip(row) {
+            for (words, count) in LEVEL_NAMES.iter().chain(["nothing: searched"].iter()).zip(row) {
                 let _ = writeln!(text, "  {words:<22} {count:>12} {:>6.2} %", share(*count));
             }
             let _ = writeln!(
@@ -147,7 +147,7 @@ impl AuditTally {
             );
         }
         text += "\nCertified decisions of the fair rules, which are true, and the search, which rounds:\n";
-        for (decisions, name) in self.decisions.iter().zip(PAIRS) {
+        for (decisions, name) in self.decisions.iter().zip(PAIR_NAMES) {
             decisions.report(name, &mut text);
         }
         // The reason for the exit code comes last.
@@ -174,7 +174,7 @@ impl Random {
         Self((z ^ (z >> 31)) | 1)
     }
 
-    fn bits(&mut self) -> u64 {
+    fn draw_bits(&mut self) -> u64 {
         self.0 ^= self.0 >> 12;
         self.0 ^= self.0 << 25;
         self.0 ^= self.0 >> 27;
@@ -182,28 +182,28 @@ impl Random {
     }
 
     fn draw_below(&mut self, bound: u64) -> u64 {
-        (self.bits() >> 11) % bound
+        (self.draw_bits() >> 11) % bound
     }
 
-    fn uniform(&mut self, lo: f64, hi: f64) -> f64 {
-        lo + (hi - lo) * ((self.bits() >> 11) as f64 / (1_u64 << 53) as f64)
+    fn draw_uniform(&mut self, lo: f64, hi: f64) -> f64 {
+        lo + (hi - lo) * ((self.draw_bits() >> 11) as f64 / (1_u64 << 53) as f64)
     }
 
     /// Returns 10 to the power of a uniform number.
     fn log(&mut self, lo: f64, hi: f64) -> f64 {
-        10.0_f64.powf(self.uniform(lo, hi))
+        10.0_f64.powf(self.draw_uniform(lo, hi))
     }
 
-    fn direction(&mut self) -> Vec2 {
-        let angle = self.uniform(0.0, std::f64::consts::TAU);
+    fn draw_direction(&mut self) -> Vec2 {
+        let angle = self.draw_uniform(0.0, std::f64::consts::TAU);
         Vec2::new(angle.cos(), angle.sin())
     }
 
-    fn point(&mut self, scale: f64) -> Vec2 {
-        Vec2::new(self.uniform(-scale, scale), self.uniform(-scale, scale))
+    fn draw_point(&mut self, scale: f64) -> Vec2 {
+        Vec2::new(self.draw_uniform(-scale, scale), self.draw_uniform(-scale, scale))
     }
 
-    fn grid(&mut self, reach: u64, unit: f64) -> Vec2 {
+    fn draw_grid_point(&mut self, reach: u64, unit: f64) -> Vec2 {
         let mut coordinate = || (self.draw_below(2 * reach + 1) as f64 - reach as f64) * unit;
         Vec2::new(coordinate(), coordinate())
     }
@@ -232,17 +232,17 @@ type Make = fn(&mut Random) -> RandomMotion;
 fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<BoundedValue>>) {
     let pair = [0, 1, 1, 2, 3][random.draw_below(5) as usize];
     if pair == 3 {
-        return (pair, "zeros on a grid", vec![product(random)]);
+        return (pair, "zeros on a grid", vec![draw_product(random)]);
     }
     let kinds: [(&str, Make); 8] = [
         ("wide", draw_wide),
-        ("grid", grid),
+        ("grid", draw_grid_motion),
         ("near-rigid", near_rigid),
         ("resting", draw_resting_motion),
-        ("grazing", grazing),
+        ("grazing", draw_grazing_motion),
         ("far", draw_distant_motion),
-        ("turning", turning),
-        ("bulk", bulk),
+        ("turning", draw_rotating_motion),
+        ("bulk", draw_bulk_motion),
     ];
     let (name, make) = kinds[random.draw_below(kinds.len() as u64) as usize];
     let mut motion = make(random);
@@ -260,12 +260,12 @@ fn draw(random: &mut Random) -> (usize, &'static str, Vec<Vec<BoundedValue>>) {
 
 /// Returns a polynomial of degree three to five with zeros on a coarse grid, some of them exactly or nearly multiple,
 /// that is often negative within the step.
-fn product(random: &mut Random) -> Vec<BoundedValue> {
+fn draw_product(random: &mut Random) -> Vec<BoundedValue> {
     let unit = [1.0, 0.5, 0.25, 0.1][random.draw_below(4) as usize];
     let degree = 3 + random.draw_below(3) as usize;
     let noise = if random.draw_one_in(2) { 0.0 } else { random.log(-16.0, -3.0) };
     let mut coefficients = [0.0; 6];
-    coefficients[0] = random.uniform(-1.0, 1.0).signum() * random.log(-6.0, 3.0);
+    coefficients[0] = random.draw_uniform(-1.0, 1.0).signum() * random.log(-6.0, 3.0);
     let mut count = 0;
     while count < degree {
         // Places within the step are mostly avoided.
@@ -275,7 +275,7 @@ fn product(random: &mut Random) -> Vec<BoundedValue> {
         }
         let repeat = if random.draw_one_in(2) { 2.min(degree - count) } else { 1 };
         for _ in 0..repeat {
-            let zero = place + noise * random.uniform(-1.0, 1.0);
+            let zero = place + noise * random.draw_uniform(-1.0, 1.0);
             count += 1;
             for i in (1..=count).rev() {
                 coefficients[i] -= zero * coefficients[i - 1];
@@ -291,19 +291,19 @@ fn draw_wide(random: &mut Random) -> RandomMotion {
     let mut object = |spread: f64| {
         let size = scale * if random.draw_one_in(3) { random.log(-3.0, 3.0) } else { spread };
         let moves = if random.draw_one_in(4) { 0.0 } else { size * random.log(-12.0, 1.0) };
-        (random.point(size), random.direction() * moves)
+        (random.draw_point(size), random.draw_direction() * moves)
     };
     let [a, b, c] = [object(1.0), object(1.0), object(1.0)];
     RandomMotion { x: [a.0, b.0, c.0], d: [a.1, b.1, c.1], radius: scale * random.log(-3.0, 0.3) }
 }
 
 /// Makes a motion of integers or simple fractions, with frequent coincidences.
-fn grid(random: &mut Random) -> RandomMotion {
+fn draw_grid_motion(random: &mut Random) -> RandomMotion {
     let unit = [1.0, 0.5, 0.25, 0.1, 1e-3][random.draw_below(5) as usize];
     let (reach, speed) = (1 + random.draw_below(12), random.draw_below(5));
     let radius = unit * [0.5, 1.0, 1.5, 2.0, 3.0][random.draw_below(5) as usize];
-    let [a, b, c] = [(); 3].map(|()| random.grid(reach, unit));
-    let [e, f, g] = [(); 3].map(|()| random.grid(speed, unit));
+    let [a, b, c] = [(); 3].map(|()| random.draw_grid_point(reach, unit));
+    let [e, f, g] = [(); 3].map(|()| random.draw_grid_point(speed, unit));
     RandomMotion { x: [a, b, c], d: [e, f, g], radius }
 }
 
@@ -311,36 +311,36 @@ fn grid(random: &mut Random) -> RandomMotion {
 fn near_rigid(random: &mut Random) -> RandomMotion {
     let mut motion = draw_wide(random);
     let relative = random.log(-17.0, -1.0);
-    motion.d[2] = motion.d[1] + random.direction() * (relative * (length(motion.d[1]) + random.log(-9.0, 0.0)));
+    motion.d[2] = motion.d[1] + random.draw_direction() * (relative * (length(motion.d[1]) + random.log(-9.0, 0.0)));
     motion
 }
 
 /// Makes a motion in which the particle touches, or nearly touches, and moves along the object or hardly moves.
 fn draw_resting_motion(random: &mut Random) -> RandomMotion {
-    let mut motion = bulk(random);
+    let mut motion = draw_bulk_motion(random);
     let along = motion.x[2] - motion.x[1];
     let length = length(along);
     let normal = turn(along) * (1.0 / length);
-    let gap = motion.radius * (1.0 + random.uniform(-1.0, 3.0) * random.log(-17.0, -1.0));
-    motion.x[0] = motion.x[1] + along * random.uniform(-0.2, 1.2) + normal * gap;
-    let slide = along * (random.uniform(-1.0, 1.0) * random.log(-9.0, 0.0));
-    let press = normal * (motion.radius * random.uniform(-1.0, 1.0) * random.log(-14.0, 0.0));
+    let gap = motion.radius * (1.0 + random.draw_uniform(-1.0, 3.0) * random.log(-17.0, -1.0));
+    motion.x[0] = motion.x[1] + along * random.draw_uniform(-0.2, 1.2) + normal * gap;
+    let slide = along * (random.draw_uniform(-1.0, 1.0) * random.log(-9.0, 0.0));
+    let press = normal * (motion.radius * random.draw_uniform(-1.0, 1.0) * random.log(-14.0, 0.0));
     motion.d[0] = if random.draw_one_in(8) { motion.d[1] } else { motion.d[1] + slide + press };
     motion
 }
 
 /// Makes a motion in which the particle passes at about the sum of the radii at some time before, within or after the
 /// step.
-fn grazing(random: &mut Random) -> RandomMotion {
-    let mut motion = if random.draw_one_in(2) { draw_wide(random) } else { turning(random) };
-    let time = random.uniform(-2.0, 4.0);
+fn draw_grazing_motion(random: &mut Random) -> RandomMotion {
+    let mut motion = if random.draw_one_in(2) { draw_wide(random) } else { draw_rotating_motion(random) };
+    let time = random.draw_uniform(-2.0, 4.0);
     let target = motion.x[1] + motion.d[1] * time;
     let other = motion.x[2] + motion.d[2] * time;
     let along = other - target;
     let length = length(along);
     let normal = turn(along) * (1.0 / length);
-    let gap = motion.radius * (1.0 + random.uniform(-1.0, 1.0) * random.log(-16.0, 0.0));
-    let meeting = target + along * random.uniform(-0.1, 1.1) + normal * gap;
+    let gap = motion.radius * (1.0 + random.draw_uniform(-1.0, 1.0) * random.log(-16.0, 0.0));
+    let meeting = target + along * random.draw_uniform(-0.1, 1.1) + normal * gap;
     let speed = motion.radius * random.log(-6.0, 2.0);
     let cross = normal * (speed * if random.draw_one_in(2) { 0.0 } else { random.log(-12.0, 0.0) });
     motion.d[0] = along * (speed / length) + cross + motion.d[1];
@@ -352,37 +352,37 @@ fn grazing(random: &mut Random) -> RandomMotion {
 fn draw_distant_motion(random: &mut Random) -> RandomMotion {
     let mut motion = draw_wide(random);
     let distance = motion.radius * random.log(0.0, 7.0);
-    motion.x[0] = motion.x[1] + random.direction() * distance;
+    motion.x[0] = motion.x[1] + random.draw_direction() * distance;
     for i in 0..3 {
         let moves = if random.draw_one_in(3) { 0.0 } else { motion.radius * random.log(-13.0, 1.0) };
-        motion.d[i] = if random.draw_one_in(3) { Vec2::new(moves, 0.0) } else { random.direction() * moves };
+        motion.d[i] = if random.draw_one_in(3) { Vec2::new(moves, 0.0) } else { random.draw_direction() * moves };
     }
     motion
 }
 
 /// Returns an edge that turns by up to half a turn and stretches a little.
-fn turning(random: &mut Random) -> RandomMotion {
+fn draw_rotating_motion(random: &mut Random) -> RandomMotion {
     let scale = random.log(-2.0, 3.0);
-    let (center, half) = (random.point(scale), random.direction() * (scale * random.uniform(0.1, 1.0)));
-    let angle = random.uniform(-1.0, 1.0) * random.log(-6.0, 0.5);
-    let stretch = 1.0 + random.uniform(-0.5, 0.5) * random.log(-6.0, 0.0);
+    let (center, half) = (random.draw_point(scale), random.draw_direction() * (scale * random.draw_uniform(0.1, 1.0)));
+    let angle = random.draw_uniform(-1.0, 1.0) * random.log(-6.0, 0.5);
+    let stretch = 1.0 + random.draw_uniform(-0.5, 0.5) * random.log(-6.0, 0.0);
     let turned = (half * angle.cos() + turn(half) * angle.sin()) * stretch;
-    let shift = random.direction() * (scale * random.log(-6.0, 0.5));
-    let particle = random.direction() * (scale * random.log(-6.0, 0.5));
+    let shift = random.draw_direction() * (scale * random.log(-6.0, 0.5));
+    let particle = random.draw_direction() * (scale * random.log(-6.0, 0.5));
     RandomMotion {
-        x: [random.point(2.0 * scale), center + half, center - half],
+        x: [random.draw_point(2.0 * scale), center + half, center - half],
         d: [particle, shift + turned - half, shift - turned + half],
         radius: scale * random.log(-3.0, 0.0),
     }
 }
 
 /// Makes a motion in which everything moves together, with small differences, like most pairs of a scene.
-fn bulk(random: &mut Random) -> RandomMotion {
+fn draw_bulk_motion(random: &mut Random) -> RandomMotion {
     let scale = random.log(-3.0, 4.0);
-    let together = random.direction() * (scale * random.log(-8.0, 0.5));
+    let together = random.draw_direction() * (scale * random.log(-8.0, 0.5));
     let spread = scale * random.log(-12.0, -0.5);
-    let x = [(); 3].map(|()| random.point(scale));
-    let d = [(); 3].map(|()| together + random.point(spread));
+    let x = [(); 3].map(|()| random.draw_point(scale));
+    let d = [(); 3].map(|()| together + random.draw_point(spread));
     RandomMotion { x, d, radius: scale * random.log(-3.0, -0.3) }
 }
 

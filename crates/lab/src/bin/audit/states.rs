@@ -6,7 +6,7 @@ use fosssim_lab::{
 };
 use fosssim_oracle::{
     assignments::{Assignment, ImpulseList},
-    num::vector::at,
+    num::vector::vector_at,
     scene::{Scene, original},
     sim::{RootSearch, Simulation},
     student::{Contact, State},
@@ -20,10 +20,10 @@ use std::{
 };
 
 /// The sizes of noise that is added to numbers of right traces.
-const NOISES: [f64; 6] = [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8];
+const NOISE_SIZES: [f64; 6] = [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8];
 
 /// The number of right traces of each scene to which noise is added.
-const NOISY: u64 = 8;
+const NOISY_TRACES_PER_SCENE: u64 = 8;
 
 /// The results on the scenes of one milestone.
 #[derive(Debug, Clone, Copy, Default)]
@@ -39,7 +39,7 @@ struct MilestoneTally {
     room: Option<u32>,
     /// The number of traces with each noise, and the number of rejected ones.
     noisy: u64,
-    refused: [u64; NOISES.len()],
+    refused: [u64; NOISE_SIZES.len()],
 }
 
 /// Tries all programs on the embedded scenes, and on those of a corpus.
@@ -67,7 +67,7 @@ pub fn run(corpus: Option<&Path>) -> ExitCode {
             100.0 * row.velocity
         );
     }
-    println!("milestone  traces with noise on three numbers, rejected of these with {NOISES:?}");
+    println!("milestone  traces with noise on three numbers, rejected of these with {NOISE_SIZES:?}");
     for (milestone, row) in &rows {
         println!("{milestone:9}  {:6}  {:?}", row.noisy, row.refused);
     }
@@ -146,7 +146,7 @@ impl<'a> SingleSteps<'a> {
             return;
         }
         for (index, particle) in self.one.particles.iter_mut().enumerate() {
-            (particle.position, particle.velocity) = (at(&before.x, index), at(&before.v, index));
+            (particle.position, particle.velocity) = (vector_at(&before.x, index), vector_at(&before.v, index));
         }
         let mut simulation = Simulation::new(&self.one, RootSearch::WhereNeeded);
         if simulation.step(&mut ()).is_err() {
@@ -176,7 +176,7 @@ fn add_noise(name: &str, scene: &Scene, trace: &[u8], tally: &mut MilestoneTally
         return;
     }
     let mut random = name.bytes().fold(0x9e37_79b9_7f4a_7c15_u64, |seed, byte| seed.rotate_left(7) ^ u64::from(byte));
-    for _ in 0..NOISY {
+    for _ in 0..NOISY_TRACES_PER_SCENE {
         let places: [usize; 3] = std::array::from_fn(|_| {
             // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003).
             random ^= random << 13;
@@ -185,7 +185,7 @@ fn add_noise(name: &str, scene: &Scene, trace: &[u8], tally: &mut MilestoneTally
             usize::try_from(random % (trace.len() as u64 / 8)).unwrap_or(0) * 8
         });
         tally.noisy += 1;
-        for (noise, refused) in NOISES.iter().zip(&mut tally.refused) {
+        for (noise, refused) in NOISE_SIZES.iter().zip(&mut tally.refused) {
             let mut damaged = trace.to_vec();
             for place in places {
                 let number = &mut damaged[place..place + 8];

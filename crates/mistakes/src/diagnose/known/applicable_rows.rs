@@ -13,7 +13,7 @@ const MAX_DISTANT_PAIRS: usize = 5_000;
 /// Returns the rows that may explain a trace of the scene, in the order of the catalogue: mistakes in the code of the
 /// student of the scene's assignment. Missing records and near pairs are searched separately
 /// ([`near`](super::super::near)).
-pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
+pub(super) fn applicable_rows(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_tried = |row: &&Row| {
         let is_elsewhere =
             row.area == Area::NearPairs || matches!(row.mistake, Mistake::LogNoInitial | Mistake::LogNoMid);
@@ -23,7 +23,7 @@ pub(super) fn applicable(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_theirs = move |row: &&Row| is_written(row, assignment);
     let is_small = counts.iter().map(|(_, count)| count).sum::<usize>() <= MAX_DISTANT_PAIRS;
     let is_cheap = move |row: &&Row| is_small || !reaches_apart(row);
-    all_rows().filter(is_tried).filter(is_theirs).filter(is_cheap).filter(move |row| shows(scene, &counts, row))
+    all_rows().filter(is_tried).filter(is_theirs).filter(is_cheap).filter(move |row| is_applicable(scene, &counts, row))
 }
 
 /// Returns whether a penalty force with this mistake checks all pairs, even distant ones.
@@ -41,10 +41,10 @@ pub(super) const fn is_of_states(row: &Row) -> bool {
 /// lacks a part: a stage of a step, or a kind of pair.
 #[must_use]
 pub fn can_show(scene: &Scene, row: &Row) -> bool {
-    shows(scene, &pairs(scene).counts(), row)
+    is_applicable(scene, &pairs(scene).counts(), row)
 }
 
-fn shows(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
+fn is_applicable(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
     if is_of_states(row) {
         return shows_in_states(scene, counts, row);
     }
@@ -82,7 +82,7 @@ fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
 mod tests {
     use super::*;
     use fosssim_model::{assignments::Assignment, scene::CollisionDetection};
-    use fosssim_student::{Student, assignments::probe_scenes, trace};
+    use fosssim_student::{Student, assignments::probe_scenes, record_trace};
 
     /// A mistake that is not tried on a scene would leave the right trace of the scene.
     #[test]
@@ -102,11 +102,11 @@ mod tests {
             .collect();
         scenes.extend(others);
         for scene in scenes {
-            let right = trace(&scene, Student::default()).ok();
+            let right = record_trace(&scene, Student::default()).ok();
             let is_left_out = |row: &&Row| row.kind != RowKind::Hostile && !can_show(&scene, row);
             for row in all_rows().filter(is_left_out) {
                 left_out += 1;
-                assert!(trace(&scene, Student::new(Some(row.mistake))).ok() == right, "{} on {scene:?}", row.id);
+                assert!(record_trace(&scene, Student::new(Some(row.mistake))).ok() == right, "{} on {scene:?}", row.id);
             }
         }
         assert!(left_out > 1000, "{left_out}");
@@ -124,7 +124,7 @@ mod tests {
             );
             fosssim_model::scene::read("balls", text.as_bytes()).expect("a scene").scene
         };
-        let of_apart = |count: u32| applicable(&balls(count)).filter(|row| reaches_apart(row)).count();
+        let of_apart = |count: u32| applicable_rows(&balls(count)).filter(|row| reaches_apart(row)).count();
         assert!(of_apart(10) > 0);
         assert_eq!(of_apart(400), 0);
     }

@@ -1,6 +1,6 @@
 //! Tries the rows of the catalogue on the kept steps.
 use super::{
-    applicable_rows::applicable,
+    applicable_rows::applicable_rows,
     resimulate::ApproachForm,
     trials::{Program, Trials},
 };
@@ -39,7 +39,7 @@ impl<'a> Candidates<'a> {
     /// `correct` is the program to which the mistakes are added.
     pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, scan: &'a Scan, correct: ApproachForm) -> Self {
         let trials = Trials::new(reference, scene, correct);
-        let candidates = applicable(scene).map(|row| (row, trials.program(&[row]))).collect();
+        let candidates = applicable_rows(scene).map(|row| (row, trials.program(&[row]))).collect();
         let probes = scan.probes();
         let is_probe = |sample: &KeptStep| probes.iter().any(|probe| std::ptr::eq(*probe, sample));
         let others = scan.wrong.iter().filter(|sample| !is_probe(sample)).collect();
@@ -48,17 +48,17 @@ impl<'a> Candidates<'a> {
 
     /// Returns the rows that reproduce the most wrong steps, all the same number, in the order of the catalogue. Empty
     /// if that is less than half.
-    pub(super) fn best(&self) -> Vec<Score> {
-        let complete = self.complete();
-        if complete.is_empty() { self.partial() } else { complete }
+    pub(super) fn best_scores(&self) -> Vec<Score> {
+        let complete = self.complete_scores();
+        if complete.is_empty() { self.partial_scores() } else { complete }
     }
 
     /// Returns the rows that reproduce every step.
-    fn complete(&self) -> Vec<Score> {
+    fn complete_scores(&self) -> Vec<Score> {
         let mut left: Vec<&Candidate> = self.candidates.iter().collect();
         let mut samples = 0;
         for sample in self.probes.iter().copied().chain(&self.scan.right).chain(self.others.iter().copied()) {
-            if self.trials.exceed(MAX_WORK) && samples > 0 {
+            if self.trials.exceeds_limit(MAX_WORK) && samples > 0 {
                 break;
             }
             left.retain(|candidate| self.reproduces(candidate, sample));
@@ -71,7 +71,7 @@ impl<'a> Candidates<'a> {
     }
 
     /// Returns the rows that reproduce the most wrong steps, at least half of them, and all right ones.
-    fn partial(&self) -> Vec<Score> {
+    fn partial_scores(&self) -> Vec<Score> {
         self.trials.restart();
         let wrong = [self.probes.as_slice(), &self.others].concat();
         let stride = wrong.len().div_ceil(MAX_PARTIAL_STEPS).max(1);
@@ -81,7 +81,7 @@ impl<'a> Candidates<'a> {
         let mut left: Vec<(&Candidate, usize)> = self.candidates.iter().map(|candidate| (candidate, 0)).collect();
         let mut tried = 0;
         for (number, sample) in spread.iter().chain(&rest).enumerate() {
-            if self.trials.exceed(MAX_WORK) {
+            if self.trials.exceeds_limit(MAX_WORK) {
                 break;
             }
             tried = number + 1;

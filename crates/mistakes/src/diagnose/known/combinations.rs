@@ -2,7 +2,7 @@
 //!
 //! A row is added if the simulation of the wrong steps then follows the log further. A set is an explanation only if it
 //! reproduces everything, including right steps, and no row can be omitted.
-use super::{applicable_rows::applicable, plausibility, resimulate::ApproachForm, trials::Trials};
+use super::{applicable_rows::applicable_rows, plausibility, resimulate::ApproachForm, trials::Trials};
 use crate::diagnose::sampling::{KeptStep, Reference, Scan};
 use fosssim_model::{scene::Scene, sim::pairs, trace::Layout};
 use fosssim_student::{Area, Mistake, Row, RowKind};
@@ -35,9 +35,9 @@ pub(super) fn find_set(
 ) -> Option<SeveralRows> {
     let search = Search::new(reference, scene, scan, correct);
     if !Layout::for_scene(scene).has_polynomials {
-        return search.together();
+        return search.find_combination();
     }
-    let mut found = search.starts().into_iter().find_map(|start| search.complete(start))?;
+    let mut found = search.starting_sets().into_iter().find_map(|start| search.complete(start))?;
     // An empty stage may look like a mistake in another stage.
     if found.rows.iter().any(|row| is_empty_stage(row))
         && let Some(other) = search.complete(Vec::new())
@@ -113,10 +113,10 @@ impl<'a> Search<'a> {
     /// Finds several mistakes of a program whose steps log only states. There, a single mistake does not reproduce a
     /// larger part of a step, but all mistakes together reproduce all of it. Unwritten functions come first, then one
     /// mistake with such functions, then two mistakes; `None` if two disjoint sets reproduce everything.
-    fn together(&self) -> Option<SeveralRows> {
+    fn find_combination(&self) -> Option<SeveralRows> {
         let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
-        let rows: Vec<&'static Row> = applicable(self.scene).filter(is_asked).collect();
-        let mut empty = subsets(&self.stages());
+        let rows: Vec<&'static Row> = applicable_rows(self.scene).filter(is_asked).collect();
+        let mut empty = subsets(&self.stage_rows());
         let most = empty.len().min(MAX_SETS);
         empty.truncate(most);
         let explains = |set: &Vec<&'static Row>| self.explains(set);
@@ -144,7 +144,7 @@ impl<'a> Search<'a> {
     fn unique_set(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
-            if self.trials.exceed(MAX_WORK) {
+            if self.trials.exceeds_limit(MAX_WORK) {
                 return None;
             }
             if self.explains(&set) {
@@ -175,12 +175,12 @@ impl<'a> Search<'a> {
 
     /// Returns the initial sets of empty stages. One is the set that reproduces most. The others are sets of detections
     /// without which the number of polynomials fits whole passes, in case another mistake hides the first set.
-    fn starts(&self) -> Vec<Vec<&'static Row>> {
+    fn starting_sets(&self) -> Vec<Vec<&'static Row>> {
         let mut starts = vec![self.empty_stages()];
         let counts: Vec<usize> = self.scan.wrong.iter().map(|sample| sample.records.end.polynomials.len()).collect();
         let fits =
             |pass: usize| counts.iter().all(|&count| if pass == 0 { count == 0 } else { count.is_multiple_of(pass) });
-        let sizes = self.sizes();
+        let sizes = self.row_sizes();
         let all: usize = sizes.iter().map(|(_, size)| size).sum();
         if fits(all) {
             return starts;
@@ -193,15 +193,15 @@ impl<'a> Search<'a> {
 
     /// Returns the detections that the scene requires, as empty stages, and the number of polynomials in a pass of
     /// each.
-    fn sizes(&self) -> Vec<(&'static Row, usize)> {
+    fn row_sizes(&self) -> Vec<(&'static Row, usize)> {
         let counts = pairs(self.scene).counts();
         let size = |row: &Row| row.kind_of_pair().map_or(0, |kind| counts[kind] * kind.polynomials());
-        self.stages().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
+        self.stage_rows().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
     }
 
     /// Returns the smallest set of empty stages that reproduces most; empty if none helps.
     fn empty_stages(&self) -> Vec<&'static Row> {
-        let mut sets = subsets(&self.stages());
+        let mut sets = subsets(&self.stage_rows());
         // One variant of an empty loop is enough, and an empty failsafe is not visible if it is never called.
         sets.retain(|set: &Vec<&Row>| {
             let has = |mistake| set.iter().any(|row| row.mistake == mistake);
@@ -211,7 +211,7 @@ impl<'a> Search<'a> {
         });
         let mut best = (self.progress(&[]), Vec::new());
         for set in sets.into_iter().skip(1) {
-            if self.trials.exceed(MAX_WORK / 2) {
+            if self.trials.exceeds_limit(MAX_WORK / 2) {
                 break;
             }
             let progress = self.progress(&set);
@@ -223,7 +223,7 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the rows of empty stages that show on the scene. An unwritten detection logs nothing, or zeros.
-    fn stages(&self) -> Vec<&'static Row> {
+    fn stage_rows(&self) -> Vec<&'static Row> {
         // For bodies at rest the approach polynomial is zero, too, but the overlap polynomial before it is not.
         let logs_zeros = self.scan.wrong.iter().any(|kept| {
             let are_zero = |list: &[f64]| list.iter().all(|&coefficient| coefficient == 0.0);
@@ -235,16 +235,16 @@ impl<'a> Search<'a> {
             Mistake::ParticleParticleZero | Mistake::ParticleEdgeZero | Mistake::HalfPlaneZero => logs_zeros,
             _ => is_empty_stage(row),
         };
-        applicable(self.scene).filter(is_asked).collect()
+        applicable_rows(self.scene).filter(is_asked).collect()
     }
 
     /// Returns the row that extends the reproduced part beyond `reached` the most, the new share, and other rows that
     /// reach the same.
     fn next(&self, set: &[&'static Row], reached: f64) -> Option<(&'static Row, f64, Vec<&'static Row>)> {
         let mut best: (f64, Vec<&'static Row>) = (reached + 1e-9, Vec::new());
-        let rows = applicable(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));
+        let rows = applicable_rows(self.scene).filter(|row| set.iter().all(|other| other.mistake != row.mistake));
         for row in rows {
-            if self.trials.exceed(MAX_WORK) {
+            if self.trials.exceeds_limit(MAX_WORK) {
                 return None;
             }
             let with: Vec<&Row> = set.iter().copied().chain([row]).collect();
@@ -279,7 +279,7 @@ impl<'a> Search<'a> {
         let program = self.trials.program(set);
         let mut samples = 0;
         for sample in self.scan.right.iter().chain(&self.scan.wrong) {
-            if self.trials.exceed(2 * MAX_WORK) && samples > 0 {
+            if self.trials.exceeds_limit(2 * MAX_WORK) && samples > 0 {
                 break;
             }
             if self.trials.reproduced_share(&program, sample) < 1.0 {

@@ -1,11 +1,13 @@
 //! Finds mistakes that a trace contradicts, no matter which other mistakes it has: its stages are not empty, or its
 //! zones do not stop.
-use crate::diagnose::sampling::{KeptStep, LoggedNumbers, PLAIN, ROUND_OFF, Scan, StepDifference, state_difference};
+use crate::diagnose::sampling::{
+    CLEAR_TOLERANCE, KeptStep, LoggedNumbers, ROUND_OFF, Scan, StepDifference, state_difference,
+};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{PairKind, pairs},
 };
-use fosssim_num::vector::{at, length};
+use fosssim_num::vector::{length, vector_at};
 use fosssim_student::{CATALOGUE, Mistake, Row};
 
 /// Returns the keys of mistakes by which a program never does something that this trace does: move a zone, make a pass,
@@ -22,9 +24,9 @@ pub(super) fn find_denied(scene: &Scene, scan: &Scan) -> Vec<String> {
         | Mistake::ParticleEdgeZero
         | Mistake::HalfPlaneZero => row.kind_of_pair().is_some_and(|kind| kinds.contains(&kind)),
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => is_hybrid && samples().any(has_rounds),
-        Mistake::GeometricEmpty => is_hybrid && samples().any(|sample| has_passes(sample) || moves(sample)),
-        Mistake::FailsafeEmpty => is_hybrid && samples().any(moves),
-        Mistake::FailsafeAlwaysStops => is_hybrid && samples().any(|sample| moves(sample) && moves_on(sample)),
+        Mistake::GeometricEmpty => is_hybrid && samples().any(|sample| has_passes(sample) || is_moving(sample)),
+        Mistake::FailsafeEmpty => is_hybrid && samples().any(is_moving),
+        Mistake::FailsafeAlwaysStops => is_hybrid && samples().any(|sample| is_moving(sample) && moves_on(sample)),
         _ => false,
     };
     CATALOGUE.iter().filter(is_done).map(|row| row.id.to_owned()).collect()
@@ -63,7 +65,7 @@ fn has_passes(sample: &KeptStep) -> bool {
 }
 
 /// Returns whether the end state of the step differs from its mid state.
-fn moves(sample: &KeptStep) -> bool {
+fn is_moving(sample: &KeptStep) -> bool {
     let end = &sample.records.end.state;
     let is_sound = end.positions.iter().chain(&end.velocities).all(|value| value.is_finite());
     let differs = |mid: &LoggedNumbers| state_difference(&mid.state, end, &ROUND_OFF).is_some();
@@ -74,7 +76,8 @@ fn moves(sample: &KeptStep) -> bool {
 fn moves_on(sample: &KeptStep) -> bool {
     let Some(mid) = &sample.records.mid else { return false };
     let end = &sample.records.end.state.positions;
-    let differs =
-        |ours: &[f64], one: usize| length(at(ours, one) - at(end, one)) > PLAIN.state * (1.0 + length(at(end, one)));
+    let differs = |ours: &[f64], one: usize| {
+        length(vector_at(ours, one) - vector_at(end, one)) > CLEAR_TOLERANCE.state * (1.0 + length(vector_at(end, one)))
+    };
     (0..end.len() / 2).any(|one| differs(&mid.state.positions, one) && differs(&sample.before.positions, one))
 }

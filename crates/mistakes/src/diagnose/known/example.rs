@@ -6,11 +6,16 @@ use crate::diagnose::{
 };
 use fosssim_judge::Role;
 use fosssim_model::{scene::Scene, sim::State, trace::LoggedImpulse};
-use fosssim_num::vector::at;
+use fosssim_num::vector::vector_at;
 use fosssim_student::{StepLog, World};
 
 /// Returns the example of a wrong step: the first difference, with the expected and the logged value.
-pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: ApproachForm, kept: &KeptStep) -> Example {
+pub(super) fn find_example(
+    reference: &mut Reference<'_>,
+    scene: &Scene,
+    correct: ApproachForm,
+    kept: &KeptStep,
+) -> Example {
     let mut capture = Capture::new(&scene.collision);
     // The step was simulated before, so it does not fail. If it failed, the lists below would be empty.
     let _end = reference.step(kept.step, &kept.before, &mut capture);
@@ -33,13 +38,13 @@ pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: App
             let (ours, theirs) = (ours.end.polynomials.len(), theirs.end.polynomials.len());
             (ExamplePlace::PolynomialCount, count(ours), count(theirs))
         }
-        Some(StepDifference::Impulses) => contacts(&ours.end.impulses, &theirs.end.impulses),
+        Some(StepDifference::Impulses) => contact_example(&ours.end.impulses, &theirs.end.impulses),
         Some(StepDifference::MidState(particle)) => match (&ours.mid, &theirs.mid) {
-            (Some(ours), Some(theirs)) => state(particle, StepRecord::Mid, &ours.state, &theirs.state),
+            (Some(ours), Some(theirs)) => state_example(particle, StepRecord::Mid, &ours.state, &theirs.state),
             _ => (ExamplePlace::MidParticle(particle), Vec::new(), Vec::new()),
         },
         Some(StepDifference::EndState(particle)) => {
-            state(particle, StepRecord::End, &ours.end.state, &theirs.end.state)
+            state_example(particle, StepRecord::End, &ours.end.state, &theirs.end.state)
         }
         Some(StepDifference::MidLists) | None => (ExamplePlace::MidLists, Vec::new(), Vec::new()),
     };
@@ -47,7 +52,7 @@ pub(super) fn example(reference: &mut Reference<'_>, scene: &Scene, correct: App
 }
 
 /// Returns the first different contact as three numbers: normal and time.
-fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
+fn contact_example(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let key = |contact: &LoggedImpulse| (contact.kind, contact.first, contact.second);
     let values = |contact: &LoggedImpulse| vec![contact.normal.x, contact.normal.y, contact.time];
     let place = |contact: &LoggedImpulse| ExamplePlace::Contact {
@@ -71,9 +76,14 @@ fn contacts(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (ExamplePlace, 
 }
 
 /// Returns the position and velocity of a particle as four numbers.
-fn state(particle: usize, record: StepRecord, ours: &State, theirs: &State) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
+fn state_example(
+    particle: usize,
+    record: StepRecord,
+    ours: &State,
+    theirs: &State,
+) -> (ExamplePlace, Vec<f64>, Vec<f64>) {
     let values = |state: &State| {
-        let (x, v) = (at(&state.positions, particle), at(&state.velocities, particle));
+        let (x, v) = (vector_at(&state.positions, particle), vector_at(&state.velocities, particle));
         vec![x.x, x.y, v.x, v.y]
     };
     (ExamplePlace::Particle { particle, record }, values(ours), values(theirs))

@@ -116,7 +116,7 @@ fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut 
             return (explanation.into_iter().collect(), true);
         }
         if let Some(several) = combinations::find_set(reference, scene, scan, correct) {
-            return (together(reference, scene, scan, correct, &several), true);
+            return (explain_combination(reference, scene, scan, correct, &several), true);
         }
         partly = partly.or(explanation);
     }
@@ -134,7 +134,7 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     for mut sample in samples {
         let logged = sample.records.end.polynomials.len();
         // A few more polynomials than were logged already show that some are missing; further ones are not needed.
-        let guard = |index: usize, _: &[f64]| index < 2 * logged + SPARE;
+        let guard = |index: usize, _: &[f64]| index < 2 * logged + MAX_SURPLUS_POLYNOMIALS;
         let expected = resimulate(&world, &sample.before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
         let Some(expected) = expected else { continue };
         sample.difference = first_difference(&expected, &sample.records, &ROUND_OFF);
@@ -145,10 +145,10 @@ fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
 }
 
 /// The number of surplus polynomials, compared with the log, after which a step is stopped.
-const SPARE: usize = 10_000;
+const MAX_SURPLUS_POLYNOMIALS: usize = 10_000;
 
 /// Returns the explanations of several mistakes that reproduce the same steps together. Empty stages come first.
-fn together(
+fn explain_combination(
     reference: &mut Reference<'_>,
     scene: &Scene,
     scan: &Scan,
@@ -162,7 +162,7 @@ fn together(
     };
     let mut all: Vec<Explanation> = several.rows.iter().zip(&several.same_as).map(of_row).collect();
     if let Some(first) = all.first_mut() {
-        first.example = scan.wrong.first().map(|sample| example::example(reference, scene, correct, sample));
+        first.example = scan.wrong.first().map(|sample| example::find_example(reference, scene, correct, sample));
     }
     all
 }
@@ -175,7 +175,7 @@ fn best(
     scan: &Scan,
     correct: ApproachForm,
 ) -> (Option<Explanation>, bool) {
-    let mut scores = Candidates::new(reference, scene, scan, correct).best();
+    let mut scores = Candidates::new(reference, scene, scan, correct).best_scores();
     scores.sort_by_key(|score| plausibility(score.row));
     let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return (None, false) };
     let complete = best.reproduced == best.samples;
@@ -183,7 +183,7 @@ fn best(
         return (None, complete);
     }
     let explanation = Explanation {
-        example: Some(example::example(reference, scene, correct, first)),
+        example: Some(example::find_example(reference, scene, correct, first)),
         same_as: scores[1..].iter().map(|score| score.row.id.to_owned()).collect(),
         ..explain(best.row, (best.reproduced, best.samples))
     };

@@ -3,7 +3,7 @@ use super::{
     applicable_rows::can_show,
     resimulate::{resimulate, step_work},
 };
-use crate::diagnose::sampling::{Capture, PLAIN, first_difference, same_polynomial};
+use crate::diagnose::sampling::{CLEAR_TOLERANCE, Capture, first_difference, same_polynomial};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{RootSearch, Simulation},
@@ -45,11 +45,11 @@ pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, w
         work.set(work.get() + each + expected.len() as u64);
         let guard = |index: usize, coefficients: &[f64]| {
             work.set(work.get() + 1);
-            index < expected.len() && same_polynomial(coefficients, expected.get(index), &PLAIN)
+            index < expected.len() && same_polynomial(coefficients, expected.get(index), &CLEAR_TOLERANCE)
         };
         let is_seen = |world: &World| {
             let records = resimulate(world, &before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
-            records.is_none_or(|records| first_difference(&capture.records, &records, &PLAIN).is_some())
+            records.is_none_or(|records| first_difference(&capture.records, &records, &CLEAR_TOLERANCE).is_some())
         };
         if is_seen(&world) && !is_seen(&accepted) {
             return true;

@@ -26,13 +26,13 @@ fn scene() -> Scene {
 
 fn first(id: &str) -> Option<(String, Vec<String>)> {
     let row = find(id).expect("a row");
-    let trace = student::trace(&scene(), Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
+    let trace = student::record_trace(&scene(), Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
     find_known(&scene(), &trace[..]).into_iter().next().map(|first| (first.key, first.same_as))
 }
 
 #[test]
 fn a_right_trace_needs_no_explanation() {
-    let trace = student::trace(&scene(), Student::default()).expect("a trace");
+    let trace = student::record_trace(&scene(), Student::default()).expect("a trace");
     assert_eq!(find_known(&scene(), &trace[..]), []);
 }
 
@@ -69,7 +69,7 @@ fn correct_variants_are_never_accused() {
 /// A crashed, killed or timed-out program that is right as far as it came is right.
 #[test]
 fn a_right_trace_that_breaks_off_is_not_explained() {
-    let trace = student::trace(&scene(), Student::default()).expect("a trace");
+    let trace = student::record_trace(&scene(), Student::default()).expect("a trace");
     for length in (0..trace.len()).step_by(97) {
         assert_eq!(explain(&scene(), &trace[..length]), [], "cut at {length}");
     }
@@ -79,7 +79,7 @@ fn a_right_trace_that_breaks_off_is_not_explained() {
 fn another_scenes_trace_is_asked_about_only() {
     let mut other = scene();
     other.particles[1].position.y = 0.125;
-    let right = student::trace(&other, Student::default()).expect("a trace");
+    let right = student::record_trace(&other, Student::default()).expect("a trace");
     let longer = [right.as_slice(), &[0; 64]].concat();
     for (trace, has_length) in [(right, true), (longer, false)] {
         let explanations = explain(&scene(), &trace);
@@ -93,7 +93,7 @@ fn another_scenes_trace_is_asked_about_only() {
 fn a_right_approach_hides_no_mistake() {
     for id in ["decision-never", "pe-square-no-eh", "response-sign", "pp-no-two"] {
         let student = Student::new(find(id).map(|row| row.mistake)).with_right_approach();
-        let trace = student::trace(&scene(), student).expect("a trace");
+        let trace = student::record_trace(&scene(), student).expect("a trace");
         let explanations = find_known(&scene(), &trace[..]);
         let [explanation] = &explanations[..] else { panic!("{id} is not explained") };
         assert!(explanation.key == id || explanation.same_as.iter().any(|other| other == id), "{id}: {explanation:?}");
@@ -101,14 +101,14 @@ fn a_right_approach_hides_no_mistake() {
         let is_approach = matches!(example.place, ExamplePlace::Polynomial { role: Role::Approach, .. });
         assert!(!is_approach, "the approach is right: {example:?}");
     }
-    let trace = student::trace(&scene(), Student::default().with_right_approach()).expect("a trace");
+    let trace = student::record_trace(&scene(), Student::default().with_right_approach()).expect("a trace");
     assert_eq!(find_known(&scene(), &trace[..]), []);
 }
 
 #[test]
 fn an_example_names_the_first_wrong_step() {
     let row = find("pp-no-two").expect("a row");
-    let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
+    let trace = student::record_trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
     let explanations = find_known(&scene(), &trace[..]);
     let [explanation] = &explanations[..] else { panic!("one explanation") };
     assert_eq!((&*explanation.key, &explanation.about), (row.id, &About::Mistake));
@@ -123,7 +123,7 @@ fn an_example_names_the_first_wrong_step() {
 #[test]
 fn damaged_traces_are_read_as_far_as_they_go() {
     let row = find("pp-no-two").expect("a row");
-    let trace = student::trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
+    let trace = student::record_trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
     for length in [0, 1, 127, 200, trace.len() / 2, trace.len() - 1] {
         let keys: Vec<String> = find_known(&scene(), &trace[..length]).into_iter().map(|first| first.key).collect();
         assert!(keys.iter().all(|key| key == "pp-no-two"), "cut at {length}: {keys:?}");
@@ -150,7 +150,7 @@ fn hybrid() -> Scene {
 fn made(scene: &Scene, ids: &[&str]) -> Vec<u8> {
     let student =
         ids.iter().fold(Student::default(), |student, id| student.with_mistake(find(id).map(|row| row.mistake)));
-    student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
+    student::record_trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
 /// Explanations of a program that makes all of these name each of them, as made or as not to be told from another.

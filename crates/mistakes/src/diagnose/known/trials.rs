@@ -32,7 +32,7 @@ impl<'a> Trials<'a> {
     }
 
     /// Returns whether more than `most` polynomials were computed, or no work is left.
-    pub(super) fn exceed(&self, most: u64) -> bool {
+    pub(super) fn exceeds_limit(&self, most: u64) -> bool {
         self.work.get() > most || self.left.get() == 0
     }
 

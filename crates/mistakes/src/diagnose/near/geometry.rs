@@ -3,7 +3,7 @@ use fosssim_model::{
     scene::{Edge, HalfPlane, Scene},
     sim::{Pair, PairKind, State},
 };
-use fosssim_num::vector::{Vec2, at, length};
+use fosssim_num::vector::{Vec2, length, vector_at};
 
 /// A body's extent with its radius, as its lower and upper corner.
 pub(super) type BoundingBox = [Vec2; 2];
@@ -59,7 +59,7 @@ impl<'a> PlacedPair<'a> {
     }
 
     pub fn place(&self, particle: usize) -> Vec2 {
-        at(&self.moment.before.positions, particle)
+        vector_at(&self.moment.before.positions, particle)
     }
 
     /// Returns the first body's center.
@@ -104,7 +104,7 @@ impl<'a> PlacedPair<'a> {
     /// Returns whether the pair is near at positions `x`: its boxes overlap, or its half-plane is in reach.
     pub fn is_near(&self, x: &[f64]) -> bool {
         if self.half_plane().is_some() {
-            return length(self.nearest(x) - at(x, self.numbers()[0])) < self.radius();
+            return length(self.nearest(x) - vector_at(x, self.numbers()[0])) < self.radius();
         }
         let [one, other] = self.bodies().map(|body| bounds(self.moment.scene, x, body));
         (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
@@ -114,7 +114,7 @@ impl<'a> PlacedPair<'a> {
     pub fn is_parting(&self) -> bool {
         let State { positions, velocities } = self.moment.before;
         let later: Vec<f64> = positions.iter().zip(velocities).map(|(x, v)| x + 1e-6 * v).collect();
-        let distance = |x: &[f64]| length(self.nearest(x) - at(x, self.numbers()[0]));
+        let distance = |x: &[f64]| length(self.nearest(x) - vector_at(x, self.numbers()[0]));
         distance(&later) >= distance(positions)
     }
 
@@ -130,13 +130,13 @@ impl<'a> PlacedPair<'a> {
     /// Returns the point of the second body that is nearest to the first one's center.
     fn nearest(&self, x: &[f64]) -> Vec2 {
         let [first, second] = self.numbers();
-        let own = at(x, first);
+        let own = vector_at(x, first);
         if let Some(edge) = self.edge() {
-            let (from, along) = (at(x, edge.first), at(x, edge.second) - at(x, edge.first));
+            let (from, along) = (vector_at(x, edge.first), vector_at(x, edge.second) - vector_at(x, edge.first));
             return from + ((own - from).dot(&along) / along.dot(&along)).clamp(0.0, 1.0) * along;
         }
         self.half_plane().map_or_else(
-            || at(x, second),
+            || vector_at(x, second),
             |plane| own + (plane.point - own).dot(&plane.normal) / plane.normal.dot(&plane.normal) * plane.normal,
         )
     }
@@ -151,6 +151,6 @@ fn bounds(scene: &Scene, x: &[f64], body: usize) -> BoundingBox {
             ([edge.first, edge.second], edge.radius)
         }
     };
-    let [one, other] = ends.map(|end| at(x, end));
+    let [one, other] = ends.map(|end| vector_at(x, end));
     [one.inf(&other) - Vec2::repeat(radius), one.sup(&other) + Vec2::repeat(radius)]
 }

@@ -31,10 +31,10 @@ const MAX_WORK: usize = 4_000_000;
 
 /// The maximum probability that a reported trait is common by chance, before it is divided by the number of variants of
 /// its row.
-const CHANCE: f64 = 2e-3;
+const MAX_CHANCE_PROBABILITY: f64 = 2e-3;
 
 /// One of this many wrong pairs may lack a trait that the others have in common.
-const EXCEPTION: u64 = 20;
+const PAIRS_PER_EXCEPTION: u64 = 20;
 
 /// The maximum number of reported traits, if several distinguish pairs equally well.
 const MAX_TRAITS: usize = 3;
@@ -98,7 +98,9 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let is_telling = |(one, exceptions, with): &(Variant, u64, u64)| {
         // The probability that as many randomly chosen pairs all have the trait.
         let chance: f64 = (1..=wrong - exceptions).map(|i| (with + i) as f64 / (right + i) as f64).product();
-        EXCEPTION * exceptions <= wrong && 2 * with <= right && chance * (one.row.variants() as f64) < CHANCE
+        PAIRS_PER_EXCEPTION * exceptions <= wrong
+            && 2 * with <= right
+            && chance * (one.row.variants() as f64) < MAX_CHANCE_PROBABILITY
     };
     let telling: Vec<_> = counts.filter(is_telling).collect();
     let Some(fewest) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
@@ -118,7 +120,7 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
 }
 
 /// Adds the pairs of all traces together for the explanations of a program.
-pub(super) fn unite(told: &mut [Explanation], traces: &[&[Explanation]]) {
+pub(super) fn merge_explanations(told: &mut [Explanation], traces: &[&[Explanation]]) {
     for one in told.iter_mut() {
         let About::Pairs(sum) = &mut one.about else { continue };
         let mut all = traces.iter().copied().flatten().filter_map(|one| match &one.about {

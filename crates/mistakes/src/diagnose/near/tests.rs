@@ -5,7 +5,7 @@ use fosssim_model::{
     scene::{Collision, Scene, original},
     sim::PairKind,
 };
-use fosssim_student::{Student, find, plain::formula_in, trace};
+use fosssim_student::{Student, find, plain::formula_in, record_trace};
 use std::{fs, path::Path};
 
 #[expect(clippy::disallowed_methods, reason = "the scenes of the suites belong to a crate above this one")]
@@ -18,7 +18,7 @@ fn scenes() -> Vec<Scene> {
 /// All that the traces of a program with this mistake say together: it is of the search.
 fn told(id: &str, scenes: &[Scene]) -> WrongPairs {
     let student = Student::new(find(id).map(|row| row.mistake));
-    let explained = |scene: &Scene| explain(scene, &trace(scene, student).expect("a trace"));
+    let explained = |scene: &Scene| explain(scene, &record_trace(scene, student).expect("a trace"));
     let traces: Vec<Vec<Explanation>> = scenes.iter().map(explained).collect();
     let told = explain_together(traces.iter().map(Vec::as_slice), &[]);
     let [Explanation { about: About::Pairs(wrong), .. }] = &told[..] else { panic!("{id}: {told:#?}") };
@@ -58,7 +58,8 @@ fn wrong_pairs_are_told_with_what_they_have_in_common() {
 fn no_pair_of_any_kind_is_found_without_a_search() {
     let mut told: Vec<Explanation> = Vec::new();
     for scene in scenes() {
-        let trace = trace(&Scene { collision: Collision::None, ..scene.clone() }, Student::default()).expect("a trace");
+        let trace =
+            record_trace(&Scene { collision: Collision::None, ..scene.clone() }, Student::default()).expect("a trace");
         told.extend(explain(&scene, &trace));
     }
     let kinds: Vec<&PairCounts> = told

@@ -12,7 +12,7 @@ use fosssim_num::{
 fosssim_model::drops_leading!();
 
 /// The largest allowed deviation of a coefficient, relative to its bound; both sides are rounded.
-const TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
+const COEFFICIENT_TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
 /// Returns the logged coefficient of a power; `None` if it was dropped.
 pub(super) fn logged_at(logged: &[f64], power: usize) -> Option<f64> {
@@ -26,7 +26,7 @@ pub(super) fn expected_at(expected: &[BoundedValue], power: usize) -> BoundedVal
 
 /// Returns whether one logged coefficient is `scale` times the expected one; false for NaN.
 pub(super) fn coefficient_matches(expected: BoundedValue, logged: Option<f64>, scale: f64) -> bool {
-    let room = TOLERANCE * scale.abs() * expected.bound;
+    let room = COEFFICIENT_TOLERANCE * scale.abs() * expected.bound;
     match logged {
         Some(value) => (value - scale * expected.value).abs() <= room,
         None => (scale * expected.value).abs() <= LEADING_COEFFICIENT + room,
@@ -37,7 +37,7 @@ pub(super) fn coefficient_matches(expected: BoundedValue, logged: Option<f64>, s
 /// from values of the polynomial. Then all coefficients have the rounding error of the largest one.
 pub(super) fn matches(expected: &[BoundedValue], logged: &[f64], scale: f64) -> bool {
     let norm: f64 = expected.iter().map(|coefficient| coefficient.bound).sum();
-    let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / TOLERANCE * norm;
+    let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / COEFFICIENT_TOLERANCE * norm;
     (0..expected.len().max(logged.len())).all(|power| {
         let BoundedValue { value, bound } = expected_at(expected, power);
         coefficient_matches(BoundedValue { value, bound: bound.max(least) }, logged_at(logged, power), scale)

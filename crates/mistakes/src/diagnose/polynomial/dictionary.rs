@@ -2,7 +2,7 @@
 use fosssim_num::bounded::BoundedValue;
 use fosssim_student::assignments::t2m2::{
     Inputs, Subject,
-    extras::{HALF_PLANE_EXTRAS, extras},
+    extras::{HALF_PLANE_EXTRAS, extra_letters},
     formulas::{Formula, Letter, product},
 };
 use std::borrow::Cow;
@@ -32,7 +32,8 @@ impl Dictionary {
             let bare = extra.name.trim_matches(['(', ')']);
             formula.letters.iter().all(|letter| letter.name != bare && letter.meaning != bare)
         };
-        let letters: Vec<&Letter> = formula.letters.iter().chain(extras(subject).iter().filter(is_new)).collect();
+        let letters: Vec<&Letter> =
+            formula.letters.iter().chain(extra_letters(subject).iter().filter(is_new)).collect();
         let mut lists: Vec<Vec<usize>> = Vec::new();
         let longest = formula.terms.iter().map(|term| term.letters.len()).max().unwrap_or(1);
         match longest {

@@ -8,13 +8,13 @@ use fosssim_student::assignments::t2m2::Input;
 fosssim_model::drops_leading!();
 
 /// Returns the example of a study, with the number of characters of its inputs.
-pub(super) fn smallest(study: &PolynomialStudy) -> Option<(usize, Example)> {
+pub(super) fn smallest_example(study: &PolynomialStudy) -> Option<(usize, Example)> {
     let wrong = study.cases.iter().filter(|case| !case.right);
-    let best = wrong.min_by_key(|case| (digits(case), case.sample.step, case.sample.pass))?;
-    Some((digits(best), example(study, best)))
+    let best = wrong.min_by_key(|case| (count_digits(case), case.sample.step, case.sample.pass))?;
+    Some((count_digits(best), build_example(study, best)))
 }
 
-fn example(study: &PolynomialStudy, case: &Case) -> Example {
+fn build_example(study: &PolynomialStudy, case: &Case) -> Example {
     let sample = case.sample;
     let expected: Vec<f64> = case.expected.iter().map(|coefficient| coefficient.value).collect();
     Example {
@@ -28,7 +28,7 @@ fn example(study: &PolynomialStudy, case: &Case) -> Example {
 }
 
 /// Returns the number of characters of the inputs.
-fn digits(case: &Case) -> usize {
+fn count_digits(case: &Case) -> usize {
     example_values(&case.sample.motion).iter().flat_map(|input| &input.value).map(|value| value.to_string().len()).sum()
 }
 
@@ -39,11 +39,11 @@ fn example_values(motion: &PairMotion) -> Vec<ExampleValue> {
             motion_values(&[*center, ends[0], ends[1]], [Input::R1, Input::Re], radii)
         }
         PairMotion::HalfPlane { center, radius, point, normal } => vec![
-            vector(Input::X, center.start),
-            vector(Input::Dx, center.shift),
-            vector(Input::P, *point),
-            vector(Input::N, *normal),
-            number(Input::R, *radius),
+            vector_value(Input::X, center.start),
+            vector_value(Input::Dx, center.shift),
+            vector_value(Input::P, *point),
+            vector_value(Input::N, *normal),
+            number_value(Input::R, *radius),
         ],
     }
 }
@@ -51,14 +51,14 @@ fn example_values(motion: &PairMotion) -> Vec<ExampleValue> {
 fn motion_values(points: &[PointMotion], names: [Input; 2], radii: &[f64; 2]) -> Vec<ExampleValue> {
     let starts = [Input::X1, Input::X2, Input::X3].into_iter().zip(points.iter().map(|point| point.start));
     let moves = [Input::Dx1, Input::Dx2, Input::Dx3].into_iter().zip(points.iter().map(|point| point.shift));
-    let vectors = starts.chain(moves).map(|(input, value)| vector(input, value));
-    vectors.chain(names.into_iter().zip(radii).map(|(input, value)| number(input, *value))).collect()
+    let vectors = starts.chain(moves).map(|(input, value)| vector_value(input, value));
+    vectors.chain(names.into_iter().zip(radii).map(|(input, value)| number_value(input, *value))).collect()
 }
 
-fn vector(input: Input, value: Vec2) -> ExampleValue {
+fn vector_value(input: Input, value: Vec2) -> ExampleValue {
     ExampleValue { input, value: vec![value.x, value.y] }
 }
 
-fn number(input: Input, value: f64) -> ExampleValue {
+fn number_value(input: Input, value: f64) -> ExampleValue {
     ExampleValue { input, value: vec![value] }
 }

@@ -44,7 +44,7 @@ const MAX_OTHER_KEYS: usize = 5;
 const NEARLY_RIGHT_ERROR: f64 = 1e-10;
 
 /// Guesses that cost at most this much more than the best one (see [`Candidate::cost`]) are reported with it.
-const AS_LIKELY: f64 = 1.6;
+const MAX_COST_DIFFERENCE: f64 = 1.6;
 
 /// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if
 /// none is wrong. Partial reproductions come last. A mistake that several polynomials share is reported once. Counts
@@ -58,7 +58,7 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     let subjects = PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied();
     let mut open: Vec<Suspect> = subjects
         .filter_map(|subject| PolynomialStudy::new(subject, samples))
-        .map(|study| Suspect { candidates: candidates(&study), study })
+        .map(|study| Suspect { candidates: collect_candidates(&study), study })
         .collect();
     let mut explanations: Vec<Explanation> = open.iter().filter_map(nearly_right).collect();
     open.retain(|suspect| nearly_right(suspect).is_none());
@@ -73,13 +73,13 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
         open.into_iter().partition(|suspect| suspect.candidates.is_empty());
     explanations.extend(open.iter().map(Suspect::explanation));
     explanations.extend(explain_none(&hopeless));
-    explanations.extend(missing(samples));
+    explanations.extend(explain_missing(samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
     explanations
 }
 
 /// Returns the explanation that polynomials are missing, if no detection of a kind has all of them.
-fn missing(samples: &[Sample]) -> Option<Explanation> {
+fn explain_missing(samples: &[Sample]) -> Option<Explanation> {
     let (mut subjects, mut details, mut count) = (Vec::new(), Vec::new(), 0);
     for kind in PairKind::ALL {
         let of_kind = || samples.iter().filter(|sample| sample.motion.kind() == kind);
@@ -91,7 +91,7 @@ fn missing(samples: &[Sample]) -> Option<Explanation> {
         subjects.extend(Subject::all_of_kind(kind).iter().skip(logged));
     }
     (!subjects.is_empty()).then(|| Explanation {
-        details: distinct(details, MAX_OTHER_KEYS),
+        details: take_distinct(details, MAX_OTHER_KEYS),
         reproduced: count,
         samples: count,
         ..Explanation::about(
@@ -129,7 +129,7 @@ impl Suspect<'_> {
         let claims = std::iter::once(first).chain(self.list_claims(others));
         let samples = self.study.cases.len() as u64;
         let equal = |other: &&Candidate| {
-            let is_likely = other.cost <= best.cost + AS_LIKELY;
+            let is_likely = other.cost <= best.cost + MAX_COST_DIFFERENCE;
             is_likely && other.reproduced == best.reproduced && other.guess.key() != best.guess.key()
         };
         let found = OfPolynomials::Guess(best.guess.clone());
@@ -137,12 +137,12 @@ impl Suspect<'_> {
             details: best.details.iter().cloned().map(|one| detail(one, &[self.study.subject])).collect(),
             reproduced: best.reproduced as u64,
             samples,
-            example: example::smallest(&self.study).map(|(_, example)| example),
-            same_as: distinct(
+            example: example::smallest_example(&self.study).map(|(_, example)| example),
+            same_as: take_distinct(
                 self.candidates.iter().filter(equal).map(|other| other.guess.key().to_owned()),
                 MAX_OTHER_KEYS,
             ),
-            claims: distinct(claims, usize::MAX),
+            claims: take_distinct(claims, usize::MAX),
             ..Explanation::about(best.guess.key(), About::Polynomials { subjects: vec![self.study.subject], found })
         }
     }
@@ -205,11 +205,11 @@ fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
 }
 
 /// Returns all guesses about a polynomial. The guess that reproduces most comes first; on a tie, the likeliest.
-fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
-    let mut all = structure::candidates(study);
+fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
+    let mut all = structure::collect_candidates(study);
     all.extend(misunderstandings(study));
-    all.extend(slips::candidates(study));
-    all.extend(terms::candidates(study));
+    all.extend(slips::collect_candidates(study));
+    all.extend(terms::collect_candidates(study));
     // A guess that reproduces no more than the right formula is not an explanation.
     let plain = study.plainly_right();
     all.retain(|guess| guess.reproduced > plain);
@@ -242,7 +242,7 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
     (error < NEARLY_RIGHT_ERROR && suspect.complete_guesses().next().is_none()).then(|| Explanation {
         details: vec![Detail::Polynomial(PolynomialDetail::RightUpTo(error))],
         samples,
-        example: example::smallest(study).map(|(_, example)| example),
+        example: example::smallest_example(study).map(|(_, example)| example),
         ..Explanation::about(
             Explanation::NEARLY_RIGHT,
             About::Polynomials { subjects: vec![study.subject], found: OfPolynomials::NearlyRight },
@@ -258,10 +258,10 @@ fn explain_none(hopeless: &[Suspect]) -> Option<Explanation> {
         suspect.study.differences(subject).into_iter().map(Detail::Polynomial)
     };
     Some(Explanation {
-        details: distinct(hopeless.iter().flat_map(lines), MAX_OTHER_KEYS),
+        details: take_distinct(hopeless.iter().flat_map(lines), MAX_OTHER_KEYS),
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
-        example: example::smallest(&first.study).map(|(_, example)| example),
-        claims: distinct(hopeless.iter().flat_map(|suspect| suspect.list_claims(std::iter::empty())), usize::MAX),
+        example: example::smallest_example(&first.study).map(|(_, example)| example),
+        claims: take_distinct(hopeless.iter().flat_map(|suspect| suspect.list_claims(std::iter::empty())), usize::MAX),
         ..Explanation::about(
             Explanation::UNEXPLAINED,
             About::Polynomials {
@@ -299,22 +299,23 @@ fn explain_shared(covered: &[Suspect], key: &str) -> Explanation {
         .filter_map(|suspect| suspect.complete_guesses().find(|candidate| candidate.guess.key() == key))
         .collect();
     let subjects: Vec<Subject> = covered.iter().map(|suspect| suspect.study.subject).collect();
-    let likely = covered[0].complete_guesses().filter(|candidate| candidate.cost <= guesses[0].cost + AS_LIKELY);
+    let likely =
+        covered[0].complete_guesses().filter(|candidate| candidate.cost <= guesses[0].cost + MAX_COST_DIFFERENCE);
     let others = likely.map(|candidate| candidate.guess.key()).filter(|other| {
         *other != key
             && covered.iter().all(|suspect| suspect.complete_guesses().any(|candidate| candidate.guess.key() == *other))
     });
     let samples = covered.iter().map(|suspect| suspect.study.cases.len() as u64).sum();
-    let examples = covered.iter().filter_map(|suspect| example::smallest(&suspect.study));
+    let examples = covered.iter().filter_map(|suspect| example::smallest_example(&suspect.study));
     let details = guesses.iter().flat_map(|guess| &guess.details).map(|one| detail(one.clone(), &subjects));
     let found = OfPolynomials::Guess(guesses[0].guess.clone());
     Explanation {
-        details: distinct(details, MAX_OTHER_KEYS),
+        details: take_distinct(details, MAX_OTHER_KEYS),
         reproduced: samples,
         samples,
         example: examples.min_by_key(|(digits, _)| *digits).map(|(_, example)| example),
-        same_as: distinct(others.map(str::to_owned), MAX_OTHER_KEYS),
-        claims: distinct(
+        same_as: take_distinct(others.map(str::to_owned), MAX_OTHER_KEYS),
+        claims: take_distinct(
             covered.iter().flat_map(|suspect| suspect.list_claims(suspect.complete_guesses())),
             usize::MAX,
         ),
@@ -323,7 +324,7 @@ fn explain_shared(covered: &[Suspect], key: &str) -> Explanation {
 }
 
 /// Returns the first `most` distinct values, in order.
-fn distinct<T: PartialEq>(all: impl IntoIterator<Item = T>, most: usize) -> Vec<T> {
+fn take_distinct<T: PartialEq>(all: impl IntoIterator<Item = T>, most: usize) -> Vec<T> {
     let mut list: Vec<T> = Vec::new();
     for one in all {
         if !list.contains(&one) && list.len() < most {

@@ -62,7 +62,7 @@ impl Trial<'_> {
 }
 
 /// Returns the one-letter slips that reproduce at least half of the wrong samples.
-pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
+pub(super) fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     study.formulas().flat_map(|(reading, formula)| in_formula(study, formula, reading)).collect()
 }
 

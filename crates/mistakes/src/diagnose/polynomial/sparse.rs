@@ -13,7 +13,7 @@ pub(super) type Support = Vec<(usize, f64)>;
 const SMALL_RESIDUAL: f64 = 1e-10;
 
 /// Columns that are used together must be at least this far from linear dependence.
-const INDEPENDENT: f64 = 1e-10;
+const MIN_INDEPENDENCE: f64 = 1e-10;
 
 /// The maximum number of columns for which all triples are tried.
 const MAX_FOR_TRIPLES: usize = 110;
@@ -133,7 +133,7 @@ impl DesignMatrix {
         let (size, count) = (chosen.len(), self.indices.len());
         let gram = DMatrix::from_fn(size, size, |row, column| self.gram[chosen[row] * count + chosen[column]]);
         let factor = gram.cholesky()?;
-        let is_dependent = |diagonal: f64| !(diagonal * diagonal > INDEPENDENT);
+        let is_dependent = |diagonal: f64| !(diagonal * diagonal > MIN_INDEPENDENCE);
         if factor.l_dirty().diagonal().iter().any(|&diagonal| is_dependent(diagonal)) {
             return None;
         }
@@ -176,7 +176,7 @@ impl Problem<'_> {
                 diagonal -= row[inner] * row[inner];
                 forward -= row[inner] * partial.forward[inner];
             }
-            if !(diagonal > INDEPENDENT) {
+            if !(diagonal > MIN_INDEPENDENCE) {
                 continue;
             }
             forward /= diagonal.sqrt();

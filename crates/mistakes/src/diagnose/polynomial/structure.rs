@@ -16,7 +16,7 @@ fosssim_model::drops_leading!();
 const SINGLE_ROUNDOFF: f64 = 1.0 / (1_u64 << 24) as f64;
 
 /// Returns the structural guesses that reproduce at least half of the wrong samples.
-pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
+pub(super) fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut found = Vec::new();
     add_properties(study, &mut found);
     add_rearrangements(study, &mut found);

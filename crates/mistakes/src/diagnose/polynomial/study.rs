@@ -17,14 +17,14 @@ fosssim_model::drops_leading!();
 const MAX_CASES: usize = 1200;
 
 /// The number of wrong samples on which a guess is tried before it is tried on all.
-const PROBES: usize = 12;
+const PROBE_COUNT: usize = 12;
 
 /// For each this many right samples, one may contradict a guess because of round-off.
-const SPARED: usize = 50;
+const SAMPLES_PER_EXCEPTION: usize = 50;
 
 /// The relative difference below which ratios to the expected coefficients are equal. The limit allows for the rounding
 /// of coefficients whose terms cancel down to a ten-thousandth.
-const ALIKE: f64 = 1e-9;
+const RATIO_TOLERANCE: f64 = 1e-9;
 
 /// One polynomial of one sample.
 pub(super) struct Case<'a> {
@@ -92,9 +92,9 @@ impl<'a> PolynomialStudy<'a> {
         if cases.iter().all(|case| case.right) {
             return None;
         }
-        let cases = thin(cases);
+        let cases = thin_out(cases);
         let all_wrong: Vec<usize> = (0..cases.len()).filter(|&index| !cases[index].right).collect();
-        let probes = spread(all_wrong.len(), PROBES).map(|index| all_wrong[index]).collect();
+        let probes = spread_indices(all_wrong.len(), PROBE_COUNT).map(|index| all_wrong[index]).collect();
         let mut study = Self { subject, cases, wrong: all_wrong.len(), probes };
         study.find_scales();
         Some(study)
@@ -144,7 +144,8 @@ impl<'a> PolynomialStudy<'a> {
         let all_right = self.cases.len() - self.wrong;
         // A mistake that reproduces all wrong samples may occur only under a condition, so right samples do not
         // contradict it.
-        let is_enough = wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SPARED);
+        let is_enough =
+            wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SAMPLES_PER_EXCEPTION);
         is_enough.then_some(wrong + right)
     }
 
@@ -214,7 +215,7 @@ impl<'a> PolynomialStudy<'a> {
     fn agreeing_powers(&self, ratios: &[Option<f64>]) -> Vec<usize> {
         let agrees = |case: &Case, anchor: Option<f64>, power: usize| {
             let (anchor, other) = (anchor?, ratio(case, power)?);
-            Some(anchor > 0.0 && (other - anchor).abs() <= ALIKE * anchor)
+            Some(anchor > 0.0 && (other - anchor).abs() <= RATIO_TOLERANCE * anchor)
         };
         let powers = 0..=self.subject.degree();
         powers
@@ -277,7 +278,7 @@ pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
 }
 
 /// Returns `count` indices below `length`, evenly spread; all indices if there are fewer.
-pub(super) fn spread(length: usize, count: usize) -> impl Iterator<Item = usize> {
+pub(super) fn spread_indices(length: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(length);
     (0..count).map(move |index| index * length / count)
 }
@@ -302,13 +303,13 @@ fn forgive_small_scales(cases: &mut [Case]) {
 }
 
 /// Keeps at most [`MAX_CASES`] samples in their order, preferring wrong ones.
-fn thin(cases: Vec<Case>) -> Vec<Case> {
+fn thin_out(cases: Vec<Case>) -> Vec<Case> {
     if cases.len() <= MAX_CASES {
         return cases;
     }
     let chosen = |right: bool, count: usize| {
         let of_kind: Vec<usize> = (0..cases.len()).filter(|&index| cases[index].right == right).collect();
-        spread(of_kind.len(), count).map(|index| of_kind[index]).collect::<Vec<_>>()
+        spread_indices(of_kind.len(), count).map(|index| of_kind[index]).collect::<Vec<_>>()
     };
     let wrong = chosen(false, MAX_CASES * 3 / 4);
     let right = chosen(true, MAX_CASES - wrong.len());

@@ -4,7 +4,7 @@ use super::{
     compare::{coefficient_matches, expected_at, logged_at},
     dictionary::Dictionary,
     sparse::{DesignMatrix, Support},
-    study::{Candidate, Case, PolynomialStudy, median, spread},
+    study::{Candidate, Case, PolynomialStudy, median, spread_indices},
 };
 use crate::diagnose::{CoefficientGuess, Guess, PolynomialDetail, Weight};
 use fosssim_num::bounded::BoundedValue;
@@ -21,7 +21,7 @@ const WEIGHT_STEP: f64 = 0.25;
 
 /// The maximum distance of a fitted weight from a multiple of the step, in steps; the normal equations are accurate
 /// enough for this.
-const SNAPPING: f64 = 1e-3;
+const SNAP_DISTANCE: f64 = 1e-3;
 
 /// The largest weight that is considered a slip.
 const MAX_WEIGHT: f64 = 64.0;
@@ -58,7 +58,7 @@ impl FormulaGuess {
 }
 
 /// Returns the guesses about all wrong coefficients, if at least one coefficient can be explained.
-pub(super) fn candidates(study: &PolynomialStudy) -> Vec<Candidate> {
+pub(super) fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     study.formulas().filter_map(|(reading, formula)| candidate(study, formula, reading)).collect()
 }
 
@@ -255,7 +255,9 @@ impl<'a> Fitting<'a> {
         let (right, wrong): (Vec<usize>, Vec<usize>) = if present.len() < MIN_ROWS { all } else { present }
             .into_iter()
             .partition(|&index| self.holds(index, power, self.coefficient(index, power)));
-        let few = |list: &[usize], count: usize| spread(list.len(), count).map(|index| list[index]).collect::<Vec<_>>();
+        let few = |list: &[usize], count: usize| {
+            spread_indices(list.len(), count).map(|index| list[index]).collect::<Vec<_>>()
+        };
         let mut rows = few(&wrong, MAX_ROWS);
         rows.extend(few(&right, MAX_ROWS / 2));
         rows
@@ -269,7 +271,7 @@ fn snap(support: &Support) -> Option<Vec<(usize, f64)>> {
         .map(|&(product, weight)| {
             let steps = weight / WEIGHT_STEP;
             let whole = steps.round();
-            let is_whole = (steps - whole).abs() <= SNAPPING && whole != 0.0 && weight.abs() <= MAX_WEIGHT;
+            let is_whole = (steps - whole).abs() <= SNAP_DISTANCE && whole != 0.0 && weight.abs() <= MAX_WEIGHT;
             is_whole.then_some((product, whole * WEIGHT_STEP))
         })
         .collect()

@@ -71,7 +71,7 @@ impl Observer for Capture {
         }
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         if let Some(pass) = self.pass {
             let log: &mut PolynomialLog = &mut self.records.end.polynomials;
             self.detections.push((detection.pair, pass, log.len()));
@@ -87,13 +87,13 @@ impl Observer for Capture {
         }
     }
 
-    fn impulse(&mut self, impulse: &Impulse) {
+    fn observe_impulse(&mut self, impulse: &Impulse) {
         if self.logs_impulses {
             self.records.end.impulses.push((*impulse).into());
         }
     }
 
-    fn synchronization(&mut self, state: &State) {
+    fn observe_synchronization(&mut self, state: &State) {
         let StepRecords { mid: Some(mid), end } = &mut self.records else { return };
         mid.state.clone_from(state);
         mid.impulses.clone_from(&end.impulses);
@@ -101,11 +101,11 @@ impl Observer for Capture {
         mid.polynomials.ends.clone_from(&end.polynomials.ends);
     }
 
-    fn failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
+    fn observe_failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
         self.event(17 + 2 * u32::from(zone.half_plane) + u32::from(zone.particles.len() > 2));
     }
 
-    fn zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
+    fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         if zones.len() > 1 {
             self.event(21);
         }

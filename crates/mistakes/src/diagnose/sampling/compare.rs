@@ -55,7 +55,8 @@ impl Tolerance {
 }
 
 /// The tolerance above which a difference is clearly not round-off.
-pub const PLAIN: Tolerance = Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
+pub const CLEAR_TOLERANCE: Tolerance =
+    Tolerance { coefficient: 1e-7, floor: 1e-9, state: 1e-8, normal: 1e-8, time: 1e-6 };
 
 /// The tolerance for a step whose start and end states were rounded to single precision.
 pub const SINGLE_PRECISION: Tolerance =
@@ -180,13 +181,13 @@ pub fn same_polynomials(ours: &PolynomialLog, theirs: &PolynomialLog, by: &Toler
 /// Returns whether one polynomial is a positive multiple of the other (both with the highest power first and without
 /// small leading coefficients).
 pub fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
-    if multiple(expected, actual, 1.0, by) {
+    if is_multiple(expected, actual, 1.0, by) {
         return true;
     }
     let length = expected.len().max(actual.len());
     let dot = |a: &[f64], b: &[f64]| -> f64 { (0..length).map(|power| power_of(a, power) * power_of(b, power)).sum() };
     let factor = dot(actual, expected) / dot(expected, expected);
-    factor > 0.0 && factor.is_finite() && multiple(expected, actual, factor, by)
+    factor > 0.0 && factor.is_finite() && is_multiple(expected, actual, factor, by)
 }
 
 /// Returns whether two polynomials are equal, for formulas whose coefficients were not dropped.
@@ -196,7 +197,7 @@ pub fn same_formula(expected: &[BoundedValue], actual: &[f64], by: &Tolerance) -
 }
 
 /// Returns whether `actual` is `factor * expected`.
-fn multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) -> bool {
+fn is_multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) -> bool {
     let largest = expected.iter().fold(0.0_f64, |largest, c| largest.max((factor * c).abs()));
     let length = expected.len().max(actual.len());
     (0..length).all(|power| {

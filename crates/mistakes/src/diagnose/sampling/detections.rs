@@ -67,7 +67,7 @@ impl<'a> Detections<'a> {
 
     /// Collects the samples of a step. If a step has no result, the rest of the trace is not used, and the samples so
     /// far are kept.
-    pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
+    pub fn examine_step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
         let is_full = self.kinds.values().all(|kind| kind.wrong >= MAX_WRONG);
         if is_full || !Layout::for_scene(self.scene).has_polynomials {
             return;

@@ -9,7 +9,7 @@ mod source;
 
 pub use capture::Capture;
 pub use compare::{
-    LoggedNumbers, PLAIN, ROUND_OFF, StepDifference, StepRecords, Tolerance, first_difference, same_formula,
+    CLEAR_TOLERANCE, LoggedNumbers, ROUND_OFF, StepDifference, StepRecords, Tolerance, first_difference, same_formula,
     same_impulse, same_polynomial, state_difference,
 };
 pub use detections::{Detections, Sample, bodies};
@@ -39,9 +39,9 @@ pub fn sample_trace<'a>(scene: &'a Scene, source: Source<'a>) -> TraceSamples<'a
         (FirstNotFinite::default(), Scanner::new(scene), Detections::new(scene));
     first.begin(&steps.frames);
     while let Some(step) = steps.next() {
-        first.step(&mut reference, scene, step, &steps.frames);
-        scanner.step(&mut reference, step, &steps.frames);
-        detections.step(&mut reference, step, &steps.frames);
+        first.examine_step(&mut reference, scene, step, &steps.frames);
+        scanner.examine_step(&mut reference, step, &steps.frames);
+        detections.examine_step(&mut reference, step, &steps.frames);
     }
     TraceSamples {
         not_finite: first.explanation(),

@@ -17,13 +17,13 @@ pub struct Reference<'a> {
 /// The maximum number of polynomials that programs with mistakes may compute for one explanation. Unusual steps of root
 /// searches count, too. Explanations of sample programs need up to four million. With a lower limit, combinations of
 /// mistakes are no longer found; with a higher limit, a hostile trace takes longer to explain.
-const TRIALS: u64 = 5_000_000;
+const MAX_TRIAL_WORK: u64 = 5_000_000;
 
 impl<'a> Reference<'a> {
     /// Creates the reference for a trace of a scene.
     pub fn new(scene: &'a Scene) -> Self {
         let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-        Self { simulation, budget: Budget::new(scene, false), trials: Cell::new(TRIALS) }
+        Self { simulation, budget: Budget::new(scene, false), trials: Cell::new(MAX_TRIAL_WORK) }
     }
 
     /// Returns the end state of a step from `before`; `None` if it has no result, or the budget is used up.

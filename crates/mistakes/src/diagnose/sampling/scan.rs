@@ -20,12 +20,12 @@ use std::collections::{BTreeMap, BTreeSet};
 const MAX_WRONG: usize = 200;
 const MAX_RIGHT: usize = 40;
 /// The first this many similar wrong steps are all kept; of further ones, only some are kept.
-const FIRST_ALIKE: u32 = 8;
-const ALIKE: u32 = 16;
+const SIMILAR_KEPT: u32 = 8;
+const SIMILAR_SAMPLING_RATE: u32 = 16;
 /// The number of similar right steps that are kept.
 const RIGHT_ALIKE: u32 = 3;
 /// The number of wrong steps that are tried first.
-const PROBES: usize = 8;
+const PROBE_STEPS: usize = 8;
 /// The maximum memory of kept steps, in bytes.
 const MAX_MEMORY: usize = 24 << 20;
 
@@ -81,7 +81,7 @@ impl Scan {
     pub fn probes(&self) -> Vec<&KeptStep> {
         let mut signatures = BTreeSet::new();
         let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
-        let mut probes: Vec<&KeptStep> = self.wrong.iter().filter(is_probe).take(PROBES).collect();
+        let mut probes: Vec<&KeptStep> = self.wrong.iter().filter(is_probe).take(PROBE_STEPS).collect();
         probes.sort_by_key(|kept| kept.records.end.polynomials.len());
         probes
     }
@@ -124,7 +124,7 @@ impl Scanner {
     }
 
     /// Examines one step, and keeps it if it is useful.
-    pub fn step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
+    pub fn examine_step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
         let StepFrames { before, mid, end } = frames;
         if !before.state.positions.iter().chain(&before.state.velocities).all(|value| value.is_finite())
             || reference.step(step, &before.state, &mut self.capture).is_none()
@@ -135,7 +135,7 @@ impl Scanner {
         let difference = first_difference(&self.capture.records, &actual, &self.round_off);
         let signature = self.signature(difference, &actual);
         if !actual.is_finite() {
-            if self.capture.events != 0 && self.not_finite.len() < PROBES {
+            if self.capture.events != 0 && self.not_finite.len() < PROBE_STEPS {
                 let (before, context) = (before.state.clone(), Context::default());
                 self.not_finite.push(KeptStep { step, before, records: actual, difference, context, signature });
             }
@@ -147,7 +147,7 @@ impl Scanner {
         let number = *count;
         *count += 1;
         let wanted = if difference.is_some() {
-            self.scan.wrong.len() < MAX_WRONG && (number < FIRST_ALIKE || number.is_multiple_of(ALIKE))
+            self.scan.wrong.len() < MAX_WRONG && (number < SIMILAR_KEPT || number.is_multiple_of(SIMILAR_SAMPLING_RATE))
         } else {
             self.scan.right.len() < MAX_RIGHT && number < RIGHT_ALIKE
         };

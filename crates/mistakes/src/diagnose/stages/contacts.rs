@@ -1,7 +1,7 @@
 //! Finds faults in the impulse lists of `continuous-time`: surplus and missing contacts, wrong vectors and times, and a
 //! wrong order of pairs.
 use super::{
-    ALIKE, Explanation, common_value,
+    Explanation, RATIO_TOLERANCE, common_value,
     events::{Hit, StepFacts},
     observation, range, ratios,
 };
@@ -14,7 +14,7 @@ use fosssim_num::vector::{Vec2, length};
 
 /// Returns the explanation that the pairs of the first pass are in a different order, if all polynomials of the pass
 /// are logged.
-pub(super) fn order(facts: &[StepFacts]) -> Option<Explanation> {
+pub(super) fn explain_order(facts: &[StepFacts]) -> Option<Explanation> {
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula()).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
     (permuted > 0 && 2 * permuted > wrong.len())
@@ -65,7 +65,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
 }
 
 /// The maximum relative error of a contact vector that is only inaccurate.
-const INEXACT: f64 = 1e-5;
+const INEXACT_ERROR: f64 = 1e-5;
 
 /// The contacts of all steps, with those of the reference.
 #[derive(Default)]
@@ -79,11 +79,11 @@ struct ContactStage {
 }
 
 /// Returns the fault in the contacts of `continuous-time`, if its polynomials are right.
-pub(super) fn detection(facts: &[StepFacts]) -> Option<Explanation> {
+pub(super) fn explain_detection(facts: &[StepFacts]) -> Option<Explanation> {
     let mut contacts = ContactStage::default();
     facts.iter().filter(|facts| facts.is_continuous()).for_each(|facts| contacts.compare_step(facts));
     // A wrong time may also cause wrong decisions.
-    contacts.times().or_else(|| contacts.decisions()).or_else(|| contacts.vectors())
+    contacts.explain_times().or_else(|| contacts.explain_decisions()).or_else(|| contacts.explain_vectors())
 }
 
 /// Returns the fault in the contacts at the end of steps, each compared with the reference's. The first difference of a
@@ -106,7 +106,7 @@ pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)
         }
     }
     let wrong = match (contacts.missed.is_empty(), contacts.superfluous.is_empty()) {
-        (true, true) => return contacts.vectors(),
+        (true, true) => return contacts.explain_vectors(),
         (false, true) => WrongDecisions::Missed,
         (true, false) => WrongDecisions::Superfluous,
         (false, false) => WrongDecisions::Both,
@@ -178,7 +178,7 @@ impl ContactStage {
         false
     }
 
-    fn decisions(&self) -> Option<Explanation> {
+    fn explain_decisions(&self) -> Option<Explanation> {
         let wrong = match (self.missed.is_empty(), self.superfluous.is_empty()) {
             (true, true) => return None,
             (false, true) => WrongDecisions::Missed,
@@ -201,7 +201,7 @@ impl ContactStage {
         Some(observation(StageFault::Decisions { kind, wrong }, details, listed.len()))
     }
 
-    fn vectors(&self) -> Option<Explanation> {
+    fn explain_vectors(&self) -> Option<Explanation> {
         if self.vectors.is_empty() {
             return None;
         }
@@ -209,17 +209,17 @@ impl ContactStage {
         let along: Vec<f64> = self.vectors.iter().map(|(_, ours, theirs)| theirs.dot(ours) / ours.dot(ours)).collect();
         let off = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
             let along = theirs.dot(ours) / ours.dot(ours) * *ours;
-            length(*theirs - along) > ALIKE * length(*theirs)
+            length(*theirs - along) > RATIO_TOLERANCE * length(*theirs)
         };
         let right_angle = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| {
             let size = length(*ours) * length(*theirs);
-            size > 0.0 && theirs.dot(ours).abs() <= ALIKE * size
+            size > 0.0 && theirs.dot(ours).abs() <= RATIO_TOLERANCE * size
         };
         let part = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| length(*theirs - *ours) / length(*ours);
-        let is_zero = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| length(*theirs) <= INEXACT * length(*ours);
+        let is_zero = |(_, ours, theirs): &(PairKind, Vec2, Vec2)| length(*theirs) <= INEXACT_ERROR * length(*ours);
         let parts = || self.vectors.iter().map(part);
         let wrong = match () {
-            () if parts().all(|part| part <= INEXACT) => WrongVectors::Inexact,
+            () if parts().all(|part| part <= INEXACT_ERROR) => WrongVectors::Inexact,
             () if self.vectors.iter().all(is_zero) => WrongVectors::Zero,
             () if self.vectors.iter().all(right_angle) => WrongVectors::Perpendicular,
             () if self.vectors.iter().any(off) => WrongVectors::Direction,
@@ -236,7 +236,7 @@ impl ContactStage {
         Some(observation(fault, details, listed.len()))
     }
 
-    fn times(&self) -> Option<Explanation> {
+    fn explain_times(&self) -> Option<Explanation> {
         if self.times.is_empty() {
             return None;
         }

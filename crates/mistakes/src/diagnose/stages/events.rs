@@ -68,10 +68,10 @@ impl StepEvents<'_> {
         }
         let expected = BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();
         let values = |form: &[BoundedValue]| form.iter().map(|one| one.value).collect::<Vec<f64>>();
-        if let Some(other) = expected.other_form(APPROACH).map(values)
-            && other != values(expected.polynomial(APPROACH))
+        if let Some(other) = expected.other_form(APPROACH_INDEX).map(values)
+            && other != values(expected.polynomial(APPROACH_INDEX))
         {
-            self.heard.other_forms.push((self.heard.polynomials + APPROACH, other));
+            self.heard.other_forms.push((self.heard.polynomials + APPROACH_INDEX, other));
         }
     }
 }
@@ -88,7 +88,7 @@ impl Observer for StepEvents<'_> {
         }
     }
 
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         self.keep_other_form(detection);
         let heard = &mut self.heard;
         if let Decision::Hit { time, normal } = detection.decision {
@@ -99,14 +99,14 @@ impl Observer for StepEvents<'_> {
         heard.polynomials += detection.polynomials.len();
     }
 
-    fn failsafe(&mut self, round: u32, zone: &Zone<'_>) {
+    fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {
         let particles = zone.particles.iter().map(|&particle| particle as usize).collect();
         self.heard.zones.push(ZoneFacts { round, particles, half_plane: zone.half_plane });
     }
 }
 
 /// The index of an edge's approach among its polynomials.
-const APPROACH: usize = 3;
+const APPROACH_INDEX: usize = 3;
 
 /// Steers a step so that nothing collides.
 struct NoCollisions;
@@ -244,7 +244,7 @@ fn take_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[
         index < theirs.len().min(expected.end.polynomials.len())
             && !is_right(index)
             && same_polynomial(other, theirs.get(index), &ROUND_OFF)
-            && (index - APPROACH..index).all(is_right)
+            && (index - APPROACH_INDEX..index).all(is_right)
     };
     let taken: Vec<usize> = others.iter().filter(is_taken).map(|(index, _)| *index).collect();
     if taken.is_empty() {

@@ -1,7 +1,7 @@
 //! The impulse rounds of `hybrid`: their number, the positions that they use, and their result.
 //!
 //! The polynomials of a round show the positions at its beginning, which are the result of the previous round.
-use super::{ALIKE, Explanation, events::StepFacts, observation, responses::Responses};
+use super::{Explanation, RATIO_TOLERANCE, events::StepFacts, observation, responses::Responses};
 use crate::diagnose::{
     LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber,
     sampling::{ROUND_OFF, bodies},
@@ -19,14 +19,14 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses)
     if wrong.is_empty() {
         return None;
     }
-    rounds(&wrong, max_iterations)
+    explain_rounds(&wrong, max_iterations)
         .or_else(|| explain_prediction(scene, &wrong))
         .or_else(|| handed_over(&wrong, responses))
-        .or_else(|| later(scene, &wrong))
+        .or_else(|| explain_later_rounds(scene, &wrong))
 }
 
 /// Returns the fault in the decision whether the geometric part follows, if the impulse rounds are right.
-pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
+pub(super) fn explain_geometric(facts: &[StepFacts]) -> Option<Explanation> {
     let (mut left, mut superfluous, mut followed) = (0, 0, 0);
     for facts in facts.iter().filter(|facts| facts.has_right_middle()) {
         let ran_out = facts.passes.iter().any(|pass| matches!(pass.stage, Stage::Geometric { .. }));
@@ -46,7 +46,7 @@ pub(super) fn geometric(facts: &[StepFacts]) -> Option<Explanation> {
 }
 
 /// Returns the explanation of steps that log right polynomials, but too many or too few of them.
-fn rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
+fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     let mut seen: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {
         let (Some((passes, _)), Some((expected, actual))) = (facts.logged_passes(), facts.middles()) else { continue };
@@ -97,7 +97,7 @@ fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation
 
 /// Returns the index of the first number that differs by more than round-off.
 fn differs(ours: &[f64], theirs: &[f64]) -> Option<usize> {
-    let within = ROUND_OFF.state.max(ALIKE * 1e-3);
+    let within = ROUND_OFF.state.max(RATIO_TOLERANCE * 1e-3);
     ours.iter().zip(theirs).position(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
 }
 
@@ -168,7 +168,7 @@ impl SecondPass {
 }
 
 /// Returns the explanation of steps whose later rounds are wrong although the first one is right.
-fn later(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
+fn explain_later_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let reaches = |passes: usize| {
         let is_right = |facts: &&StepFacts| facts.right_polynomials >= passes * facts.pass_size();
         wrong.iter().all(is_right) && wrong.iter().all(|facts| !facts.hits.is_empty())

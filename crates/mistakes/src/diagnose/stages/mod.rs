@@ -29,7 +29,7 @@ const MAX_STEPS: usize = 120;
 const MAX_POLYNOMIALS: usize = 200_000;
 
 /// The relative difference below which ratios are equal.
-const ALIKE: f64 = 1e-6;
+const RATIO_TOLERANCE: f64 = 1e-6;
 
 /// Returns the observation about the stages of `steps`; `None` if polynomials with known inputs are wrong, or if
 /// nothing is wrong.
@@ -54,14 +54,14 @@ pub(super) fn explain<'a>(
     if facts.iter().all(|facts| !facts.is_wrong) {
         return None;
     }
-    if let Some(order) = contacts::order(&facts) {
+    if let Some(order) = contacts::explain_order(&facts) {
         return Some(order);
     }
     if facts.iter().any(|facts| facts.has_wrong_formula()) {
         return None;
     }
     let responses = responses::Responses::new(scene, &facts);
-    contacts::detection(&facts)
+    contacts::explain_detection(&facts)
         .or_else(|| responses.explain(&facts))
         .or_else(|| loops::explain(scene, &facts, &responses))
         .or_else(|| rigid::explain(scene, &facts))
@@ -81,7 +81,7 @@ fn common_value(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
     let middle = *sorted.get(sorted.len() / 2)?;
-    let is_alike = |value: &f64| (value - middle).abs() <= ALIKE * (1.0 + middle.abs());
+    let is_alike = |value: &f64| (value - middle).abs() <= RATIO_TOLERANCE * (1.0 + middle.abs());
     (middle.is_finite() && values.iter().all(is_alike)).then_some(middle)
 }
 

@@ -1,6 +1,6 @@
 //! Examines the changes that isolated contacts cause, body by body.
 use super::{
-    ALIKE, Explanation, common_value,
+    Explanation, RATIO_TOLERANCE, common_value,
     events::{Hit, StepFacts},
     observation, ratios,
 };
@@ -9,11 +9,11 @@ use fosssim_model::{
     scene::{Collision, Scene},
     sim::{PairKind, Stage, State},
 };
-use fosssim_num::vector::{Vec2, at, length, unit};
+use fosssim_num::vector::{Vec2, length, unit, vector_at};
 use std::collections::BTreeMap;
 
 /// The size below which changes count as round-off, relative to the numbers or 1, whichever is larger.
-const SMALL: f64 = 1e-11;
+const ROUND_OFF_LIMIT: f64 = 1e-11;
 
 /// The change caused by a contact.
 #[derive(Debug, Clone, Copy)]
@@ -161,19 +161,19 @@ fn explain_many(facts: &[StepFacts]) -> Option<Explanation> {
 
 fn change(particle: usize, quantity: Quantity, states: [&State; 3], u: Vec2) -> Change {
     let [before, expected, actual] = states.map(|state: &State| match quantity {
-        Quantity::Position => at(&state.positions, particle),
-        Quantity::Velocity => at(&state.velocities, particle),
+        Quantity::Position => vector_at(&state.positions, particle),
+        Quantity::Velocity => vector_at(&state.velocities, particle),
     });
     let (ours, theirs) = (expected - before, actual - before);
-    let small = SMALL * (1.0 + length(before) + length(expected));
+    let small = ROUND_OFF_LIMIT * (1.0 + length(before) + length(expected));
     let along = theirs.dot(&u);
     Change {
         ratio: (length(ours) > 100.0 * small).then(|| {
             let ratio = along / ours.dot(&u);
             if along.abs() <= small { 0.0 } else { ratio }
         }),
-        across: length(theirs - along * u) > small.max(ALIKE * length(ours)),
-        is_right: length(theirs - ours) <= small.max(ALIKE * length(ours)),
+        across: length(theirs - along * u) > small.max(RATIO_TOLERANCE * length(ours)),
+        is_right: length(theirs - ours) <= small.max(RATIO_TOLERANCE * length(ours)),
     }
 }
 
@@ -181,7 +181,7 @@ fn detail(changed: ChangedQuantity, wrong: &[Change], of: usize) -> StageDetail 
     let along: Vec<f64> = wrong.iter().filter_map(|change| change.ratio).collect();
     let amount = match common_value(&along) {
         _ if along.is_empty() => Amount::Unwanted,
-        Some(ratio) if ratio == 1.0 || (ratio - 1.0).abs() <= ALIKE => Amount::Right,
+        Some(ratio) if ratio == 1.0 || (ratio - 1.0).abs() <= RATIO_TOLERANCE => Amount::Right,
         _ => Amount::Ratio(ratios(&along)),
     };
     let across = wrong.iter().any(|change| change.across);

@@ -3,17 +3,17 @@
 //! A zone is wrong if other zones, moved correctly, explain the particles' positions. The failsafe is examined on right
 //! zones: those with one contact, or with particles that move as one body.
 use super::{
-    ALIKE, Explanation, common_value,
+    Explanation, RATIO_TOLERANCE, common_value,
     events::StepFacts,
     loops, observation, ratios,
-    zones::{Fate, FirstRound, Group, SMALL, are_near, center, spin},
+    zones::{Fate, FirstRound, Group, ROUND_OFF_LIMIT, are_near, center, spin},
 };
 use crate::diagnose::{StageDetail, StageFault, WrongMotion, WrongPositions, WrongZoneRounds, WrongZones};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::State,
 };
-use fosssim_num::vector::{Vec2, at, divide, length};
+use fosssim_num::vector::{Vec2, divide, length, vector_at};
 
 /// The angle below which a rotation counts as zero, in radians.
 const MIN_TURN: f64 = 1e-6;
@@ -29,7 +29,7 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     if wrong.is_empty() || facts.iter().any(|facts| facts.is_wrong && !facts.has_right_middle()) {
         return None;
     }
-    if let Some(geometric) = loops::geometric(facts) {
+    if let Some(geometric) = loops::explain_geometric(facts) {
         return Some(geometric);
     }
     if let Some(positions) = first_positions(scene, &wrong) {
@@ -39,7 +39,7 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     for facts in facts {
         moved.compare(scene, facts);
     }
-    moved.explain().or_else(|| before_failsafe(scene, &wrong)).or_else(|| rounds(scene, &wrong))
+    moved.explain().or_else(|| before_failsafe(scene, &wrong)).or_else(|| explain_rounds(scene, &wrong))
 }
 
 /// Returns whether the first geometric pass differs only by round-off. It is right for the positions after the rounds,
@@ -80,7 +80,7 @@ fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
         let (middle, end) = (&middle.state.positions, &facts.actual.end.state.positions);
         let pass = count_after(facts, 1) / facts.pass_size();
         facts.right_polynomials < count_after(facts, 2)
-            && middle.iter().zip(end).any(|(ours, theirs)| (ours - theirs).abs() > SMALL * (1.0 + ours.abs()))
+            && middle.iter().zip(end).any(|(ours, theirs)| (ours - theirs).abs() > ROUND_OFF_LIMIT * (1.0 + ours.abs()))
             && facts.detects(scene, pass, middle, |_| true)
     };
     let count = wrong.iter().filter(is_so).count();
@@ -89,7 +89,7 @@ fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
 }
 
 /// Returns the fault after the first round of zones.
-fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
+fn explain_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let (mut fewer, mut more, mut later, mut ends) = (0, 0, 0, Vec::new());
     for facts in wrong {
         let (ours, theirs) = (facts.expected.end.polynomials.len(), facts.actual.end.polynomials.len());
@@ -105,7 +105,7 @@ fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
         }
     }
     let rounds = match (fewer, more, later, ends.len()) {
-        (0, 0, 0, _) => return Some(velocities(scene, &ends)),
+        (0, 0, 0, _) => return Some(explain_velocities(scene, &ends)),
         (0, 0, _, 0) => WrongZoneRounds::Growth,
         (_, 0, 0, 0) => WrongZoneRounds::Fewer,
         (0, _, 0, 0) => WrongZoneRounds::More,
@@ -117,12 +117,12 @@ fn rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
 
 /// Returns the explanation of steps whose polynomials are right but whose end states are wrong: the velocities of zones
 /// with right positions.
-fn velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
+fn explain_velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
     let mut measured = MotionErrors::default();
     for facts in ends {
         let (expected, actual) = (&facts.expected.end.state, &facts.actual.end.state);
         let count = scene.particles.len();
-        if !(0..count).all(|one| are_near(at(&expected.positions, one), at(&actual.positions, one))) {
+        if !(0..count).all(|one| are_near(vector_at(&expected.positions, one), vector_at(&actual.positions, one))) {
             return observation(StageFault::AfterRounds, Vec::new(), ends.len());
         }
         let Some(last) = facts.zones.iter().map(|zone| zone.round).max() else { continue };
@@ -181,8 +181,8 @@ impl ZoneMotions {
 
     fn note_kept_velocities(&mut self, first: &FirstRound<'_>, zone: &Group) {
         for &one in &zone.particles {
-            let (was, is) = (at(&first.middle.velocities, one), at(&first.end.velocities, one));
-            if length(was) > SMALL {
+            let (was, is) = (vector_at(&first.middle.velocities, one), vector_at(&first.end.velocities, one));
+            if length(was) > ROUND_OFF_LIMIT {
                 let ratio = is.dot(&was) / was.dot(&was);
                 self.has_stopped_otherwise |= !are_near(is, ratio * was);
                 self.stopped.push(ratio);
@@ -250,12 +250,12 @@ impl MotionErrors {
         let (start, expected, end) = (&first.facts.before, first.expected_state(zone), first.end);
         let [from, ours, theirs] = [start, &expected, end].map(|state| center(scene, zone, state));
         let (should, does) = (ours - from, theirs - from);
-        if length(should) > SMALL {
+        if length(should) > ROUND_OFF_LIMIT {
             let ratio = does.dot(&should) / should.dot(&should);
             self.has_side_shift |= !are_near(does, ratio * should);
             self.shifts.push(ratio);
         } else {
-            self.has_side_shift |= length(does) > SMALL;
+            self.has_side_shift |= length(does) > ROUND_OFF_LIMIT;
         }
         if first.fate(zone) == Fate::Rigid {
             let [right, angle] =
@@ -279,9 +279,9 @@ impl MotionErrors {
     /// Compares velocities with the motion from the start to the end of the step.
     fn measure_velocities(&mut self, scene: &Scene, start: &State, end: &State, zone: &Group) {
         for &one in &zone.particles {
-            let motion = divide(at(&end.positions, one) - at(&start.positions, one), scene.time_step);
-            let velocity = at(&end.velocities, one);
-            if length(motion) > SMALL {
+            let motion = divide(vector_at(&end.positions, one) - vector_at(&start.positions, one), scene.time_step);
+            let velocity = vector_at(&end.velocities, one);
+            if length(motion) > ROUND_OFF_LIMIT {
                 let ratio = velocity.dot(&motion) / motion.dot(&motion);
                 self.has_other_velocity |= !are_near(velocity, ratio * motion);
                 self.velocities.push(ratio);
@@ -316,8 +316,8 @@ impl MotionErrors {
 
 /// Returns the fault in the rotations of zones, if some zones do not rotate as expected.
 fn describe_turn(ratios: &[f64]) -> WrongMotion {
-    let wrong = || ratios.iter().filter(|ratio| !((*ratio - 1.0).abs() <= ALIKE));
-    if wrong().all(|ratio| ratio.abs() <= ALIKE) {
+    let wrong = || ratios.iter().filter(|ratio| !((*ratio - 1.0).abs() <= RATIO_TOLERANCE));
+    if wrong().all(|ratio| ratio.abs() <= RATIO_TOLERANCE) {
         WrongMotion::NoTurn
     } else if wrong().all(|&ratio| 0.0 < ratio && ratio < 1.0) {
         WrongMotion::LessTurn
@@ -331,7 +331,7 @@ fn describe_turn(ratios: &[f64]) -> WrongMotion {
 }
 
 fn is_one(ratios: &[f64]) -> bool {
-    ratios.iter().all(|ratio| (ratio - 1.0).abs() <= ALIKE)
+    ratios.iter().all(|ratio| (ratio - 1.0).abs() <= RATIO_TOLERANCE)
 }
 
 /// Returns the angle by which the particles have turned about their center, in radians.
@@ -339,7 +339,7 @@ fn is_one(ratios: &[f64]) -> bool {
 fn turn(zone: &Group, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
     let (mut across, mut along) = (0.0, 0.0);
     for &one in &zone.particles {
-        let (was, is) = (at(&start.positions, one) - from, at(&end.positions, one) - to);
+        let (was, is) = (vector_at(&start.positions, one) - from, vector_at(&end.positions, one) - to);
         across += was.x * is.y - was.y * is.x;
         along += was.dot(&is);
     }

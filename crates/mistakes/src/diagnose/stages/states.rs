@@ -83,8 +83,8 @@ fn explain_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Optio
         entries.iter().filter(|one| one.expected.abs() > 1e-9).map(|one| one.actual / one.expected).collect();
     let (ratio, details) = match common_value(&ratios) {
         _ if ratios.len() < entries.len() => (ChangeRatio::Other, Vec::new()),
-        Some(ratio) if ratio.abs() < super::ALIKE => (ChangeRatio::Nothing, Vec::new()),
-        Some(ratio) if (ratio + 1.0).abs() < super::ALIKE => (ChangeRatio::Opposite, Vec::new()),
+        Some(ratio) if ratio.abs() < super::RATIO_TOLERANCE => (ChangeRatio::Nothing, Vec::new()),
+        Some(ratio) if (ratio + 1.0).abs() < super::RATIO_TOLERANCE => (ChangeRatio::Opposite, Vec::new()),
         Some(ratio) => (ChangeRatio::Factor, vec![StageDetail::Factor(ratio)]),
         None => (ChangeRatio::Other, Vec::new()),
     };

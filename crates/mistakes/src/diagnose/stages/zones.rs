@@ -8,11 +8,11 @@ use fosssim_model::{
 };
 use fosssim_num::{
     elementary,
-    vector::{Vec2, at, divide, length, put},
+    vector::{Vec2, divide, length, set_vector, vector_at},
 };
 
 /// The size below which differences count as round-off, relative to the numbers or 1, whichever is larger.
-pub(super) const SMALL: f64 = 1e-9;
+pub(super) const ROUND_OFF_LIMIT: f64 = 1e-9;
 /// The maximum number of particles of a zone for which every subset is tried.
 const MAX_PARTICLES: usize = 8;
 const MAX_CONTACTS: usize = 5;
@@ -43,7 +43,7 @@ impl Group {
         self.half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
     }
 
-    fn holds(&self, other: &Self) -> bool {
+    fn contains(&self, other: &Self) -> bool {
         other.particles.iter().all(|one| self.particles.contains(one))
     }
 }
@@ -113,7 +113,7 @@ impl<'a> FirstRound<'a> {
     /// Returns the contacts of a zone, one of each group of similar ones.
     pub(super) fn contacts_of(&self, zone: &Group) -> Vec<&Group> {
         let mut own: Vec<&Group> = Vec::new();
-        for contact in self.contacts.iter().filter(|contact| zone.holds(contact)) {
+        for contact in self.contacts.iter().filter(|contact| zone.contains(contact)) {
             if !own.contains(&contact) {
                 own.push(contact);
             }
@@ -146,8 +146,8 @@ impl<'a> FirstRound<'a> {
     }
 
     fn is_at(&self, state: &State, particle: usize) -> bool {
-        are_near(at(&self.end.positions, particle), at(&state.positions, particle))
-            && are_near(at(&self.end.velocities, particle), at(&state.velocities, particle))
+        are_near(vector_at(&self.end.positions, particle), vector_at(&state.positions, particle))
+            && are_near(vector_at(&self.end.velocities, particle), vector_at(&state.velocities, particle))
     }
 
     fn are_at(&self, state: &State, particles: &[usize]) -> bool {
@@ -271,8 +271,8 @@ impl<'a> FirstRound<'a> {
         if self.are_at(&free, &zone.particles) {
             return Fate::Wrong(WrongZones::MoveOn);
         }
-        let is_back = |one: &usize| are_near(at(&self.end.positions, *one), at(&stopped.positions, *one));
-        let rests = |one: &usize| length(at(&self.end.velocities, *one)) <= SMALL;
+        let is_back = |one: &usize| are_near(vector_at(&self.end.positions, *one), vector_at(&stopped.positions, *one));
+        let rests = |one: &usize| length(vector_at(&self.end.velocities, *one)) <= ROUND_OFF_LIMIT;
         let all = || zone.particles.iter();
         if all().all(is_back) {
             Fate::Wrong(WrongZones::KeepVelocities)
@@ -286,12 +286,13 @@ impl<'a> FirstRound<'a> {
     }
 
     fn motion(&self, zone: &Group) -> Fate {
-        let distance =
-            |state: &State, one: usize, two: usize| length(at(&state.positions, one) - at(&state.positions, two));
+        let distance = |state: &State, one: usize, two: usize| {
+            length(vector_at(&state.positions, one) - vector_at(&state.positions, two))
+        };
         let pairs = zone.particles.iter().flat_map(|&one| zone.particles.iter().map(move |&two| (one, two)));
         let is_rigid = pairs.into_iter().all(|(one, two)| {
             let (was, is) = (distance(&self.facts.before, one, two), distance(self.end, one, two));
-            (was - is).abs() <= SMALL * (1.0 + was)
+            (was - is).abs() <= ROUND_OFF_LIMIT * (1.0 + was)
         });
         if is_rigid { Fate::Rigid } else { Fate::Bent }
     }
@@ -302,19 +303,19 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
     let all = || group.particles.iter().copied();
     if stops {
         for one in all() {
-            put(&mut state.positions, one, at(&start.positions, one));
-            put(&mut state.velocities, one, Vec2::zeros());
+            set_vector(&mut state.positions, one, vector_at(&start.positions, one));
+            set_vector(&mut state.velocities, one, Vec2::zeros());
         }
         return;
     }
     let (center, to) = (center(scene, group, start), center(scene, group, state));
     let angle = spin(scene, group, start, state);
     for one in all() {
-        let arm = at(&start.positions, one) - center;
+        let arm = vector_at(&start.positions, one) - center;
         let across = Vec2::new(-arm.y, arm.x);
         let x = to + elementary::cos(angle) * arm + elementary::sin(angle) * across;
-        put(&mut state.positions, one, x);
-        put(&mut state.velocities, one, divide(x - at(&start.positions, one), scene.time_step));
+        set_vector(&mut state.positions, one, x);
+        set_vector(&mut state.velocities, one, divide(x - vector_at(&start.positions, one), scene.time_step));
     }
 }
 
@@ -324,8 +325,8 @@ pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -
     let (center, to) = (center(scene, group, start), center(scene, group, state));
     let (mut momentum, mut inertia) = (0.0, 0.0);
     for &one in &group.particles {
-        let arm = at(&start.positions, one) - center;
-        let moved = at(&state.positions, one) - at(&start.positions, one) - (to - center);
+        let arm = vector_at(&start.positions, one) - center;
+        let moved = vector_at(&state.positions, one) - vector_at(&start.positions, one) - (to - center);
         momentum += scene.particles[one].mass * (arm.x * moved.y - arm.y * moved.x);
         inertia += scene.particles[one].mass * arm.dot(&arm);
     }
@@ -335,10 +336,10 @@ pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -
 /// Returns the center of mass of a group.
 pub(super) fn center(scene: &Scene, group: &Group, state: &State) -> Vec2 {
     let mass = |one: usize| scene.particles[one].mass;
-    let sum = group.particles.iter().map(|&one| mass(one) * at(&state.positions, one)).sum::<Vec2>();
+    let sum = group.particles.iter().map(|&one| mass(one) * vector_at(&state.positions, one)).sum::<Vec2>();
     divide(sum, group.particles.iter().map(|&one| mass(one)).sum())
 }
 
 pub(super) fn are_near(one: Vec2, two: Vec2) -> bool {
-    length(one - two) <= SMALL * (1.0 + length(one))
+    length(one - two) <= ROUND_OFF_LIMIT * (1.0 + length(one))
 }

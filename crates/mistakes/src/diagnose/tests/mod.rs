@@ -20,7 +20,7 @@ fn a_mistake_beside_another_is_told_once() {
         #[expect(clippy::disallowed_methods, reason = "a test reads the scenes that come with the program")]
         let xml = std::fs::read(folder.join(name).with_extension("xml")).expect("a bundled scene");
         let scene = fosssim_model::scene::original::read(&xml).expect("a scene").scene;
-        explain(&scene, &student::trace(&scene, author).unwrap_or_else(|(bytes, _)| bytes))
+        explain(&scene, &student::record_trace(&scene, author).unwrap_or_else(|(bytes, _)| bytes))
     });
     for list in &explained {
         let twice = |one: &&Explanation| rows.iter().any(|row| is_in_other_words(one, row));
@@ -69,7 +69,7 @@ fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
     let said = |program: &[&Row], probe: &str| {
         let author = program.iter().fold(Student::default(), |student, row| student.with_mistake(Some(row.mistake)));
         let (_, scene) = scenes.iter().find(|(name, _)| name == probe).expect("a probe scene");
-        explain(scene, &student::trace(scene, author).unwrap_or_else(|(bytes, _)| bytes))
+        explain(scene, &student::record_trace(scene, author).unwrap_or_else(|(bytes, _)| bytes))
     };
     let empty = said(&[row("failsafe-empty")], "zones-turn-little-and-far");
     assert!(empty[0].key == "failsafe-empty" && empty[0].denies.contains(&"geometric-empty".to_owned()), "{empty:#?}");
@@ -85,7 +85,7 @@ fn a_trace_that_was_kept_in_part_is_explained() {
     let row = student::find("pe-radius-not-squared").expect("it is known");
     let (_, scene) =
         probe_scenes(Assignment::T2M2).into_iter().find(|(name, _)| name == "edges-struck").expect("a probe scene");
-    let trace = student::trace(&scene, Student::new(Some(row.mistake))).expect("it comes to an end");
+    let trace = student::record_trace(&scene, Student::new(Some(row.mistake))).expect("it comes to an end");
     let explained = |most: usize| {
         let mut kept = KeptTrace::new(most);
         std::io::copy(&mut kept.reader(&trace[..]), &mut std::io::sink()).expect("read");

@@ -12,7 +12,7 @@ fn scene(name: &str) -> Scene {
 }
 
 fn frames(scene: &Scene) -> Vec<LenientFrame> {
-    let trace = student::trace(scene, Student::default()).expect("it comes to an end");
+    let trace = student::record_trace(scene, Student::default()).expect("it comes to an end");
     let layout = Layout::for_scene(scene);
     let mut reader = Lenient::new(&trace[..], layout);
     let read = |_| {

@@ -37,7 +37,7 @@ struct Seen {
 }
 
 impl Observer for Seen {
-    fn detection(&mut self, detection: &Detection<'_>) {
+    fn observe_detection(&mut self, detection: &Detection<'_>) {
         let kind = detection.pair.kind;
         for (polynomial, greatest) in detection.polynomials.iter().zip(&mut self.greatest[kind]) {
             for (coefficient, greatest) in polynomial.coefficients().iter().rev().zip(greatest) {
@@ -94,7 +94,7 @@ fn every_kind_of_pair_collides() {
 
 /// The trace of a student's program; none if it would never end.
 fn trace(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
-    student::trace(scene, Student::new(row.map(|row| row.mistake))).ok()
+    student::record_trace(scene, Student::new(row.map(|row| row.mistake))).ok()
 }
 
 fn judged(scene: &Scene, trace: &[u8]) -> Judgement {

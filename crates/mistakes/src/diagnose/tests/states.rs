@@ -24,7 +24,7 @@ fn scene(text: &str) -> Scene {
 }
 
 fn right(scene: &Scene) -> Vec<u8> {
-    student::trace(scene, Student::default()).expect("a trace")
+    student::record_trace(scene, Student::default()).expect("a trace")
 }
 
 #[test]
@@ -69,7 +69,7 @@ fn collisions_of_bodies_that_are_apart_are_told() {
 fn a_known_mistake_in_one_scene_stands_for_what_others_show() {
     let scene = scene(FALL);
     let row = find("gravity-sign").expect("a row");
-    let named = explain(&scene, &student::trace(&scene, Student::new(Some(row.mistake))).expect("a trace"));
+    let named = explain(&scene, &student::record_trace(&scene, Student::new(Some(row.mistake))).expect("a trace"));
     let pulled = original::read(FALL.replace("fx=\"0.1\"", "fx=\"0.7\"").as_bytes()).expect("a scene").scene;
     let seen = explain(&scene, &right(&pulled));
     assert!(seen.len() == 1 && seen[0].is_of_stage(), "{seen:#?}");

@@ -1,5 +1,5 @@
 //! One element, mostly of a repeated kind, with the original's messages about its attributes (scene-format.md 5).
-use super::{Refusal, markup::Element, values};
+use super::{Rejection, markup::Element, values};
 use crate::scene::model::Color;
 use fosssim_num::vector::Vec2;
 
@@ -33,7 +33,7 @@ impl<'e> Item<'e> {
     }
 
     /// Returns the element's name in messages, such as `particle 3` or `backgroundcolor`.
-    pub(super) fn who(&self) -> String {
+    pub(super) fn describe(&self) -> String {
         self.number.map_or_else(|| self.kind.to_owned(), |number| format!("{} {number}", self.kind))
     }
 
@@ -42,58 +42,58 @@ impl<'e> Item<'e> {
     }
 
     /// Reads an integer. The messages for a missing and for an invalid value both contain `value of`.
-    pub(super) fn read_integer(&self, name: &str) -> Result<i32, Refusal> {
+    pub(super) fn read_integer(&self, name: &str) -> Result<i32, Rejection> {
         self.require(name, "value of ", "integer", values::integer)
     }
 
     /// Returns a scalar; only the message about a bad value contains `value of`.
-    pub(super) fn numeric(&self, name: &str) -> Result<f64, Refusal> {
+    pub(super) fn numeric(&self, name: &str) -> Result<f64, Rejection> {
         self.require(name, "", "numeric", values::scalar)
     }
 
     /// Returns two scalars, read like [`Item::numeric`].
-    pub(super) fn numerics(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
+    pub(super) fn numerics(&self, x: &str, y: &str) -> Result<Vec2, Rejection> {
         Ok(Vec2::new(self.numeric(x)?, self.numeric(y)?))
     }
 
     /// Reads two scalars, which messages call real numbers. The messages for a missing and for an invalid value both
     /// contain `value of`.
-    pub(super) fn reals(&self, x: &str, y: &str) -> Result<Vec2, Refusal> {
+    pub(super) fn reals(&self, x: &str, y: &str) -> Result<Vec2, Rejection> {
         let real = |name| self.require(name, "value of ", "real number", values::scalar);
         Ok(Vec2::new(real(x)?, real(y)?))
     }
 
-    pub(super) fn boolean(&self, name: &str) -> Result<bool, Refusal> {
+    pub(super) fn boolean(&self, name: &str) -> Result<bool, Rejection> {
         self.require(name, "", "boolean", values::boolean)
     }
 
     /// Returns an optional scalar whose message lacks `value of`.
-    pub(super) fn radius(&self, default: f64) -> Result<f64, Refusal> {
+    pub(super) fn radius(&self, default: f64) -> Result<f64, Rejection> {
         self.optional("radius", default, "", "scalar")
     }
 
-    pub(super) fn optional(&self, name: &str, default: f64, of: &str, what: &str) -> Result<f64, Refusal> {
+    pub(super) fn optional(&self, name: &str, default: f64, of: &str, what: &str) -> Result<f64, Rejection> {
         let Some(text) = self.text(name) else { return Ok(default) };
-        values::scalar(text).ok_or_else(|| self.refusal(of, name, &format!("Value must be {what}. Exiting.")))
+        values::scalar(text).ok_or_else(|| self.rejection(of, name, &format!("Value must be {what}. Exiting.")))
     }
 
     /// Returns the color in `r`, `g`, `b`, each checked before the next is read.
-    pub(super) fn color(&self) -> Result<Color, Refusal> {
+    pub(super) fn color(&self) -> Result<Color, Rejection> {
         let component = |name: &str| {
             let value = self.require(name, "value of ", "scalar", values::scalar)?;
             if (0.0..=1.0).contains(&value) {
                 Ok(value)
             } else {
-                Err(self.refusal("value of ", name, "Invalid color specified. Valid range is 0...1"))
+                Err(self.rejection("value of ", name, "Invalid color specified. Valid range is 0...1"))
             }
         };
         Ok(Color { red: component("r")?, green: component("g")?, blue: component("b")? })
     }
 
     /// Returns `Failed to parse [value of ]NAME attribute for WHO. END`
-    pub(super) fn refusal(&self, of: &str, name: &str, end: &str) -> Refusal {
-        let text = format!("Failed to parse {of}{name} attribute for {}. {end}", self.who());
-        Refusal::message(text.as_bytes(), self.exit_code)
+    pub(super) fn rejection(&self, of: &str, name: &str, end: &str) -> Rejection {
+        let text = format!("Failed to parse {of}{name} attribute for {}. {end}", self.describe());
+        Rejection::message(text.as_bytes(), self.exit_code)
     }
 
     fn require<T>(
@@ -102,8 +102,8 @@ impl<'e> Item<'e> {
         of_missing: &str,
         what: &str,
         read: impl Fn(&[u8]) -> Option<T>,
-    ) -> Result<T, Refusal> {
-        let text = self.text(name).ok_or_else(|| self.refusal(of_missing, name, "Exiting."))?;
-        read(text).ok_or_else(|| self.refusal("value of ", name, &format!("Value must be {what}. Exiting.")))
+    ) -> Result<T, Rejection> {
+        let text = self.text(name).ok_or_else(|| self.rejection(of_missing, name, "Exiting."))?;
+        read(text).ok_or_else(|| self.rejection("value of ", name, &format!("Value must be {what}. Exiting.")))
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static st
         cursor.skip(is_space);
         match (cursor.peek(0), depth) {
             (0, 0) => return Ok(children),
-            (0, _) => return Err(END),
+            (0, _) => return Err(UNEXPECTED_END),
             (b'<', 1..) if cursor.peek(1) == b'/' => {
                 cursor.close()?;
                 depth -= 1;
@@ -66,8 +66,8 @@ pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static st
     }
 }
 
-const END: &str = "unexpected end of data";
-const CLOSE: &str = "expected >";
+const UNEXPECTED_END: &str = "unexpected end of data";
+const EXPECTED_CLOSE: &str = "expected >";
 
 fn is_element_name(byte: u8) -> bool {
     !is_space(byte) && !matches!(byte, b'/' | b'>' | b'?' | 0)
@@ -103,7 +103,7 @@ impl<'t> Cursor<'t> {
 
     /// Advances past the next `end`.
     fn skip_past(&mut self, end: &[u8]) -> Result<(), &'static str> {
-        let found = self.rest().windows(end.len()).position(|window| window == end).ok_or(END)?;
+        let found = self.rest().windows(end.len()).position(|window| window == end).ok_or(UNEXPECTED_END)?;
         self.at += found + end.len();
         Ok(())
     }
@@ -112,7 +112,7 @@ impl<'t> Cursor<'t> {
         self.at += 2;
         self.skip(is_element_name);
         self.skip(is_space);
-        self.expect(b'>', CLOSE)
+        self.expect(b'>', EXPECTED_CLOSE)
     }
 
     /// Advances past `byte`.
@@ -158,7 +158,7 @@ impl<'t> Cursor<'t> {
         let mut depth = 0_usize;
         loop {
             match self.peek(0) {
-                0 => return Err(END),
+                0 => return Err(UNEXPECTED_END),
                 b'[' => depth += 1,
                 b']' => depth = depth.saturating_sub(1),
                 b'>' if depth == 0 => break,
@@ -192,8 +192,8 @@ impl<'t> Cursor<'t> {
             self.skip(is_space);
             attributes.push((name, value));
         }
-        let opens = self.expect(b'/', CLOSE).is_err();
-        self.expect(b'>', CLOSE)?;
+        let opens = self.expect(b'/', EXPECTED_CLOSE).is_err();
+        self.expect(b'>', EXPECTED_CLOSE)?;
         Ok((Element { name, attributes }, opens))
     }
 
@@ -218,10 +218,10 @@ impl<'t> Cursor<'t> {
 
     /// Translates one `&...;`; an unknown name is copied unchanged.
     fn translate_reference(&mut self, value: &mut Vec<u8>) -> Result<(), &'static str> {
-        const NAMED: [(&[u8], u8); 5] =
+        const NAMED_ENTITIES: [(&[u8], u8); 5] =
             [(b"&amp;", b'&'), (b"&apos;", b'\''), (b"&quot;", b'"'), (b"&gt;", b'>'), (b"&lt;", b'<')];
         let rest = self.rest();
-        if let Some((name, byte)) = NAMED.iter().find(|(name, _)| rest.starts_with(name)) {
+        if let Some((name, byte)) = NAMED_ENTITIES.iter().find(|(name, _)| rest.starts_with(name)) {
             value.push(*byte);
             self.at += name.len();
             return Ok(());
@@ -290,7 +290,7 @@ mod tests {
     #[test]
     fn a_line_feed_after_a_name_glues_it_to_the_attribute() {
         assert_eq!(names("<scene><edge\ni='0' j='1'/></scene>"), Ok(Some(vec!["edgei='0'".into()])));
-        assert_eq!(names("<scene><edge\ni = '0'/></scene>"), Err(CLOSE));
+        assert_eq!(names("<scene><edge\ni = '0'/></scene>"), Err(EXPECTED_CLOSE));
         assert_eq!(names("<scene><edge\r\ni='0'/></scene>"), Ok(Some(vec!["edge".into()])));
     }
 
@@ -328,21 +328,21 @@ mod tests {
         for (text, error) in [
             ("scene", "expected <"),
             ("<scene/>x", "expected <"),
-            ("<scene>", END),
-            ("<scene><a/>text", END),
-            ("<!--", END),
-            ("<!x", END),
-            ("<?xml", END),
-            ("<!DOCTYPE [", END),
-            ("<![CDATA[]]", END),
+            ("<scene>", UNEXPECTED_END),
+            ("<scene><a/>text", UNEXPECTED_END),
+            ("<!--", UNEXPECTED_END),
+            ("<!x", UNEXPECTED_END),
+            ("<?xml", UNEXPECTED_END),
+            ("<!DOCTYPE [", UNEXPECTED_END),
+            ("<![CDATA[]]", UNEXPECTED_END),
             ("< scene/>", "expected element name"),
             ("</scene>", "expected element name"),
             ("<scene a/>", "expected ="),
             ("<scene a=1/>", "expected ' or \""),
             ("<scene a='1/>", "expected ' or \""),
-            ("<scene / >", CLOSE),
-            ("<scene <a/>", CLOSE),
-            ("<scene></scene", CLOSE),
+            ("<scene / >", EXPECTED_CLOSE),
+            ("<scene <a/>", EXPECTED_CLOSE),
+            ("<scene></scene", EXPECTED_CLOSE),
             ("<scene a='&#65'/>", "expected ;"),
             ("<scene>&#xZ;</scene>", "expected ;"),
             ("<scene a='&#x110000;'/>", "invalid numeric character entity"),

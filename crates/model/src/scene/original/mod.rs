@@ -37,7 +37,7 @@ pub struct OriginalScene {
 /// The reason why the original does not run a scene.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{explanation}")]
-pub struct Refusal {
+pub struct Rejection {
     /// The way in which the original ends.
     pub kind: RefusalKind,
     /// The bytes on standard error, including escape sequences and the final newline. For [`RefusalKind::Undefined`]
@@ -60,7 +60,7 @@ pub enum RefusalKind {
     Undefined,
 }
 
-impl Refusal {
+impl Rejection {
     /// Returns the original's message about a scene file that cannot be opened (scene-format.md 1). The name may hold
     /// any bytes.
     #[must_use]

@@ -2,7 +2,7 @@
 use super::item::Item;
 use super::markup::{self, Element};
 use super::single::Singles;
-use super::{OriginalScene, Refusal};
+use super::{OriginalScene, Rejection};
 use crate::scene::model::{Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene};
 use crate::{assignments::ForceKind, scene::forces::Source};
 
@@ -10,13 +10,13 @@ use crate::{assignments::ForceKind, scene::forces::Source};
 ///
 /// # Errors
 ///
-/// A [`Refusal`] with the original's message if the original rejects the scene or crashes, and with this program's
+/// A [`Rejection`] with the original's message if the original rejects the scene or crashes, and with this program's
 /// message if the original would read out of bounds. If there are both, a message of the original comes first, wherever
 /// it is in the file.
-pub fn read(bytes: &[u8]) -> Result<OriginalScene, Refusal> {
+pub fn read(bytes: &[u8]) -> Result<OriginalScene, Rejection> {
     let text = markup::join(bytes);
-    let elements = markup::parse(&text).map_err(Refusal::crash)?.ok_or_else(|| {
-        Refusal::message(b"Failed to parse xml scene file. Failed to locate root <scene> node. Exiting.", 1)
+    let elements = markup::parse(&text).map_err(Rejection::crash)?.ok_or_else(|| {
+        Rejection::message(b"Failed to parse xml scene file. Failed to locate root <scene> node. Exiting.", 1)
     })?;
     let singles = Singles(&elements);
     let duration = singles.duration()?;
@@ -45,7 +45,7 @@ pub fn read(bytes: &[u8]) -> Result<OriginalScene, Refusal> {
         paths: repeated.paths(particles.len())?,
     };
     if let Some(explanation) = repeated.undefined {
-        return Err(Refusal::undefined(explanation));
+        return Err(Rejection::undefined(explanation));
     }
     let scene = Scene {
         duration,
@@ -66,17 +66,17 @@ fn lossy(text: &[u8]) -> String {
     String::from_utf8_lossy(text).into_owned()
 }
 
-fn check_type(written: &[u8]) -> Result<(), Refusal> {
+fn check_type(written: &[u8]) -> Result<(), Rejection> {
     match written {
         b"" | b"particle-system" => Ok(()),
-        b"rigid-body" => Err(Refusal::undefined(
+        b"rigid-body" => Err(Rejection::undefined(
             "simtype 'rigid-body' is an unfinished stub of the original: it makes no step and gives no verdict".into(),
         )),
         _ => {
             let mut text = b"Invalid simtype '".to_vec();
             text.extend_from_slice(written);
             text.extend_from_slice(b"' specified. Valid options are 'particle-system' and 'rigid-body'. Exiting.");
-            Err(Refusal::message(&text, 1))
+            Err(Rejection::message(&text, 1))
         }
     }
 }
@@ -101,7 +101,7 @@ impl<'e> RepeatedElements<'e> {
                     format!(
                         "{} names {what} {index}, but the scene has {count}; the original would read memory that is \
                          not its own",
-                        item.who()
+                        item.describe()
                     )
                 });
                 0
@@ -109,7 +109,7 @@ impl<'e> RepeatedElements<'e> {
         }
     }
 
-    fn particles(&self) -> Result<Vec<Particle>, Refusal> {
+    fn particles(&self) -> Result<Vec<Particle>, Rejection> {
         let read = |item: Item<'_>| {
             Ok(Particle {
                 position: item.numerics("px", "py")?,
@@ -123,7 +123,7 @@ impl<'e> RepeatedElements<'e> {
         self.all("particle").map(read).collect()
     }
 
-    fn edges(&mut self, particles: usize) -> Result<Vec<Edge>, Refusal> {
+    fn edges(&mut self, particles: usize) -> Result<Vec<Edge>, Rejection> {
         let mut edges = Vec::new();
         for item in self.all("edge") {
             let (i, j, radius) = (item.read_integer("i")?, item.read_integer("j")?, item.radius(0.015)?);
@@ -134,13 +134,13 @@ impl<'e> RepeatedElements<'e> {
         Ok(edges)
     }
 
-    fn half_planes(&self) -> Result<Vec<HalfPlane>, Refusal> {
+    fn half_planes(&self) -> Result<Vec<HalfPlane>, Rejection> {
         let read = |item: Item<'_>| Ok(HalfPlane { point: item.reals("px", "py")?, normal: item.reals("nx", "ny")? });
         self.all("halfplane").map(read).collect()
     }
 
     /// Returns all forces, in the order in which they act.
-    fn forces(&mut self, particles: usize, edges: usize) -> Result<Vec<Force>, Refusal> {
+    fn forces(&mut self, particles: usize, edges: usize) -> Result<Vec<Force>, Rejection> {
         let mut forces = Vec::new();
         for kind in ForceKind::ALL {
             // The original's messages call simple gravity a constant force as well.
@@ -159,7 +159,7 @@ impl<'e> RepeatedElements<'e> {
 
     /// Returns the colors of one kind of object. The original's check accepts an edge or half-plane whose index equals
     /// the count.
-    fn colors(&mut self, name: &'static str, what: &str, count: usize) -> Result<Vec<(usize, Color)>, Refusal> {
+    fn colors(&mut self, name: &'static str, what: &str, count: usize) -> Result<Vec<(usize, Color)>, Rejection> {
         let slack = usize::from(what != "particle");
         let mut colors = Vec::new();
         for item in self.all(name) {
@@ -168,7 +168,7 @@ impl<'e> RepeatedElements<'e> {
                 // A count of zero wraps around in the original.
                 let last = (count as u64).wrapping_sub(1);
                 let end = format!("Invalid {what} specified. Valid range is 0...{last}");
-                return Err(item.refusal("value of ", "i", &end));
+                return Err(item.rejection("value of ", "i", &end));
             }
             let color = item.color()?;
             colors.push((self.check_index(&item, what, index, count), color));
@@ -177,13 +177,13 @@ impl<'e> RepeatedElements<'e> {
     }
 
     /// Returns the trails. A trail of a particle that does not exist has no effect in the original and is left out.
-    fn paths(&self, particles: usize) -> Result<Vec<ParticlePath>, Refusal> {
+    fn paths(&self, particles: usize) -> Result<Vec<ParticlePath>, Rejection> {
         let mut paths = Vec::new();
         for item in self.all("particlepath") {
             let index = item.read_integer("i")?;
             let duration = item.text("duration").and_then(super::values::scalar).filter(|&duration| duration >= 0.0);
             let duration =
-                duration.ok_or_else(|| item.refusal("value of ", "duration", "Value must be positive scalar."))?;
+                duration.ok_or_else(|| item.rejection("value of ", "duration", "Value must be positive scalar."))?;
             let color = item.color()?;
             if let Some(particle) = usize::try_from(index).ok().filter(|&index| index < particles) {
                 paths.push(ParticlePath { particle, duration, color });
@@ -202,19 +202,19 @@ struct ForceItem<'e, 's> {
 }
 
 impl Source for ForceItem<'_, '_> {
-    type Error = Refusal;
+    type Error = Rejection;
 
-    fn edge(&mut self, name: &'static str) -> Result<usize, Refusal> {
+    fn edge(&mut self, name: &'static str) -> Result<usize, Rejection> {
         let index = self.item.read_integer(name)?;
         Ok(self.scene.check_index(&self.item, "edge", index, self.edge_count))
     }
 
-    fn particle(&mut self, name: &'static str) -> Result<usize, Refusal> {
+    fn particle(&mut self, name: &'static str) -> Result<usize, Rejection> {
         let index = self.item.read_integer(name)?;
         Ok(self.scene.check_index(&self.item, "particle", index, self.particle_count))
     }
 
-    fn number(&mut self, name: &'static str, default: Option<f64>, _: Option<&str>) -> Result<f64, Refusal> {
+    fn number(&mut self, name: &'static str, default: Option<f64>, _: Option<&str>) -> Result<f64, Rejection> {
         default.map_or_else(
             || self.item.numeric(name),
             |default| self.item.optional(name, default, "value of ", "numeric"),

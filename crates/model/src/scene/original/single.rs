@@ -1,5 +1,5 @@
 //! Reads the elements of which only the first counts, with the original's messages about them (scene-format.md 4).
-use super::{Refusal, item::Item, markup::Element, values};
+use super::{Rejection, item::Item, markup::Element, values};
 use crate::{
     assignments::Integrator,
     scene::model::{Collision, CollisionDetection, Color, Viewport},
@@ -9,20 +9,20 @@ use fosssim_num::vector::Vec2;
 /// The children of the scene, found by name.
 pub(super) struct Singles<'e>(pub(super) &'e [Element<'e>]);
 
-fn refuse<T>(text: &str) -> Result<T, Refusal> {
-    Err(Refusal::message(text.as_bytes(), 1))
+fn reject<T>(text: &str) -> Result<T, Rejection> {
+    Err(Rejection::message(text.as_bytes(), 1))
 }
 
 /// Returns a scalar of a single element. Messages call the element `kind` and the expected value `what`.
-fn scalar(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<f64, Refusal> {
-    let missing = || refuse(&format!("No {kind} '{name}' attribute specified. Exiting."));
+fn scalar(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<f64, Rejection> {
+    let missing = || reject(&format!("No {kind} '{name}' attribute specified. Exiting."));
     optional(element, kind, name, what)?.map_or_else(missing, Ok)
 }
 
 /// Reads an optional number.
-fn optional(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<Option<f64>, Refusal> {
+fn optional(element: &Element<'_>, kind: &str, name: &str, what: &str) -> Result<Option<f64>, Rejection> {
     let Some(text) = element.attribute(name) else { return Ok(None) };
-    let bad = || refuse(&format!("Failed to parse '{name}' attribute for {kind}. Value must be {what}. Exiting."));
+    let bad = || reject(&format!("Failed to parse '{name}' attribute for {kind}. Value must be {what}. Exiting."));
     values::scalar(text).map_or_else(bad, |value| Ok(Some(value)))
 }
 
@@ -36,47 +36,47 @@ impl<'e> Singles<'e> {
         self.first("simtype").and_then(|element| element.attribute("type")).unwrap_or_default()
     }
 
-    pub(super) fn duration(&self) -> Result<f64, Refusal> {
-        let Some(element) = self.first("duration") else { return refuse("No duration specified. Exiting.") };
+    pub(super) fn duration(&self) -> Result<f64, Rejection> {
+        let Some(element) = self.first("duration") else { return reject("No duration specified. Exiting.") };
         scalar(element, "duration", "time", "numeric")
     }
 
-    pub(super) fn max_frequency(&self) -> Result<Option<f64>, Refusal> {
+    pub(super) fn max_frequency(&self) -> Result<Option<f64>, Rejection> {
         let kind = "maxsimfreq";
         self.first(kind).map(|element| scalar(element, kind, "max", "scalar")).transpose()
     }
 
-    pub(super) fn viewport(&self) -> Result<Option<Viewport>, Refusal> {
+    pub(super) fn viewport(&self) -> Result<Option<Viewport>, Rejection> {
         let Some(element) = self.first("viewport") else { return Ok(None) };
         let number = |name: &str| scalar(element, "viewport", name, "scalar");
         Ok(Some(Viewport { center: Vec2::new(number("cx")?, number("cy")?), size: number("size")? }))
     }
 
-    pub(super) fn background(&self) -> Result<Option<Color>, Refusal> {
+    pub(super) fn background(&self) -> Result<Option<Color>, Rejection> {
         let name = "backgroundcolor";
         self.first(name).map(|element| Item::single(element, name).color()).transpose()
     }
 
-    pub(super) fn description(&self) -> Result<Option<&'e [u8]>, Refusal> {
+    pub(super) fn description(&self) -> Result<Option<&'e [u8]>, Rejection> {
         let Some(element) = self.first("description") else { return Ok(None) };
         let missing = "No text attribute specified for description. Exiting.";
-        element.attribute("text").map_or_else(|| refuse(missing), |text| Ok(Some(text)))
+        element.attribute("text").map_or_else(|| reject(missing), |text| Ok(Some(text)))
     }
 
-    pub(super) fn tag(&self) -> Result<Option<&'e [u8]>, Refusal> {
+    pub(super) fn tag(&self) -> Result<Option<&'e [u8]>, Rejection> {
         let Some(element) = self.first("scenetag") else { return Ok(None) };
         let missing = "Failed to parse value of tag attribute for scenetag. Value must be string. Exiting.";
-        element.attribute("tag").map_or_else(|| refuse(missing), |text| Ok(Some(text)))
+        element.attribute("tag").map_or_else(|| reject(missing), |text| Ok(Some(text)))
     }
 
     /// Returns the integrator and the time step.
-    pub(super) fn integrator(&self) -> Result<(Integrator, f64), Refusal> {
-        let Some(element) = self.first("integrator") else { return refuse("No integrator specified. Exiting.") };
+    pub(super) fn integrator(&self) -> Result<(Integrator, f64), Rejection> {
+        let Some(element) = self.first("integrator") else { return reject("No integrator specified. Exiting.") };
         let Some(written) = element.attribute("type") else {
-            return refuse("No integrator 'type' attribute specified. Exiting.");
+            return reject("No integrator 'type' attribute specified. Exiting.");
         };
         let Some(integrator) = Integrator::ALL.into_iter().find(|one| one.name().as_bytes() == written) else {
-            return refuse("Invalid integrator 'type' attribute specified. Exiting.");
+            return reject("Invalid integrator 'type' attribute specified. Exiting.");
         };
         Ok((integrator, scalar(element, "integrator", "dt", "numeric")?))
     }
@@ -89,14 +89,14 @@ impl<'e> Singles<'e> {
         }
     }
 
-    pub(super) fn collision(&self) -> Result<Collision, Refusal> {
+    pub(super) fn collision(&self) -> Result<Collision, Rejection> {
         let Some(element) = self.first("collision") else { return Ok(Collision::None) };
         let number = |name: &str, default: f64| {
             optional(element, "collision handler", name, "numeric").map(|value| value.unwrap_or(default))
         };
         let restitution = number("COR", 1.0)?;
         match element.attribute("type") {
-            None => refuse("No collision handler 'type' attribute specified. Exiting."),
+            None => reject("No collision handler 'type' attribute specified. Exiting."),
             Some(b"none") => Ok(Collision::None),
             Some(b"simple") => Ok(Collision::Simple { restitution }),
             Some(b"continuous-time") => Ok(Collision::ContinuousTime { restitution }),
@@ -111,7 +111,7 @@ impl<'e> Singles<'e> {
                 stiffness: number("k", 10.0)?,
                 thickness: number("thickness", 0.1)?,
             }),
-            Some(_) => refuse("Invalid collision handler 'type' attribute specified. Exiting."),
+            Some(_) => reject("Invalid collision handler 'type' attribute specified. Exiting."),
         }
     }
 }

@@ -1,5 +1,5 @@
 //! The original's words about every kind of problem, and what it lets pass.
-use super::{OriginalScene, Refusal, RefusalKind, read};
+use super::{OriginalScene, RefusalKind, Rejection, read};
 use crate::assignments::Integrator;
 use crate::scene::model::{Collision, CollisionDetection, Force};
 use fosssim_num::vector::Vec2;
@@ -8,7 +8,7 @@ const BARE: &str = "<duration time='1'/><integrator type='explicit-euler' dt='0.
 const TWO: &str = "<particle px='0' py='0' vx='0' vy='0' m='1' fixed='0'/>\
                    <particle px='1' py='0' vx='0' vy='0' m='1' fixed='1' radius='2' tag='b'/>";
 
-fn scene(inner: &str) -> Result<OriginalScene, Refusal> {
+fn scene(inner: &str) -> Result<OriginalScene, Rejection> {
     read(format!("<scene>{BARE}{inner}</scene>").as_bytes())
 }
 
@@ -17,10 +17,10 @@ fn accepted(inner: &str) -> OriginalScene {
 }
 
 #[track_caller]
-fn refused(result: Result<OriginalScene, Refusal>, text: &str, exit_code: u8) {
+fn refused(result: Result<OriginalScene, Rejection>, text: &str, exit_code: u8) {
     let stderr = format!("\u{1b}[31;1mERROR IN XMLSCENEPARSER:\u{1b}[m {text}\n").into_bytes();
     let refusal = result.expect_err(text);
-    let expected = Refusal { kind: RefusalKind::Message, stderr, exit_code, explanation: text.to_owned() };
+    let expected = Rejection { kind: RefusalKind::Message, stderr, exit_code, explanation: text.to_owned() };
     assert_eq!(refusal, expected);
 }
 
@@ -287,7 +287,7 @@ fn broken_xml_is_a_crash() {
 #[test]
 fn an_unreadable_file_has_its_own_message() {
     assert_eq!(
-        String::from_utf8_lossy(&Refusal::unreadable(b"a.xml").stderr),
+        String::from_utf8_lossy(&Rejection::unreadable(b"a.xml").stderr),
         "\u{1b}[31;1mERROR IN TWODSCENEXMLPARSER:\u{1b}[m XML scene file a.xml. Failed to read file.\n"
     );
 }

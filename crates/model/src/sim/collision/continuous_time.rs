@@ -31,7 +31,7 @@ pub(super) fn handle<O: Observer>(
     detector.run(bodies, pass, q_start, positions, observer, |observer, impulse, q_end| {
         let response = respond(&Setting { bodies, law, q_start, q_end }, impulse);
         response.apply(q_end, velocities);
-        observer.impulse(impulse);
+        observer.observe_impulse(impulse);
         Reaction::Moved
     })?;
     synchronize(observer, state);

@@ -2,7 +2,7 @@
 use super::super::{bodies::Bodies, observer::Zone};
 use fosssim_num::{
     elementary::{cos, sin},
-    vector::{Vec2, at, divide, put},
+    vector::{Vec2, divide, set_vector, vector_at},
 };
 
 /// Moves the particles of `zone` from `q_start` by the zone's mean displacement and rotation; `q` and `v` receive their
@@ -13,9 +13,9 @@ pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q
     let members = || zone.particles.iter().map(|&particle| particle as usize);
     if zone.half_plane || members().any(|particle| bodies.fixed[particle]) {
         for particle in members() {
-            put(q, particle, at(q_start, particle));
+            set_vector(q, particle, vector_at(q_start, particle));
             // A product instead of a zero: it keeps the sign, and makes NaN of infinity.
-            put(v, particle, at(v, particle) * 0.0);
+            set_vector(v, particle, vector_at(v, particle) * 0.0);
         }
         return;
     }
@@ -23,9 +23,9 @@ pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q
     let mut shift = Vec2::zeros();
     let mut mass = 0.0;
     for particle in members() {
-        let (m, start) = (bodies.masses[particle], at(q_start, particle));
+        let (m, start) = (bodies.masses[particle], vector_at(q_start, particle));
         center += m * start;
-        shift += m * (at(q, particle) - start);
+        shift += m * (vector_at(q, particle) - start);
         mass += m;
     }
     let center = divide(center, mass);
@@ -33,8 +33,8 @@ pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q
     let mut momentum = 0.0;
     let mut inertia = 0.0;
     for particle in members() {
-        let (m, start) = (bodies.masses[particle], at(q_start, particle));
-        let a = (at(q, particle) - start) - shift;
+        let (m, start) = (bodies.masses[particle], vector_at(q_start, particle));
+        let a = (vector_at(q, particle) - start) - shift;
         let s = start - center;
         momentum += m * (s.x * a.y - s.y * a.x);
         inertia += m * s.dot(&s);
@@ -42,11 +42,11 @@ pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q
     let angle = momentum / inertia;
     let (c, s) = (cos(angle), sin(angle));
     for particle in members() {
-        let start = at(q_start, particle);
+        let start = vector_at(q_start, particle);
         let arm = start - center;
         let end = ((center + shift) + c * arm) + s * Vec2::new(-arm.y, arm.x);
-        put(q, particle, end);
-        put(v, particle, divide(end - start, dt));
+        set_vector(q, particle, end);
+        set_vector(v, particle, divide(end - start, dt));
     }
 }
 
@@ -70,8 +70,8 @@ mod tests {
             let (mut q, mut v) = (end, [9.0; 8]);
             apply(&bodies, 0.5, Zone { particles: &[0, 1, 3], half_plane: false }, &start, &mut q, &mut v);
             for (a, b) in [(0, 1), (0, 3), (1, 3)] {
-                let before = length(at(&start, a) - at(&start, b));
-                assert!((length(at(&q, a) - at(&q, b)) - before).abs() < 1e-14);
+                let before = length(vector_at(&start, a) - vector_at(&start, b));
+                assert!((length(vector_at(&q, a) - vector_at(&q, b)) - before).abs() < 1e-14);
             }
             for axis in 0..2 {
                 let sum = |q: &[f64; 8]| [0, 1, 3].map(|p| masses[p] * (q[2 * p + axis] - start[2 * p + axis]));

@@ -63,7 +63,7 @@ pub(super) fn handle<O: Observer>(
             let setting = Setting { bodies, law, q_start, q_end: &scratch.round_start };
             for impulse in &scratch.hits {
                 respond(&setting, impulse).apply(&mut state.positions, &mut state.velocities);
-                observer.impulse(impulse);
+                observer.observe_impulse(impulse);
             }
             round += 1;
         }
@@ -98,11 +98,11 @@ fn move_zones<O: Observer>(
     builder.begin(bodies.particles());
     builder.add_hits(bodies, hits);
     builder.finish(zones);
-    zones.show(shown, |zones| observer.zones(round, zones));
+    zones.show(shown, |zones| observer.observe_zones(round, zones));
     loop {
         round += 1;
         for zone in zones.iter() {
-            observer.failsafe(round, &zone);
+            observer.observe_failsafe(round, &zone);
             failsafe::apply(bodies, law.time_step, zone, q_start, &mut state.positions, &mut state.velocities);
         }
         detect(bodies, detector, Stage::Geometric { round }, q_start, &mut state.positions, hits, observer)?;
@@ -110,7 +110,7 @@ fn move_zones<O: Observer>(
         builder.add_zones(zones);
         builder.add_hits(bodies, hits);
         builder.finish(merged);
-        merged.show(shown, |zones| observer.zones(round, zones));
+        merged.show(shown, |zones| observer.observe_zones(round, zones));
         if zones == merged {
             return Ok(());
         }
@@ -152,7 +152,7 @@ mod tests {
             self.0.push(Vec::new());
         }
 
-        fn zones(&mut self, _: u32, zones: &[Zone<'_>]) {
+        fn observe_zones(&mut self, _: u32, zones: &[Zone<'_>]) {
             let zones = zones.iter().map(|zone| zone.particles.to_vec()).collect();
             self.0.last_mut().expect("a step").push(zones);
         }

@@ -13,7 +13,7 @@ use crate::{
 use fosssim_num::{
     lanes::Plane,
     polynomial::Polynomial,
-    vector::{Vec2, at},
+    vector::{Vec2, vector_at},
 };
 
 /// The motion of a point within a step, on a straight line at constant speed.
@@ -29,13 +29,13 @@ impl PointMotion {
     /// Returns the motion of particle `index` between two arrays of positions in trace order.
     #[must_use]
     pub fn between(q_start: &[f64], q_end: &[f64], index: usize) -> Self {
-        let start = at(q_start, index);
-        Self { start, shift: at(q_end, index) - start }
+        let start = vector_at(q_start, index);
+        Self { start, shift: vector_at(q_end, index) - start }
     }
 
     /// Returns the position at `time`, a fraction of the step.
     #[must_use]
-    pub fn at(&self, time: f64) -> Vec2 {
+    pub fn position_at(&self, time: f64) -> Vec2 {
         self.start + time * self.shift
     }
 }
@@ -113,7 +113,7 @@ impl PairMotion {
     #[inline]
     pub(super) fn from_bodies(bodies: &Bodies, pair: Pair, q_start: &[f64], displacements: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
-        let point = |index| PointMotion { start: at(q_start, index), shift: at(displacements, index) };
+        let point = |index| PointMotion { start: vector_at(q_start, index), shift: vector_at(displacements, index) };
         let radius = bodies.radii[first];
         match pair.kind {
             PairKind::ParticleParticle => {
@@ -214,7 +214,7 @@ mod tests {
     }
 
     impl Observer for Compare<'_> {
-        fn detection(&mut self, detection: &Detection<'_>) {
+        fn observe_detection(&mut self, detection: &Detection<'_>) {
             let motion = PairMotion::between(self.scene, detection.pair, detection.q_start, detection.q_end);
             assert_eq!(motion.kind(), detection.pair.kind);
             let own = motion.polynomials();

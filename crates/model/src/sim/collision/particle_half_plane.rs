@@ -5,7 +5,7 @@ use super::response::{Change, Response, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
     lanes::{Number, Plane},
-    vector::{Vec2, at, length, unit},
+    vector::{Vec2, length, unit, vector_at},
 };
 use std::ops::Mul;
 
@@ -51,14 +51,14 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, n: Vec2) -> Response {
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, half_plane: usize) -> Option<Vec2> {
     let q = unit(bodies.normals[half_plane]);
-    let n = (bodies.points[half_plane] - at(x, i)).dot(&q) * q;
-    (length(n) < bodies.radii[i] && at(v, i).dot(&n) > 0.0).then_some(n)
+    let n = (bodies.points[half_plane] - vector_at(x, i)).dot(&q) * q;
+    (length(n) < bodies.radii[i] && vector_at(v, i).dot(&n) > 0.0).then_some(n)
 }
 
 /// Returns the simple response along normal `n`, from the velocities `v`; positions stay.
 pub(super) fn simple_response(factor: f64, v: &[f64], i: usize, n: Vec2) -> Response {
     let u = unit(n);
-    let velocity = ((2.0 * factor) * at(v, i).dot(&u)) * u;
+    let velocity = ((2.0 * factor) * vector_at(v, i).dot(&u)) * u;
     Response { gain: None, loss: [Some(Change { particle: i, velocity, position: Vec2::zeros() }), None] }
 }
 

@@ -3,7 +3,7 @@ use super::response::{Change, Response, Setting};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
     lanes::{Number, Plane},
-    vector::{Vec2, at, length, unit},
+    vector::{Vec2, length, unit, vector_at},
 };
 use std::ops::Mul;
 
@@ -40,13 +40,13 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, j: usize, n: Vec2) -> Re
 /// Returns the simple detection: the vector between the centers, if the discs overlap and approach.
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, j: usize) -> Option<Vec2> {
-    let n = at(x, j) - at(x, i);
-    (length(n) < bodies.radii[i] + bodies.radii[j] && (at(v, i) - at(v, j)).dot(&n) > 0.0).then_some(n)
+    let n = vector_at(x, j) - vector_at(x, i);
+    (length(n) < bodies.radii[i] + bodies.radii[j] && (vector_at(v, i) - vector_at(v, j)).dot(&n) > 0.0).then_some(n)
 }
 
 /// Returns the simple response along normal `n`, from the velocities `v`; positions stay.
 pub(super) fn simple_response(bodies: &Bodies, factor: f64, v: &[f64], i: usize, j: usize, n: Vec2) -> Response {
-    exchange(bodies, factor, 0.0, i, j, at(v, j) - at(v, i), unit(n))
+    exchange(bodies, factor, 0.0, i, j, vector_at(v, j) - vector_at(v, i), unit(n))
 }
 
 /// Returns the exchange of momentum along the unit vector `u` for relative velocity `relative` (second minus first).

@@ -18,7 +18,7 @@ use super::{
 };
 use fosssim_num::{
     polynomial::Polynomial,
-    vector::{at, put},
+    vector::{set_vector, vector_at},
 };
 
 crate::drops_leading!();
@@ -158,7 +158,7 @@ impl Detector {
             };
             let Some(impulse) = self.blocks.next_hit(setting, place, &mut self.counts, bytes)? else { break };
             hits += 1;
-            observer.hit(impulse.pair);
+            observer.observe_hit(impulse.pair);
             if react(observer, &impulse, q_end) == Reaction::Moved {
                 let moved = self.displace(bodies, impulse.pair, q_start, q_end);
                 let setting = Setting { bodies, step, q_start, displacements: &self.displacements };
@@ -193,7 +193,15 @@ impl Detector {
         let decision = match observer.wanted_pairs() {
             WantedPairs::Calls => {
                 let decision = observer.as_steer().map_or(decision, |steer| steer.decide(pair, decision));
-                observer.detection(&Detection { pass, pair, polynomials, decision, q_start, q_end, velocities: &[] });
+                observer.observe_detection(&Detection {
+                    pass,
+                    pair,
+                    polynomials,
+                    decision,
+                    q_start,
+                    q_end,
+                    velocities: &[],
+                });
                 decision
             }
             WantedPairs::Bytes(bytes) => {
@@ -204,7 +212,7 @@ impl Detector {
         };
         let Decision::Hit { time, normal } = decision else { return Ok(()) };
         context.hits += 1;
-        context.observer.hit(pair);
+        context.observer.observe_hit(pair);
         if (context.react)(context.observer, &Impulse { pair, normal, time }, context.q_end) == Reaction::Moved {
             self.displace(bodies, pair, q_start, context.q_end);
         }
@@ -215,7 +223,7 @@ impl Detector {
     fn displace(&mut self, bodies: &Bodies, pair: Pair, q_start: &[f64], q_end: &[f64]) -> [usize; 3] {
         let moved = bodies.particles_of(pair);
         for particle in moved {
-            put(&mut self.displacements, particle, at(q_end, particle) - at(q_start, particle));
+            set_vector(&mut self.displacements, particle, vector_at(q_end, particle) - vector_at(q_start, particle));
         }
         moved
     }

@@ -1,6 +1,6 @@
 //! The effects of a collision: the law of impact and the changes that a response makes (collisions.md 3, 6).
 use super::super::bodies::Bodies;
-use fosssim_num::vector::{Vec2, at, put};
+use fosssim_num::vector::{Vec2, set_vector, vector_at};
 
 /// The constants of every response of a scene.
 #[derive(Debug, Clone, Copy)]
@@ -23,7 +23,7 @@ impl Law {
     /// detection use it instead of the state's velocity.
     #[inline]
     pub fn mean_velocity(&self, q_start: &[f64], q_end: &[f64], particle: usize) -> Vec2 {
-        self.rate * (at(q_end, particle) - at(q_start, particle))
+        self.rate * (vector_at(q_end, particle) - vector_at(q_start, particle))
     }
 }
 
@@ -77,10 +77,10 @@ impl Response {
 
     fn change(&self, array: &mut [f64], of: fn(&Change) -> Vec2) {
         if let Some(change) = &self.gain {
-            put(array, change.particle, at(array, change.particle) + of(change));
+            set_vector(array, change.particle, vector_at(array, change.particle) + of(change));
         }
         for change in self.loss.iter().flatten() {
-            put(array, change.particle, at(array, change.particle) - of(change));
+            set_vector(array, change.particle, vector_at(array, change.particle) - of(change));
         }
     }
 }

@@ -97,12 +97,20 @@ impl<O: Observer> RunningPass<'_, O> {
         let decision = normal.map_or(Decision::Miss { time: Time::None }, |normal| Decision::Hit { time: 0.0, normal });
         let decision = self.observer.as_steer().map_or(decision, |steer| steer.decide(pair, decision));
         let (pass, q_start, q_end, velocities) = (self.pass, self.q_start, self.x, &*self.v);
-        self.observer.detection(&Detection { pass, pair, polynomials: &[], decision, q_start, q_end, velocities });
+        self.observer.observe_detection(&Detection {
+            pass,
+            pair,
+            polynomials: &[],
+            decision,
+            q_start,
+            q_end,
+            velocities,
+        });
         if let Decision::Hit { normal, .. } = decision {
             self.hits += 1;
-            self.observer.hit(pair);
+            self.observer.observe_hit(pair);
             respond(self, normal).apply_velocities(self.v);
-            self.observer.impulse(&Impulse { pair, normal, time: 0.0 });
+            self.observer.observe_impulse(&Impulse { pair, normal, time: 0.0 });
         }
     }
 }

@@ -111,7 +111,7 @@ impl Builder {
         // Roots get their numbers in the order of the sets.
         for index in 0..self.sets.len() {
             let (particle, half_plane) = self.sets[index];
-            let root = self.root(particle) as usize;
+            let root = self.find_root(particle) as usize;
             if zone_of[root] == NONE {
                 #[expect(clippy::cast_possible_truncation, reason = "at most one zone per particle")]
                 let number = half_planes.len() as u32;
@@ -125,7 +125,7 @@ impl Builder {
         // Each member gets its root's number and is counted; a particle without a set is its own unnumbered root.
         for particle in 0..particles {
             #[expect(clippy::cast_possible_truncation, reason = "particle indices fit into 32 bits")]
-            let root = self.root(particle as u32) as usize;
+            let root = self.find_root(particle as u32) as usize;
             zone_of[particle] = zone_of[root];
             if zone_of[particle] != NONE {
                 ends[zone_of[particle] as usize] += 1;
@@ -151,11 +151,11 @@ impl Builder {
     }
 
     fn join(&mut self, a: u32, b: u32) {
-        let (a, b) = (self.root(a), self.root(b));
+        let (a, b) = (self.find_root(a), self.find_root(b));
         self.parents[a.max(b) as usize] = a.min(b);
     }
 
-    fn root(&mut self, mut particle: u32) -> u32 {
+    fn find_root(&mut self, mut particle: u32) -> u32 {
         while self.parents[particle as usize] != particle {
             // Halving the path keeps later searches short.
             let above = self.parents[self.parents[particle as usize] as usize];

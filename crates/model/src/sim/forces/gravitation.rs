@@ -1,12 +1,12 @@
 //! Newtonian attraction of two particles (simulation.md 3, gravitationalforce).
 use super::{add, subtract};
 use crate::sim::matrix::couple;
-use fosssim_num::vector::{at, divide, length};
+use fosssim_num::vector::{divide, length, vector_at};
 use nalgebra::{DMatrix, Matrix2};
 
 /// Adds `G m m' / r^2` along the line from the first to the second particle (NaN if they coincide).
 pub(super) fn add_gradient(masses: &[f64], [a, b]: [usize; 2], constant: f64, x: &[f64], gradient: &mut [f64]) {
-    let d = at(x, b) - at(x, a);
+    let d = vector_at(x, b) - vector_at(x, a);
     let r = length(d);
     let n = divide(d, r);
     let s = constant * masses[b] * masses[a] / (r * r);
@@ -22,7 +22,7 @@ pub(super) fn add_position_hessian(
     x: &[f64],
     matrix: &mut DMatrix<f64>,
 ) {
-    let d = at(x, b) - at(x, a);
+    let d = vector_at(x, b) - vector_at(x, a);
     let r = length(d);
     let n = divide(d, r);
     let s = constant * masses[b] * masses[a] / (r * r * r);

@@ -13,7 +13,7 @@ mod vortex;
 
 use super::bodies::Bodies;
 use crate::scene::{Collision, CollisionDetection, Force, Scene};
-use fosssim_num::vector::{Vec2, at, put};
+use fosssim_num::vector::{Vec2, set_vector, vector_at};
 use nalgebra::DMatrix;
 use penalty::Penalty;
 pub use penalty::{PenaltyPairs, PenaltyTerms, SweepOrder};
@@ -125,11 +125,11 @@ pub fn gradients(scene: &Scene, x: &[f64], v: &[f64]) -> Vec<Vec<f64>> {
 /// Computes `array[index] += v`.
 #[inline]
 fn add(array: &mut [f64], index: usize, v: Vec2) {
-    put(array, index, at(array, index) + v);
+    set_vector(array, index, vector_at(array, index) + v);
 }
 
 /// Computes `array[index] -= v`.
 #[inline]
 fn subtract(array: &mut [f64], index: usize, v: Vec2) {
-    put(array, index, at(array, index) - v);
+    set_vector(array, index, vector_at(array, index) - v);
 }

@@ -1,12 +1,12 @@
 //! The damped spring on an edge (simulation.md 3, springforce).
 use super::{add, subtract};
 use crate::sim::matrix::{couple, decouple};
-use fosssim_num::vector::{Vec2, at, divide, length};
+use fosssim_num::vector::{Vec2, divide, length, vector_at};
 use nalgebra::{DMatrix, Matrix2};
 
 /// Returns the spring's length and its direction from the first to the second endpoint (NaN if they coincide).
 fn direction([a, b]: [usize; 2], x: &[f64]) -> (f64, Vec2) {
-    let d = at(x, b) - at(x, a);
+    let d = vector_at(x, b) - vector_at(x, a);
     let l = length(d);
     (l, divide(d, l))
 }
@@ -25,7 +25,7 @@ pub(super) fn add_gradient(
     let elastic = (stiffness * (l - rest_length)) * n;
     subtract(gradient, a, elastic);
     add(gradient, b, elastic);
-    let damped = (damping * n.dot(&(at(v, b) - at(v, a)))) * n;
+    let damped = (damping * n.dot(&(vector_at(v, b) - vector_at(v, a)))) * n;
     subtract(gradient, a, damped);
     add(gradient, b, damped);
 }
@@ -50,7 +50,7 @@ pub(super) fn add_position_hessian(
     });
     couple(matrix, [a, b], &elastic);
 
-    let w = at(v, b) - at(v, a);
+    let w = vector_at(v, b) - vector_at(v, a);
     let s = n.dot(&w);
     let cross = Matrix2::new(n.x * w.x + s, n.x * w.y, n.y * w.x, n.y * w.y + s);
     let scale = (-damping) / l;

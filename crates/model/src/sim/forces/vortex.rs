@@ -2,7 +2,7 @@
 //!
 //! The force has no Hessians; `Simulation::step` rejects it with an implicit integrator (scene-format.md 6).
 use super::{add, subtract};
-use fosssim_num::vector::{Vec2, at, divide, length};
+use fosssim_num::vector::{Vec2, divide, length, vector_at};
 
 /// Adds the gradient. `strength` is `kbs`, `coupling` is `kvc`.
 pub(super) fn add_gradient(
@@ -13,12 +13,12 @@ pub(super) fn add_gradient(
     v: &[f64],
     gradient: &mut [f64],
 ) {
-    let d = at(x, b) - at(x, a);
+    let d = vector_at(x, b) - vector_at(x, a);
     let r = length(d);
     let n = divide(d, r);
     let along = strength * n;
     let turned = Vec2::new(-along.y, along.x);
-    let slip = turned - (at(v, b) - at(v, a));
+    let slip = turned - (vector_at(v, b) - vector_at(v, a));
     let force = coupling * divide(slip, r * r);
     add(gradient, a, force);
     subtract(gradient, b, force);

@@ -22,7 +22,7 @@ impl System<'_> {
         let ImplicitScratch { matrix, workspace, x, v, .. } = scratch;
         assemble(matrix, self.bodies, self.forces, self.h, x, v);
         if let Some(steer) = &mut self.steer {
-            steer.system(matrix.as_mut_slice());
+            steer.observe_system(matrix.as_mut_slice());
         }
         linear::solve(matrix.as_mut_slice(), rhs, workspace);
     }

@@ -9,7 +9,7 @@ mod strips;
 mod tests;
 
 use crate::scene::{Edge, Scene};
-use fosssim_num::vector::{Vec2, at};
+use fosssim_num::vector::{Vec2, vector_at};
 use strips::{PlacedParticle, Rectangle, Strips};
 
 /// The maximum ratio between the radii of one size class.
@@ -117,7 +117,7 @@ impl NearbyPairs {
             for smaller in &sizes[index + 1..] {
                 for one in size.entries() {
                     let reach = (radii[one.particle as usize] + smaller.radius()) + *margin;
-                    if let Some(rectangle) = around([one.place; 2], reach) {
+                    if let Some(rectangle) = enclosing([one.place; 2], reach) {
                         *tested += smaller.within(rectangle, everywhere, |other| keep(one, other));
                     }
                 }
@@ -172,7 +172,7 @@ const MIN_REACH: f64 = 1e-150;
 
 /// Returns the rectangle of all points that are at most `reach` from the line between two points; `None` if it is
 /// empty.
-fn around(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
+fn enclosing(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
     if !(reach > 0.0) {
         return None;
     }
@@ -193,9 +193,9 @@ fn near_edge(
     x: &[f64],
     found: &mut Vec<Numbers>,
 ) -> u64 {
-    let ends = [at(x, edge.first), at(x, edge.second)];
+    let ends = [vector_at(x, edge.first), vector_at(x, edge.second)];
     let reach = (size.radius() + edge.radius) + margin;
-    let Some(rectangle) = around(ends, reach) else { return 0 };
+    let Some(rectangle) = enclosing(ends, reach) else { return 0 };
     let [x2, x3] = ends;
     let x32 = x3 - x2;
     let (squared, room) = (x32.dot(&x32), widen(reach, ends));

@@ -5,7 +5,7 @@
 //! numbers differ by no more than with floors. Few particles change their order between searches, so sorting takes few
 //! insertions.
 use super::MIN_REACH;
-use fosssim_num::vector::{Vec2, at};
+use fosssim_num::vector::{Vec2, vector_at};
 
 /// The factor by which strips are higher than the reach of two particles, so that rounding never puts two particles in
 /// reach more than one row apart.
@@ -89,7 +89,7 @@ impl Strips {
     /// Sorts the particles by their current positions. Particles without a finite position are left out.
     pub fn update(&mut self, x: &[f64]) {
         for entry in &mut self.entries {
-            let place = at(x, entry.particle as usize);
+            let place = vector_at(x, entry.particle as usize);
             (entry.row, entry.place) = if place.x.is_finite() && place.y.is_finite() {
                 (row_of(place.y, self.density), place)
             } else {

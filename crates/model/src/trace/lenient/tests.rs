@@ -13,10 +13,10 @@ fn a_record_may_hold_what_the_scenes_passes_log() {
         record_memory(&crate::scene::read("scene", xml.as_bytes()).unwrap().scene)
     };
     let hybrid = |rounds: u32| format!(r#"type="hybrid" maxiters="{rounds}" k="0""#);
-    assert_eq!(memory(20, r#"type="continuous-time""#), FLOOR);
-    assert_eq!(memory(20, &hybrid(10)), FLOOR);
+    assert_eq!(memory(20, r#"type="continuous-time""#), MIN_RECORD_BYTES);
+    assert_eq!(memory(20, &hybrid(10)), MIN_RECORD_BYTES);
     assert_eq!(memory(20, &hybrid(10_000)), 20 * 19 * (10_000 + 2 + 60) * POLYNOMIAL_MEMORY);
-    assert_eq!(memory(1000, &hybrid(10_000)), LIMIT);
+    assert_eq!(memory(1000, &hybrid(10_000)), MAX_RECORD_BYTES);
 }
 
 #[test]
@@ -31,7 +31,7 @@ fn polynomials_beyond_the_limit_are_counted_and_not_kept() {
         reader.next(&mut frame).unwrap();
         assert!(frame.is_cut() && frame.logged == 60_000 && frame.note.is_none(), "{limit}");
         // The polynomials in the window are decoded at one go.
-        assert!(decode::memory(&frame.polynomials) <= limit + 4 * super::super::source::WINDOW);
+        assert!(decode::memory_bytes(&frame.polynomials) <= limit + 4 * super::super::source::WINDOW_BYTES);
         let kept: Vec<&[f64]> = frame.polynomials.iter().collect();
         assert_eq!(kept, list[..kept.len()]);
         reader.next(&mut frame).unwrap();

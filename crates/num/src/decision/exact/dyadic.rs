@@ -25,7 +25,7 @@ impl Dyadic {
     }
 
     /// Returns the midpoint of two times.
-    pub(super) fn between(&self, other: &Self) -> Self {
+    pub(super) fn midpoint(&self, other: &Self) -> Self {
         let exponent = self.exponent.max(other.exponent);
         Self { numerator: self.numerator_over(exponent) + other.numerator_over(exponent), exponent: exponent + 1 }
     }
@@ -89,8 +89,8 @@ mod tests {
 
     #[test]
     fn midpoints() {
-        assert_eq!(Dyadic::ZERO.between(&Dyadic::one()).enclosure(), [0.5; 2]);
-        assert_eq!(dyadic("1", 2).between(&Dyadic::one()).enclosure(), [0.625; 2]);
+        assert_eq!(Dyadic::ZERO.midpoint(&Dyadic::one()).enclosure(), [0.5; 2]);
+        assert_eq!(dyadic("1", 2).midpoint(&Dyadic::one()).enclosure(), [0.625; 2]);
         assert!(dyadic("4", 2).is_one() && !dyadic("3", 2).is_one());
     }
 }

@@ -6,7 +6,7 @@ use super::{super::short_numbers::split, dyadic::Dyadic};
 use num_bigint::{BigInt, Sign};
 
 /// The prime modulus `2^61 - 1`, for a quick test whether polynomials have a common zero.
-const PRIME: u64 = (1 << 61) - 1;
+const MODULUS: u64 = (1 << 61) - 1;
 
 /// The coefficients, lowest power first; the last is not zero. The zero polynomial has none.
 #[derive(Debug, Clone, PartialEq, Eq)]
@@ -178,7 +178,7 @@ impl Integer {
         if a.degree() == 0 { Self::one() } else { a }
     }
 
-    /// Returns whether the two have no common zero modulo [`PRIME`]. This proves that they have none at all, because
+    /// Returns whether the two have no common zero modulo [`MODULUS`]. This proves that they have none at all, because
     /// reduction keeps a common factor's degree if it keeps a leading coefficient.
     fn coprime_modulo_prime(&self, other: &Self) -> bool {
         let reduced = |polynomial: &Self| -> Vec<u64> { polynomial.0.iter().map(modulo_prime).collect() };
@@ -234,15 +234,15 @@ fn common_divisor(mut a: BigInt, mut b: BigInt) -> BigInt {
 }
 
 fn modulo_prime(value: &BigInt) -> u64 {
-    let rest = u64::try_from(BigInt::from(value.magnitude() % PRIME)).unwrap_or(0);
-    if value.sign() == Sign::Minus && rest != 0 { PRIME - rest } else { rest }
+    let rest = u64::try_from(BigInt::from(value.magnitude() % MODULUS)).unwrap_or(0);
+    if value.sign() == Sign::Minus && rest != 0 { MODULUS - rest } else { rest }
 }
 
 fn product(a: u64, b: u64) -> u64 {
-    u64::try_from(u128::from(a) * u128::from(b) % u128::from(PRIME)).unwrap_or(0)
+    u64::try_from(u128::from(a) * u128::from(b) % u128::from(MODULUS)).unwrap_or(0)
 }
 
-/// Computes the remainder of `a` by `b` (last entry not 0) up to a factor, modulo [`PRIME`].
+/// Computes the remainder of `a` by `b` (last entry not 0) up to a factor, modulo [`MODULUS`].
 fn reduce(a: &mut Vec<u64>, b: &[u64]) {
     while a.len() >= b.len() {
         let (top, leading, shift) = (a[a.len() - 1], b[b.len() - 1], a.len() - b.len());
@@ -250,7 +250,7 @@ fn reduce(a: &mut Vec<u64>, b: &[u64]) {
             *value = product(*value, leading);
         }
         for (i, &value) in b.iter().enumerate() {
-            a[i + shift] = (a[i + shift] + PRIME - product(top, value)) % PRIME;
+            a[i + shift] = (a[i + shift] + MODULUS - product(top, value)) % MODULUS;
         }
         while a.last() == Some(&0) {
             a.pop();

@@ -7,7 +7,7 @@ use super::{dyadic::Dyadic, integer::Integer};
 use num_bigint::{BigInt, Sign};
 
 /// The number of halvings of an isolating interval after which its enclosure is narrower than a double can express.
-const NARROW: u64 = 60;
+const NARROW_BITS: u64 = 60;
 
 /// A zero between two times at which the polynomial is not zero, or exactly at a time, if both are equal.
 #[derive(Debug, Clone)]
@@ -39,7 +39,7 @@ impl Root {
     pub(super) fn enclosure(&self, polynomial: &Integer) -> [f64; 2] {
         let mut root = self.clone();
         let before = polynomial.sign_at(&root.lo);
-        for _ in 0..NARROW {
+        for _ in 0..NARROW_BITS {
             if root.is_point() {
                 break;
             }
@@ -50,7 +50,7 @@ impl Root {
 
     /// Halves the interval; `before` is the sign between its start and the zero.
     fn halve(&mut self, polynomial: &Integer, before: i8) {
-        let middle = self.lo.between(&self.hi);
+        let middle = self.lo.midpoint(&self.hi);
         let sign = polynomial.sign_at(&middle);
         if sign == 0 {
             *self = Self::point(middle);

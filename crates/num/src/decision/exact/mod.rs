@@ -98,7 +98,7 @@ fn signs_at(polynomials: &[Integer], time: &Dyadic) -> Vec<bool> {
 fn first_sample(roots: &[Root]) -> Dyadic {
     match roots.first() {
         None => Dyadic::one(),
-        Some(root) if root.is_point() => root.lo.between(&Dyadic::ZERO),
+        Some(root) if root.is_point() => root.lo.midpoint(&Dyadic::ZERO),
         Some(root) => root.lo.clone(),
     }
 }
@@ -113,8 +113,8 @@ fn sample_after(roots: &[Root], index: usize) -> Option<Dyadic> {
         return Some(root.hi.clone());
     }
     Some(match roots.get(index + 1) {
-        None => root.hi.between(&Dyadic::one()),
-        Some(next) if next.is_point() => root.hi.between(&next.lo),
+        None => root.hi.midpoint(&Dyadic::one()),
+        Some(next) if next.is_point() => root.hi.midpoint(&next.lo),
         Some(next) => next.lo.clone(),
     })
 }

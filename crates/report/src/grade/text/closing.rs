@@ -3,7 +3,10 @@
 use super::{Text, verdict_style};
 use crate::foreign::{one_line, strip_control_characters};
 use crate::{
-    grade::{by_cause, change_lines, count_wrong, describe_speed, format_points, likely_mistakes, points, worth},
+    grade::{
+        by_cause, change_lines, count_wrong, describe_speed, describe_worth, format_optional_points, format_points,
+        likely_mistakes,
+    },
     number::format_count,
     style::Look,
     table::{Align, Cell, Table},
@@ -44,7 +47,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         }
         let verb = if mistake.is_not_finite() || mistake.is_unexplained() { "in" } else { "explains" };
         let what = strip_control_characters(&words::explanation::what_or(mistake));
-        let worth = worth(grade, mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
+        let worth = describe_worth(grade, mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
         let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");
         if let Some(note) = grade.note(mistake) {
             let _ = writeln!(text, "    The course: {}", one_line(&note.to_string()));
@@ -60,7 +63,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     if let Some(scene) = causes.iter().flatten().find(|scene| !scene.verdict.is_accepted()) {
         let code = style.paint(verdict_style(scene.verdict), scene.verdict.code());
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Scene to look at first"));
-        let _ = writeln!(text, "  {code} {}: {}", one_line(&scene.scene), one_line(&words::summary(scene)));
+        let _ = writeln!(text, "  {code} {}: {}", one_line(&scene.scene), one_line(&words::summarize(scene)));
         for line in options.closer.map(|closer| closer(grade, scene)).unwrap_or_default() {
             let _ = writeln!(text, "  {line}");
         }
@@ -79,7 +82,7 @@ fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
     for group in listed.iter().take(shown) {
         let name = one_line(&group.name);
         let extra = if group.extra { " extra" } else { "" };
-        let score = format!("{} of {}{extra}", format_points(group.points), points(group.max_points));
+        let score = format!("{} of {}{extra}", format_optional_points(group.points), format_points(group.max_points));
         table.row([
             name.into(),
             score.into(),

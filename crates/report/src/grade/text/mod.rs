@@ -5,9 +5,9 @@ mod closing;
 mod scenes;
 mod table;
 
-pub use table::{shorten_name, table};
+pub use table::{render_table, shorten_name};
 
-use super::{super::style::Style, no_points, points, score};
+use super::{super::style::Style, format_points, format_score, no_points};
 use crate::foreign::{clean_output, one_line, strip_control_characters};
 use crate::{number::format_count, smallest, style::Look, words};
 use fosssim_findings::{Grade, SceneGrade, SubmissionFault, Verdict};
@@ -57,7 +57,7 @@ impl Text<'_> {
                 let why = self.unfit(grade)?;
                 Some(format!("{}: {why}\n", table::shorten_name(&one_line(&grade.submission))))
             };
-            return table(grades, self.width, self.style) + &grades.iter().filter_map(unfit).collect::<String>();
+            return render_table(grades, self.width, self.style) + &grades.iter().filter_map(unfit).collect::<String>();
         }
         for grade in grades {
             if self.shown == TextDetail::Line {
@@ -68,7 +68,7 @@ impl Text<'_> {
             }
         }
         if grades.len() > 1 && self.shown > TextDetail::Line {
-            text += &table(grades, self.width, self.style);
+            text += &render_table(grades, self.width, self.style);
         }
         text
     }
@@ -96,7 +96,7 @@ impl Text<'_> {
         let look = if grade.verdict.is_accepted() { Look::Good } else { Look::Bad };
         let (name, verdict) = (one_line(&grade.submission), grade.verdict.name());
         let reached = match grade.points {
-            Some(reached) => score(reached, grade.max_points) + &extra(grade),
+            Some(reached) => format_score(reached, grade.max_points) + &extra(grade),
             None => no_points(grade).unwrap_or_default(),
         };
         format!("{}: {}, {reached}", self.style.paint(Look::Strong, &name), self.style.paint(look, verdict))
@@ -141,7 +141,12 @@ impl Text<'_> {
 #[must_use]
 pub fn extra(grade: &Grade) -> String {
     grade.extra().map_or_else(String::new, |(reached, most)| {
-        format!(", {} of {} extra point{}", points(reached), points(most), if points(most) == "1" { "" } else { "s" })
+        format!(
+            ", {} of {} extra point{}",
+            format_points(reached),
+            format_points(most),
+            if format_points(most) == "1" { "" } else { "s" }
+        )
     })
 }
 

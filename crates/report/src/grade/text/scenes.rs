@@ -4,11 +4,11 @@ use super::{super::phrases::list_some, Text, TextDetail, quote_output, verdict_s
 use crate::foreign::one_line;
 use crate::{
     explain,
-    grade::{AlikeScenes, by_cause, describe_difference, format_points, points, text::MAX_SHOWN_LINES},
+    grade::{AlikeScenes, by_cause, describe_difference, format_optional_points, format_points, text::MAX_SHOWN_LINES},
     number::format_count,
     style::Look,
     words,
-    wrap::columns,
+    wrap::count_columns,
 };
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
@@ -27,11 +27,11 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
         return String::new();
     }
     let shown = |scene: &SceneGrade| options.shown == TextDetail::All || !scene.verdict.is_accepted();
-    let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| columns(&one_line(&scene.scene)));
+    let names = grade.scenes().filter(|scene| shown(scene)).map(|scene| count_columns(&one_line(&scene.scene)));
     let width = names.max().unwrap_or(0);
     let scenes = Scenes { options, width, by_cause: by_cause(grade) };
     let groups = grade.groups.iter().filter(|group| group.scenes.iter().any(shown));
-    let mut text: String = groups.map(|group| scenes.group(group)).collect();
+    let mut text: String = groups.map(|group| scenes.render_group(group)).collect();
     if scenes.by_cause.len() > MAX_DESCRIBED && options.shown < TextDetail::All {
         text += "\nExamples of all causes: -v\n";
     }
@@ -46,11 +46,15 @@ struct Scenes<'a, 'b> {
 }
 
 impl<'a> Scenes<'a, '_> {
-    fn group(&self, group: &'a GroupGrade) -> String {
+    fn render_group(&self, group: &'a GroupGrade) -> String {
         let style = self.options.style;
         let name = style.paint(Look::Strong, &one_line(&group.name));
         let extra = if group.extra { " extra" } else { "" };
-        let mut text = format!("\n{name} ({} of {}{extra})\n", format_points(group.points), points(group.max_points));
+        let mut text = format!(
+            "\n{name} ({} of {}{extra})\n",
+            format_optional_points(group.points),
+            format_points(group.max_points)
+        );
         if let Some(note) = &group.note {
             text += &format!("  {}\n", one_line(&note.to_string()));
         }
@@ -68,8 +72,8 @@ impl<'a> Scenes<'a, '_> {
             text.extend(folded.pop_first().map(row));
         }
         for scene in group.scenes.iter().filter(|scene| !self.is_folded(scene)) {
-            text += &self.row(scene);
-            text += &self.details(scene);
+            text += &self.render_row(scene);
+            text += &self.render_details(scene);
         }
         text.extend(folded.into_iter().map(row));
         text
@@ -95,25 +99,29 @@ impl<'a> Scenes<'a, '_> {
         self.options.shown == TextDetail::All || causes.any(|alike| alike[0].scene == scene.scene)
     }
 
-    fn row(&self, scene: &SceneGrade) -> String {
+    fn render_row(&self, scene: &SceneGrade) -> String {
         let (name, style) = (one_line(&scene.scene), self.options.style);
         let code = style.paint(verdict_style(scene.verdict), &format!("{:<3}", scene.verdict.code()));
-        let blanks = " ".repeat(self.width.saturating_sub(columns(&name)));
-        format!("  {code} {name}{blanks}  {} of {}\n", format_points(scene.points), points(scene.max_points))
+        let blanks = " ".repeat(self.width.saturating_sub(count_columns(&name)));
+        format!(
+            "  {code} {name}{blanks}  {} of {}\n",
+            format_optional_points(scene.points),
+            format_points(scene.max_points)
+        )
     }
 
-    fn details(&self, scene: &SceneGrade) -> String {
+    fn render_details(&self, scene: &SceneGrade) -> String {
         let mut lines = Vec::new();
         if !scene.verdict.is_accepted() {
-            lines.push(one_line(&words::summary(scene)));
+            lines.push(one_line(&words::summarize(scene)));
         }
         lines.extend(describe_difference(scene));
         if self.is_described(scene) {
-            let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::details(scene) };
+            let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::list_details(scene) };
             let likely = explain::lines(&scene.settled, self.options.style);
             lines.extend(details.iter().chain(&likely).map(|line| one_line(line)));
         } else {
-            lines.extend(explain::sentence(&scene.settled).map(|sentence| one_line(&sentence)));
+            lines.extend(explain::render_sentence(&scene.settled).map(|sentence| one_line(&sentence)));
         }
         if let [first, alike @ ..] = self.alike_scenes(scene)
             && first.scene == scene.scene

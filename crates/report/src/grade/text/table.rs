@@ -1,9 +1,9 @@
 //! The table of a class, with one row per submission.
 use crate::foreign::one_line;
 use crate::{
-    grade::format_points,
+    grade::format_optional_points,
     style::{Look, Style},
-    wrap::columns,
+    wrap::count_columns,
 };
 use fosssim_findings::{Grade, GroupGrade, changes::Changes};
 
@@ -16,19 +16,19 @@ struct TextColumn {
 /// Returns one row per submission: points, worst verdict, scenes per group, time. Columns that do not fit the width are
 /// left out: first the time, then the groups, which are replaced by the number of accepted scenes.
 #[must_use]
-pub fn table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
+pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
         let cells = std::iter::once(heading.to_owned()).chain(grades.iter().map(cell)).collect();
         TextColumn { cells, right }
     };
     let name = of("submission", false, &|grade| shorten_name(&one_line(&grade.submission)));
-    let score = of("points", true, &|grade| format_points(grade.points));
+    let score = of("points", true, &|grade| format_optional_points(grade.points));
     let verdict = of("verdict", false, &|grade| grade.verdict.name().to_owned());
     let seconds = of("seconds", true, &|grade| format!("{:.2}", grade.wall.as_secs_f64()));
     let since = |heading: &str, cell: &dyn Fn(Changes<'_>) -> String| {
         of(heading, true, &|grade| grade.changes().map(cell).unwrap_or_default())
     };
-    let before = since("before", &|changes| format_points(changes.points));
+    let before = since("before", &|changes| format_optional_points(changes.points));
     let right = since("right", &|changes| format!("+{}", changes.right.len()));
     let broke = since("broke", &|changes| format!("-{}", changes.broke.len()));
     let groups = grades.first().map_or(0, |grade| grade.groups.len());
@@ -69,7 +69,7 @@ const MAX_NAME_WIDTH: usize = 40;
 #[must_use]
 pub fn shorten_name(name: &str) -> String {
     const END_WIDTH: usize = MAX_NAME_WIDTH / 2 - 2;
-    if columns(name) <= MAX_NAME_WIDTH {
+    if count_columns(name) <= MAX_NAME_WIDTH {
         return name.to_owned();
     }
     let letters: Vec<char> = name.chars().collect();
@@ -78,7 +78,7 @@ pub fn shorten_name(name: &str) -> String {
         let mut room = END_WIDTH;
         letters
             .take_while(|letter| {
-                let wide = columns(&letter.to_string());
+                let wide = count_columns(&letter.to_string());
                 let fits = wide <= room;
                 room = room.saturating_sub(wide);
                 fits
@@ -92,7 +92,7 @@ pub fn shorten_name(name: &str) -> String {
 }
 
 fn column_width(column: &TextColumn) -> usize {
-    column.cells.iter().map(|cell| columns(cell)).max().unwrap_or(0)
+    column.cells.iter().map(|cell| count_columns(cell)).max().unwrap_or(0)
 }
 
 fn total_width(columns: &[&TextColumn]) -> usize {
@@ -105,7 +105,7 @@ fn render_rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> St
         let mut line = String::new();
         for (number, column) in columns_of.iter().enumerate() {
             let cell = &column.cells[row];
-            let blanks = " ".repeat(column_width(column) - columns(cell));
+            let blanks = " ".repeat(column_width(column) - count_columns(cell));
             let look = match row.checked_sub(1) {
                 None => Some(Look::Faint),
                 // This is the column of the verdict.
@@ -140,8 +140,11 @@ mod tests {
         assert_eq!(shorten_name("a short name"), "a short name");
         let long = format!("team-{}-17", "x".repeat(180));
         let shown = shorten_name(&long);
-        assert!(columns(&shown) <= MAX_NAME_WIDTH && shown.starts_with("team-x") && shown.ends_with("x-17"), "{shown}");
+        assert!(
+            count_columns(&shown) <= MAX_NAME_WIDTH && shown.starts_with("team-x") && shown.ends_with("x-17"),
+            "{shown}"
+        );
         let wide = shorten_name(&"界".repeat(90));
-        assert!(columns(&wide) <= MAX_NAME_WIDTH && wide.contains("..."), "{wide}");
+        assert!(count_columns(&wide) <= MAX_NAME_WIDTH && wide.contains("..."), "{wide}");
     }
 }

@@ -13,11 +13,11 @@ use fosssim_mistakes::diagnose::{About, Detail, Explanation, OfPolynomials, Poly
 use fosssim_student::{Area, Mistake, Row, StepMistake, find};
 
 pub(crate) use letters::explain_letters;
-pub(crate) use places::place;
+pub(crate) use places::describe_place;
 
 /// Returns the mistake as a sentence for the student, which does not reveal a formula.
 #[must_use]
-pub fn what(explanation: &Explanation) -> String {
+pub fn describe(explanation: &Explanation) -> String {
     let sentence = match &explanation.about {
         About::Mistake => known_sentence(&explanation.key).unwrap_or_else(|| format!("{}.", explanation.key)),
         About::Unfinished => format!("Not written yet: {}.", describe_unfinished(&explanation.same_as)),
@@ -26,9 +26,9 @@ pub fn what(explanation: &Explanation) -> String {
             format!("Does this trace belong to this scene? Its first record differs from the scene's start{length}.")
         }
         About::Polynomials { subjects, found } => polynomials::describe_fault_of(subjects, found),
-        About::Stage(fault) => stages::what(fault),
-        About::Pairs(wrong) => near::what(wrong),
-        About::NotFinite(found) => not_finite::what(found),
+        About::Stage(fault) => stages::describe(fault),
+        About::Pairs(wrong) => near::describe(wrong),
+        About::NotFinite(found) => not_finite::describe(found),
     };
     debug_assert!(formula_in(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
     sentence
@@ -39,7 +39,7 @@ pub fn what(explanation: &Explanation) -> String {
 pub fn what_or(explanation: &Explanation) -> String {
     let rivals = explanation.same_as.iter().filter(|_| explanation.about == About::Mistake);
     let rivals: Vec<String> = rivals.filter_map(|key| known_sentence(key)).collect();
-    let sentence = what(explanation);
+    let sentence = describe(explanation);
     match rivals.as_slice() {
         [] => sentence,
         [one] => format!("{sentence} Or, with the same traces: {one}"),
@@ -53,12 +53,12 @@ pub fn what_or(explanation: &Explanation) -> String {
 /// Returns the lines of the exact form: the terms of each coefficient and their weights. The exact form may reveal the
 /// right formula. A known mistake, which the reference has reproduced, has no lines about other weights that fit.
 #[must_use]
-pub fn details(explanation: &Explanation) -> Vec<String> {
+pub fn list_details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let is_exact = explanation.details.iter().any(|detail| matches!(detail, Detail::Term(_)));
     let is_doubt = |detail: &Detail| matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)));
     if let (About::Pairs(wrong), [_, ..]) = (&explanation.about, &explanation.details[..]) {
-        lines.extend(near::details(wrong));
+        lines.extend(near::list_details(wrong));
     }
     for detail in explanation.details.iter().filter(|detail| !(is_exact && is_doubt(detail))) {
         let line = match detail {
@@ -79,7 +79,7 @@ pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
     let is_form = |detail: &&Detail| matches!(detail, Detail::Polynomial(_)) && !explanation.is_unexplained();
     let details = explanation.details.iter().filter(is_form).cloned().collect();
     match explanation.about {
-        About::Polynomials { .. } => self::details(&Explanation { details, ..explanation.clone() }),
+        About::Polynomials { .. } => self::list_details(&Explanation { details, ..explanation.clone() }),
         _ => Vec::new(),
     }
 }

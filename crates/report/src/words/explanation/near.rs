@@ -34,7 +34,7 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
 }
 
 /// Returns the affected pairs, the fault, and their common traits.
-pub(super) fn what(wrong: &WrongPairs) -> String {
+pub(super) fn describe(wrong: &WrongPairs) -> String {
     let faults = faults(wrong);
     let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
     // Velocities of pairs that press on each other may reveal too much, so they are not mentioned.
@@ -56,7 +56,7 @@ pub(super) fn what(wrong: &WrongPairs) -> String {
 }
 
 /// Returns the first pair, the number of pairs, and the exact form of their common traits.
-pub(super) fn details(wrong: &WrongPairs) -> Vec<String> {
+pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
     let first = wrong.first.map(|(pair, step)| format!("The first one is in step {step}: {}.", PairWords(pair)));
     let of_fault = |fault: &PairFault<'_>| {
         let sum = |times: usize| fault.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>();
@@ -104,7 +104,7 @@ mod tests {
     #[test]
     fn each_kind_of_pair_is_told_by_how_many_are_wrong() {
         let [particles, edges, half_planes] = PairKind::ALL;
-        let told = |kinds: [PairCounts; 3]| what(&WrongPairs { first: None, kinds: kinds.into() });
+        let told = |kinds: [PairCounts; 3]| describe(&WrongPairs { first: None, kinds: kinds.into() });
         assert_eq!(
             told([pairs(particles, [90, 1, 0]), pairs(edges, [4, 0, 0]), pairs(half_planes, [0; 3])]),
             "Not written yet: the search for near pairs. No pair is reported."

@@ -2,7 +2,7 @@
 use fosssim_mistakes::diagnose::{NanStage, NotFinite};
 
 /// Describes the first step with such a value, the stage that computes it, and the usual reason.
-pub(super) fn what(found: &NotFinite) -> String {
+pub(super) fn describe(found: &NotFinite) -> String {
     let what = if found.is_nan { "NaN (not a number)" } else { "an infinite number" };
     let where_from = match (found.step, found.stage) {
         (_, NanStage::FirstRecord) => "In the first record".to_owned(),

@@ -4,7 +4,7 @@ use fosssim_mistakes::diagnose::{ExamplePlace, StepRecord};
 use fosssim_model::sim::PairKind;
 
 /// Returns the place of an example in its step, and the meaning of its numbers.
-pub(crate) fn place(place: &ExamplePlace) -> String {
+pub(crate) fn describe_place(place: &ExamplePlace) -> String {
     match place {
         ExamplePlace::Given { pair, pass, subject } => {
             format!("{}, pass {}, {} polynomial", PairWords(*pair), pass + 1, subject.name())

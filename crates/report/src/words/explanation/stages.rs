@@ -8,7 +8,7 @@ use fosssim_mistakes::diagnose::{
 use fosssim_model::sim::PairKind;
 
 /// Returns the fault of a stage, beginning with its place.
-pub(super) fn what(fault: &StageFault) -> String {
+pub(super) fn describe(fault: &StageFault) -> String {
     format!("{}: {}.", describe_place(fault), capitalize(&describe_fault(fault)))
 }
 
@@ -153,7 +153,9 @@ const fn plural(quantity: Quantity) -> &'static str {
 /// Returns a line of the exact form; `None` if the number is not worth a line.
 pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
-        StageDetail::Factor(ratio) => format!("each change is {} what it should be", times(Ratios::All(*ratio))),
+        StageDetail::Factor(ratio) => {
+            format!("each change is {} what it should be", describe_ratio(Ratios::All(*ratio)))
+        }
         StageDetail::Order => {
             "per particle: the particles after it, the edges of which it is not an end, the half-planes".to_owned()
         }
@@ -166,9 +168,9 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
         StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, 1.0) => return None,
         StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, -1.0) => "it points backwards".to_owned(),
         StageDetail::Vectors(Ratios::Between(..)) => "its length differs from contact to contact".to_owned(),
-        StageDetail::Vectors(ratios) => format!("{} as long along the right one", times(*ratios)),
+        StageDetail::Vectors(ratios) => format!("{} as long along the right one", describe_ratio(*ratios)),
         StageDetail::VectorsOff(part) => format!("off by at most {part:.1e} of its length"),
-        StageDetail::Times(ratios) => format!("{} what they should be", times(*ratios)),
+        StageDetail::Times(ratios) => format!("{} what they should be", describe_ratio(*ratios)),
         StageDetail::TimesOff(offset) => format!("off by {offset:.6}"),
         StageDetail::TimesUsed => {
             "the time of impact from the root finder is used unchanged for contact vector and response".to_owned()
@@ -181,7 +183,7 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
             let amount = match amount {
                 Amount::Unwanted => "though it should not".to_owned(),
                 Amount::Right => "as it should along the contact vector".to_owned(),
-                Amount::Ratio(ratios) => format!("by {} what it should", times(*ratios)),
+                Amount::Ratio(ratios) => format!("by {} what it should", describe_ratio(*ratios)),
             };
             let across = if *across { ", and across the contact vector, too" } else { "" };
             let (place, quantity) = (capitalize(changed.kind.name()), singular(changed.quantity));
@@ -190,17 +192,19 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
         }
         StageDetail::OfZones { count, of } => format!("in {count} of {of} zones of the first round"),
         StageDetail::Stopped(Ratios::All(ratio)) if is(*ratio, 1.0) => "they keep the velocity from before".to_owned(),
-        StageDetail::Stopped(ratios) => format!("{} their velocity before", times(*ratios)),
+        StageDetail::Stopped(ratios) => format!("{} their velocity before", describe_ratio(*ratios)),
         StageDetail::CenterMoves(Ratios::All(ratio)) if is(*ratio, 0.0) => "it does not move".to_owned(),
         StageDetail::CenterMoves(Ratios::Between(..)) => "how far it moves differs from zone to zone".to_owned(),
-        StageDetail::CenterMoves(ratios) => format!("it moves {} as far", times(*ratios)),
+        StageDetail::CenterMoves(ratios) => format!("it moves {} as far", describe_ratio(*ratios)),
         StageDetail::CenterDirection => "its direction is wrong, too".to_owned(),
         StageDetail::Turns(Ratios::All(ratio) | Ratios::Between(_, ratio)) if ratio.abs() < 1e-3 => {
             "they hardly turn".to_owned()
         }
         StageDetail::Turns(Ratios::Between(..)) => "how far they turn differs from zone to zone".to_owned(),
-        StageDetail::Turns(ratios) => format!("they turn {} as far", times(*ratios)),
-        StageDetail::Velocities(ratios) => format!("{} the displacement divided by the step size", times(*ratios)),
+        StageDetail::Turns(ratios) => format!("they turn {} as far", describe_ratio(*ratios)),
+        StageDetail::Velocities(ratios) => {
+            format!("{} the displacement divided by the step size", describe_ratio(*ratios))
+        }
     })
 }
 
@@ -210,7 +214,7 @@ fn is(ratio: f64, value: f64) -> bool {
 }
 
 /// Returns ratios as text: "1.5 times" if they agree, otherwise their range.
-pub(super) fn times(ratios: Ratios) -> String {
+pub(super) fn describe_ratio(ratios: Ratios) -> String {
     let short = |value: f64| {
         if value.abs() >= 1e6 {
             return format_g(value);

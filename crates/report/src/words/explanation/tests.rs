@@ -233,7 +233,7 @@ fn lines_of_all_sorts() -> Vec<Detail> {
 fn no_sentence_gives_a_formula_away() {
     let known = all_rows().map(|row| explanation(row.id, About::Mistake, Vec::new()));
     for one in all().into_iter().chain(known) {
-        let sentence = what(&one);
+        let sentence = describe(&one);
         assert_eq!(formula_in(&sentence), None, "{sentence}");
         assert!(sentence.ends_with(['.', '?']) && sentence.starts_with(char::is_uppercase), "{sentence}");
     }
@@ -241,9 +241,9 @@ fn no_sentence_gives_a_formula_away() {
 
 #[test]
 fn every_finding_has_its_sentence() {
-    let sentences: Vec<String> = all().iter().map(what).collect();
+    let sentences: Vec<String> = all().iter().map(describe).collect();
     insta::assert_snapshot!("sentences", sentences.join("\n"));
-    let lines = details(&explanation("k", About::Mistake, lines_of_all_sorts()));
+    let lines = list_details(&explanation("k", About::Mistake, lines_of_all_sorts()));
     insta::assert_snapshot!("lines", lines.join("\n"));
 }
 
@@ -255,8 +255,8 @@ fn a_known_mistake_is_told_by_its_row() {
     let details_of_row =
         vec![Detail::Term(row.id.into()), Detail::Letters(vec![PairKind::ParticleEdge]), Detail::Look(row.area)];
     let one = explanation(row.id, About::Mistake, details_of_row);
-    assert_eq!(what(&one), row.sentence());
-    let lines = details(&one);
+    assert_eq!(describe(&one), row.sentence());
+    let lines = list_details(&one);
     assert_eq!(lines[0], row.term);
     assert!(lines[1].starts_with("Here d21 is dx2 - dx1"), "{lines:?}");
     assert_eq!(lines[2], "Look at the coefficients that the particle-edge detection computes.");

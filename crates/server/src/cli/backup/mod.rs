@@ -46,7 +46,7 @@ pub(super) async fn backup(arguments: &BackupArguments) -> Result<()> {
 }
 
 async fn fill(folder: &Path, database: &Database, store: &Store, address: &Address) -> Result<Manifest> {
-    let tables = db::version(database).await?;
+    let tables = db::read_version(database).await?;
     if tables == 0 {
         bail!("the database {address} is empty");
     }

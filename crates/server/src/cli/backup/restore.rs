@@ -20,11 +20,11 @@ use std::{
 pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> {
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let manifest = Manifest::read(from)?;
-    if manifest.tables > db::LATEST {
+    if manifest.tables > db::NEWEST {
         bail!(
             "the backup's tables have version {}, this program reads versions up to {}: restore it with version {}",
             manifest.tables,
-            db::LATEST,
+            db::NEWEST,
             manifest.version
         );
     }
@@ -54,7 +54,7 @@ async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) ->
         (Address::Sqlite(file), false) if file.exists() => bail!("the database {} already exists", file.display()),
         (Address::Postgres(_), true) => {
             let database = Database::open(&address).await.with_context(|| format!("database {address}"))?;
-            let version = db::version(&database).await?;
+            let version = db::read_version(&database).await?;
             database.close().await;
             if version > 0 {
                 bail!("the database {address} is not empty; restore into a new one");
@@ -80,8 +80,8 @@ async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) ->
         Address::Postgres(url) => postgres::load(url, copy).await?,
     }
     let tables = match manifest.tables {
-        db::LATEST => "of this version".to_owned(),
-        older => format!("of version {older}; starting the server brings them up to {}", db::LATEST),
+        db::NEWEST => "of this version".to_owned(),
+        older => format!("of version {older}; starting the server brings them up to {}", db::NEWEST),
     };
     println!("{}: the database (tables {tables}) and {} artifacts", place.data.display(), restored.count);
     Ok(())

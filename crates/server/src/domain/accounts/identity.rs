@@ -3,7 +3,7 @@ use crate::domain::view::Account;
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
     problem::Problem,
-    secret::{hex, random_hex},
+    secret::{random_hex, to_hex},
     values,
 };
 use serde::Serialize;
@@ -12,7 +12,7 @@ use std::fmt;
 use utoipa::ToSchema;
 
 /// The lifetime of a session after its last use, in milliseconds.
-const SESSION: i64 = 14 * 24 * 3600 * 1000;
+const SESSION_LIFETIME: i64 = 14 * 24 * 3600 * 1000;
 
 /// The maximum number of sessions of an account; a further one ends the oldest.
 const MAX_SESSIONS: i64 = 50;
@@ -86,7 +86,7 @@ pub struct Link {
 
 /// The way in which a person signed in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(in crate::domain) enum Way {
+pub(in crate::domain) enum SignInMethod {
     /// By a provider, a learning platform, or a link from the server or an administrator.
     Own,
     /// By a link from a course's staff, who may have used it themselves.
@@ -111,7 +111,7 @@ pub(in crate::domain) struct SessionState {
 /// Returns the digest of a secret, which the database stores. The secret is random, so it can't be guessed from the
 /// digest.
 pub(in crate::domain) fn digest(secret: &str) -> String {
-    hex(&Sha256::digest(secret))
+    to_hex(&Sha256::digest(secret))
 }
 
 /// Returns the owner of a token, and the token's number.
@@ -155,23 +155,25 @@ pub(in crate::domain) async fn account_of_session(
 /// Extends a session from the present time.
 pub(in crate::domain) async fn extend_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
     let statement = "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?";
-    transaction.execute(statement, values![SESSION, digest(session)]).await.map(drop)
+    transaction.execute(statement, values![SESSION_LIFETIME, digest(session)]).await.map(drop)
 }
 
 /// Begins a session, and returns its secret for a cookie.
 pub(in crate::domain) async fn begin_session(
     transaction: &mut Transaction,
     account: i64,
-    way: Way,
+    way: SignInMethod,
 ) -> Result<NewSecret, DbError> {
     let secret = NewSecret::new("");
-    let token = if let Way::Token(token) = way { Some(token) } else { None };
+    let token = if let SignInMethod::Token(token) = way { Some(token) } else { None };
     let expired =
         "DELETE FROM session WHERE digest IN (SELECT digest FROM session WHERE expires_at < {now} {skip locked})";
     transaction.execute(expired, values![]).await?;
     let statement = "INSERT INTO session (digest, account, created_at, seen_at, expires_at, vouched, token)
         VALUES (?, ?, {now}, {now}, {now} + ?, ?, ?)";
-    transaction.execute(statement, values![secret.digest(), account, SESSION, way == Way::Vouched, token]).await?;
+    transaction
+        .execute(statement, values![secret.digest(), account, SESSION_LIFETIME, way == SignInMethod::Vouched, token])
+        .await?;
     let statement = "DELETE FROM session WHERE account = ? AND digest NOT IN
         (SELECT digest FROM session WHERE account = ? ORDER BY created_at DESC, seen_at DESC LIMIT ?)";
     transaction.execute(statement, values![account, account, MAX_SESSIONS]).await?;
@@ -189,7 +191,7 @@ pub(in crate::domain) async fn new_link(
     transaction: &mut Transaction,
     account: i64,
     by: Option<i64>,
-    way: Way,
+    way: SignInMethod,
 ) -> Result<NewSecret, DbError> {
     transaction.execute("DELETE FROM sign_in_link WHERE account = ? AND used_at IS NULL", values![account]).await?;
     further_link(transaction, account, by, way).await
@@ -200,12 +202,14 @@ pub(in crate::domain) async fn further_link(
     transaction: &mut Transaction,
     account: i64,
     by: Option<i64>,
-    way: Way,
+    way: SignInMethod,
 ) -> Result<NewSecret, DbError> {
     let secret = NewSecret::new("");
     let statement = "INSERT INTO sign_in_link (digest, account, created_by, created_at, expires_at, vouched)
         VALUES (?, ?, ?, {now}, {now} + ?, ?)";
-    transaction.execute(statement, values![secret.digest(), account, by, LINK_LIFETIME, way == Way::Vouched]).await?;
+    transaction
+        .execute(statement, values![secret.digest(), account, by, LINK_LIFETIME, way == SignInMethod::Vouched])
+        .await?;
     Ok(secret)
 }
 
@@ -219,15 +223,16 @@ pub(in crate::domain) async fn is_link(transaction: &mut Transaction, link: &str
 pub(in crate::domain) async fn use_link(
     transaction: &mut Transaction,
     link: &str,
-) -> Result<Option<(i64, Way)>, DbError> {
+) -> Result<Option<(i64, SignInMethod)>, DbError> {
     let statement =
         "UPDATE sign_in_link SET used_at = {now} WHERE digest = ? AND used_at IS NULL AND expires_at > {now}
         RETURNING account, vouched";
     let row = transaction.row(statement, values![digest(link)]).await?;
     let Some(row) = row else { return Ok(None) };
-    let (account, way) = (row.int("account")?, if row.flag("vouched")? { Way::Vouched } else { Way::Own });
+    let (account, way) =
+        (row.int("account")?, if row.flag("vouched")? { SignInMethod::Vouched } else { SignInMethod::Own });
     // The person could not sign in at the provider, so staff may have connected the account with another person.
-    if way == Way::Own {
+    if way == SignInMethod::Own {
         end_vouched_connections(transaction, account).await?;
     }
     let able = transaction.row("SELECT id FROM account WHERE id = ? AND disabled_at IS NULL", values![account]).await?;
@@ -282,12 +287,13 @@ pub(in crate::domain) async fn new_token(
     account: Option<i64>,
     name: &str,
     by: i64,
-    way: Way,
+    way: SignInMethod,
 ) -> Result<NewToken, DbError> {
     let secret = NewSecret::new(if account.is_some() { PERSON_PREFIX } else { WORKER_PREFIX });
     let statement = "INSERT INTO token (account, name, digest, created_by, created_at, vouched)
         VALUES (?, ?, ?, ?, {now}, ?) RETURNING id, name, created_at";
-    let row = transaction.one(statement, values![account, name, secret.digest(), by, way == Way::Vouched]).await?;
+    let row =
+        transaction.one(statement, values![account, name, secret.digest(), by, way == SignInMethod::Vouched]).await?;
     Ok(NewToken { info: TokenInfo::from_row(&row)?, token: secret.reveal().to_owned() })
 }
 

@@ -22,7 +22,7 @@ static ALL_TRANSFERS: Semaphore = Semaphore::const_new(3000);
 const TURN_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// The maximum number of rejected archives of an account per minute.
-const REFUSED: u32 = 30;
+const MAX_REJECTED_PER_MINUTE: u32 = 30;
 
 /// The limits, and the active transfers.
 #[derive(Debug, Default)]
@@ -96,8 +96,10 @@ impl Member {
     /// Fails if too many archives wait, or too many of the account's were rejected.
     pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
         let turn = self.app.limits.archives.wait(self.account.id).await?;
-        if !self.app.limits.refused.pass(self.account.id, REFUSED, Instant::now()) {
-            return Err(Problem::too_many(format!("more than {REFUSED} of your archives were rejected in a minute")));
+        if !self.app.limits.refused.try_acquire(self.account.id, MAX_REJECTED_PER_MINUTE, Instant::now()) {
+            return Err(Problem::too_many(format!(
+                "more than {MAX_REJECTED_PER_MINUTE} of your archives were rejected in a minute"
+            )));
         }
         Ok(turn)
     }
@@ -159,8 +161,8 @@ impl RoomShare {
     }
 
     fn describe(self, whose: &str) -> String {
-        let kept = format!("Stored uploads and reports of {whose}: {}", problem::size(self.bytes));
-        let most = problem::size(self.most);
+        let kept = format!("Stored uploads and reports of {whose}: {}", problem::format_size(self.bytes));
+        let most = problem::format_size(self.most);
         match self.most {
             0 => kept + ".",
             _ if self.is_nearly_all() => {
@@ -175,6 +177,6 @@ fn ensure_within(what: &str, RoomShare { bytes: kept, most }: RoomShare, size: u
     if most == 0 || kept.saturating_add(size) <= most {
         return Ok(());
     }
-    let [kept, most, size] = [kept, most, size].map(problem::size);
+    let [kept, most, size] = [kept, most, size].map(problem::format_size);
     Err(Problem::quota(format!("{what} use {kept} of {most}, and this upload has {size}")))
 }

@@ -8,7 +8,7 @@ use crate::{
         accounts::{identity, throttle},
     },
     problem::{Problem, ensure},
-    secret::{hex, random_hex},
+    secret::{random_hex, to_hex},
     values,
 };
 use base64::{Engine, prelude::BASE64_URL_SAFE_NO_PAD as URL_SAFE_NO_PAD};
@@ -53,7 +53,7 @@ impl App {
         (secrets, known): (&Secrets, Option<&String>),
         (account, to): (i64, &str),
     ) -> Result<BegunSignIn, Problem> {
-        if !self.0.throttle.pass(throttle::bucket_id(secrets.address, at), MAX_LOGINS, Instant::now()) {
+        if !self.0.throttle.try_acquire(throttle::bucket_id(secrets.address, at), MAX_LOGINS, Instant::now()) {
             return Err(Problem::too_many("too many people are signing in from your address"));
         }
         // All windows of a browser share one secret.
@@ -70,7 +70,7 @@ impl App {
     /// Returns a secret of a sign-in, which only this service can compute from the state.
     pub(in crate::domain) async fn word_of(&self, kind: &str, state: &str) -> Result<String, Problem> {
         let key = self.signing_key().await?;
-        Ok(hex(hmac::sign(&key, format!("{kind} {state}").as_bytes()).as_ref()))
+        Ok(to_hex(hmac::sign(&key, format!("{kind} {state}").as_bytes()).as_ref()))
     }
 
     /// Returns the sign-in with a state, if this browser began it.

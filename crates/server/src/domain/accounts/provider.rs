@@ -5,7 +5,7 @@ use crate::{
     domain::{
         App, LaunchTarget, LoginAnswer, Person, Visitor,
         accounts::{
-            identity::{self, Way},
+            identity::{self, SignInMethod},
             newcomer::Newcomer,
             pending::UNKNOWN_SIGN_IN,
         },
@@ -93,7 +93,7 @@ impl Visitor {
             Some(connects) => connect(&mut transaction, provider, &person, &connects).await?,
             None => account(&mut transaction, provider, &person).await?,
         };
-        let session = identity::begin_session(&mut transaction, account, Way::Own).await?;
+        let session = identity::begin_session(&mut transaction, account, SignInMethod::Own).await?;
         transaction.commit().await?;
         Ok(LaunchTarget { session, to: pending.to })
     }

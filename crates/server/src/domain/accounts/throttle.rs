@@ -19,7 +19,7 @@ pub struct Throttle(Mutex<HashMap<i64, (f64, Instant)>>);
 impl Throttle {
     /// Takes a token from an account's bucket, which holds at most the tokens of one minute, and returns whether there
     /// was one.
-    pub(in crate::domain) fn pass(&self, account: i64, per_minute: u32, now: Instant) -> bool {
+    pub(in crate::domain) fn try_acquire(&self, account: i64, per_minute: u32, now: Instant) -> bool {
         let most = f64::from(per_minute);
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let level = |(level, at): (f64, Instant)| {
@@ -66,13 +66,13 @@ mod tests {
     fn a_bucket_empties_and_fills_for_each_account() {
         let throttle = Throttle::default();
         let start = Instant::now();
-        let passed = (0..20).filter(|_| throttle.pass(1, 12, start)).count();
+        let passed = (0..20).filter(|_| throttle.try_acquire(1, 12, start)).count();
         assert_eq!(passed, 12);
-        assert!(throttle.pass(2, 12, start), "another account has its own");
-        assert!(!throttle.pass(1, 12, start + Duration::from_secs(4)));
-        assert!(throttle.pass(1, 12, start + Duration::from_secs(9)));
-        assert!(!throttle.pass(1, 12, start + Duration::from_secs(9)));
+        assert!(throttle.try_acquire(2, 12, start), "another account has its own");
+        assert!(!throttle.try_acquire(1, 12, start + Duration::from_secs(4)));
+        assert!(throttle.try_acquire(1, 12, start + Duration::from_secs(9)));
+        assert!(!throttle.try_acquire(1, 12, start + Duration::from_secs(9)));
         throttle.put_back(1);
-        assert!(throttle.pass(1, 12, start + Duration::from_secs(9)));
+        assert!(throttle.try_acquire(1, 12, start + Duration::from_secs(9)));
     }
 }

@@ -1,7 +1,7 @@
 //! The example course for trying the service, created on a new server on request.
 use crate::domain::{
     App, NewSecret, Settings,
-    accounts::identity::{self, Way},
+    accounts::identity::{self, SignInMethod},
     roles::admin,
 };
 use crate::{problem::Problem, values};
@@ -49,7 +49,9 @@ impl App {
                    WHERE sign_in_link.account = account.id AND sign_in_link.used_at IS NOT NULL)";
         let student = transaction.row(statement, values![COURSE.0, STUDENT.0]).await?;
         let link = match student {
-            Some(student) => Some(identity::new_link(&mut transaction, student.int("id")?, None, Way::Own).await?),
+            Some(student) => {
+                Some(identity::new_link(&mut transaction, student.int("id")?, None, SignInMethod::Own).await?)
+            }
             None => None,
         };
         transaction.commit().await?;

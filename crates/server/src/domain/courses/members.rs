@@ -1,7 +1,7 @@
 //! The people in a course.
 use crate::domain::{
     Staff,
-    accounts::identity::{self, Link, Way},
+    accounts::identity::{self, Link, SignInMethod},
 };
 use crate::{
     db::{DbError, Transaction, from_row},
@@ -109,8 +109,8 @@ impl Staff {
         let made = transaction.row(statement, values![login, name, course]).await?;
         if let Some(made) = made {
             let account = made.int("id")?;
-            self.enter(transaction, account, login, role).await?;
-            return Ok(self.link(transaction, account, self.way()).await?);
+            self.add_account(transaction, account, login, role).await?;
+            return Ok(self.link(transaction, account, self.sign_in_method()).await?);
         }
         let found =
             transaction.one("SELECT id, managed_by FROM account WHERE login = ? {for update}", values![login]).await?;
@@ -134,9 +134,9 @@ impl Staff {
         } else if is_of_others {
             identity::end_vouched(transaction, account).await?;
         }
-        self.enter(transaction, account, login, role).await?;
+        self.add_account(transaction, account, login, role).await?;
         match ends_all || is_of_others {
-            true => Ok(self.link(transaction, account, Way::Own).await?),
+            true => Ok(self.link(transaction, account, SignInMethod::Own).await?),
             false => Ok(None),
         }
     }
@@ -152,17 +152,28 @@ impl Staff {
     }
 
     /// Returns the sign-in method for links that this person makes.
-    fn way(&self) -> Way {
-        if self.account.is_admin { Way::Own } else { Way::Vouched }
+    fn sign_in_method(&self) -> SignInMethod {
+        if self.account.is_admin { SignInMethod::Own } else { SignInMethod::Vouched }
     }
 
     /// Creates a link that signs a person in once.
-    async fn link(&self, transaction: &mut Transaction, account: i64, way: Way) -> Result<Option<String>, DbError> {
+    async fn link(
+        &self,
+        transaction: &mut Transaction,
+        account: i64,
+        way: SignInMethod,
+    ) -> Result<Option<String>, DbError> {
         let secret = identity::new_link(transaction, account, Some(self.account.id), way).await?;
         Ok(Some(self.app.welcome_address(&secret)))
     }
 
-    async fn enter(&self, transaction: &mut Transaction, account: i64, login: &str, role: &str) -> Result<(), DbError> {
+    async fn add_account(
+        &self,
+        transaction: &mut Transaction,
+        account: i64,
+        login: &str,
+        role: &str,
+    ) -> Result<(), DbError> {
         let statement = "INSERT INTO member (course, account, role, created_at) VALUES (?, ?, ?, {now})
             ON CONFLICT (course, account) DO UPDATE SET role = excluded.role, platform = NULL";
         transaction.execute(statement, values![self.course, account, role]).await?;
@@ -205,7 +216,7 @@ impl Staff {
                 provider";
             return Err(Problem::not_allowed(detail));
         }
-        let link = self.link(&mut transaction, row.int("id")?, self.way()).await?;
+        let link = self.link(&mut transaction, row.int("id")?, self.sign_in_method()).await?;
         self.note(&mut transaction, "link", None, &format!("a new link for {login}")).await?;
         transaction.commit().await?;
         Ok(Link { link })

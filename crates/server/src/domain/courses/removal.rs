@@ -32,9 +32,10 @@ const SOME_OF_COURSE: &str =
     ORDER BY id LIMIT 500";
 const SOME_OF_PERSON: &str = "SELECT id FROM submission WHERE account = ? ORDER BY id LIMIT 500";
 
-const OF_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ?";
-const OF_COURSE: &str = "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)";
-const OF_PERSON: &str = "SELECT id FROM submission WHERE account = ?";
+const SELECT_BY_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ?";
+const SELECT_BY_COURSE: &str =
+    "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)";
+const SELECT_BY_PERSON: &str = "SELECT id FROM submission WHERE account = ?";
 
 /// Removes the jobs of the submissions that a statement selects, after waiting for jobs that are just finishing;
 /// returns the submissions' numbers as JSON.
@@ -109,10 +110,10 @@ impl Staff {
         let assignment = self.assignment(slug).await?;
         remove_in_batches(&self.app.0.database, SOME_OF_ASSIGNMENT, assignment.id).await?;
         let mut transaction = self.begin().await?;
-        cancel_jobs(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
+        cancel_jobs(&mut transaction, SELECT_BY_ASSIGNMENT, assignment.id).await?;
         // No uploads are accepted after this.
         transaction.rows("SELECT id FROM assignment WHERE id = ? {for removal}", values![assignment.id]).await?;
-        remove_submissions(&mut transaction, OF_ASSIGNMENT, assignment.id).await?;
+        remove_submissions(&mut transaction, SELECT_BY_ASSIGNMENT, assignment.id).await?;
         let rest = [
             "DELETE FROM platform_score WHERE link IN (SELECT id FROM platform_link WHERE assignment = ?)",
             "DELETE FROM platform_link WHERE assignment = ?",
@@ -144,10 +145,10 @@ impl Admin {
         drop(transaction);
         remove_in_batches(&self.app.0.database, SOME_OF_COURSE, course).await?;
         let mut transaction = self.app.0.database.begin().await?;
-        cancel_jobs(&mut transaction, OF_COURSE, course).await?;
+        cancel_jobs(&mut transaction, SELECT_BY_COURSE, course).await?;
         transaction.rows("SELECT id FROM course WHERE id = ? {for removal}", values![course]).await?;
         transaction.rows("SELECT id FROM assignment WHERE course = ? {for removal}", values![course]).await?;
-        remove_submissions(&mut transaction, OF_COURSE, course).await?;
+        remove_submissions(&mut transaction, SELECT_BY_COURSE, course).await?;
         let rest = [
             "DELETE FROM platform_score WHERE link IN (SELECT platform_link.id FROM platform_link
                 JOIN platform_course ON platform_course.id = platform_link.platform_course WHERE course = ?)",
@@ -185,9 +186,9 @@ impl Admin {
         let account = row.int("id")?;
         remove_in_batches(&self.app.0.database, SOME_OF_PERSON, account).await?;
         let mut transaction = self.app.0.database.begin().await?;
-        cancel_jobs(&mut transaction, OF_PERSON, account).await?;
+        cancel_jobs(&mut transaction, SELECT_BY_PERSON, account).await?;
         transaction.rows("SELECT id FROM account WHERE id = ? {for removal}", values![account]).await?;
-        remove_submissions(&mut transaction, OF_PERSON, account).await?;
+        remove_submissions(&mut transaction, SELECT_BY_PERSON, account).await?;
         let rest = [
             "DELETE FROM platform_score WHERE account = ?",
             "DELETE FROM platform_choice WHERE account = ?",

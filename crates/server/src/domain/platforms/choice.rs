@@ -63,7 +63,7 @@ impl Person {
     pub async fn choice(&self, secret: &str) -> Result<LinkTarget, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
-        let Some(place) = launch::place(&mut transaction, pending.platform.id, &pending.arrival).await? else {
+        let Some(place) = launch::find_place(&mut transaction, pending.platform.id, &pending.arrival).await? else {
             let context = &pending.arrival.context;
             let title = context.title.clone().or(context.label.clone()).unwrap_or_else(|| context.id.clone());
             let title: String = title.chars().filter(|c| !c.is_control()).take(200).collect();
@@ -97,7 +97,7 @@ impl Person {
     pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
-        if launch::place(&mut transaction, pending.platform.id, &pending.arrival).await?.is_some() {
+        if launch::find_place(&mut transaction, pending.platform.id, &pending.arrival).await?.is_some() {
             return Ok(());
         }
         let course = match known {
@@ -139,7 +139,7 @@ impl Person {
     pub async fn choose_assignment(&self, secret: &str, slug: &str) -> Result<LinkStep, Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
-        let place = launch::place(&mut transaction, pending.platform.id, &pending.arrival).await?;
+        let place = launch::find_place(&mut transaction, pending.platform.id, &pending.arrival).await?;
         let place = place.ok_or_else(|| Problem::not_found("course"))?;
         let statement = "SELECT account FROM member WHERE course = ? AND account = ? AND role = 'staff'";
         let staff = transaction.row(statement, values![place.course, self.account.id]).await?;

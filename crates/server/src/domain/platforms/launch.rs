@@ -3,7 +3,7 @@
 use crate::domain::{
     App, NewSecret, Visitor,
     accounts::{
-        identity::{self, Way},
+        identity::{self, SignInMethod},
         newcomer::Newcomer,
         pending::{BegunSignIn, UNKNOWN_SIGN_IN},
     },
@@ -150,7 +150,7 @@ impl Visitor {
         };
         let mut transaction = self.app.0.database.begin().await?;
         ensure(pending.use_up(&mut transaction).await?, Problem::refused_launch(UNKNOWN_SIGN_IN))?;
-        let launched = arrive(&mut transaction, &platform, &message, role).await?;
+        let launched = accept_launch(&mut transaction, &platform, &message, role).await?;
         self.app.0.notifier.commit(transaction).await?;
         Ok(launched)
     }
@@ -167,7 +167,7 @@ pub(in crate::domain) struct Place {
 from_row! { Place { id, course, slug, title } }
 
 /// Returns the course here that belongs to a person's course on the platform.
-pub(in crate::domain) async fn place(
+pub(in crate::domain) async fn find_place(
     transaction: &mut Transaction,
     platform: i64,
     arrival: &Arrival,
@@ -179,7 +179,7 @@ pub(in crate::domain) async fn place(
 }
 
 /// Finds or creates the person's account, updates its role, and returns the page to open.
-async fn arrive(
+async fn accept_launch(
     transaction: &mut Transaction,
     platform: &Platform,
     message: &Message,
@@ -187,7 +187,7 @@ async fn arrive(
 ) -> Result<LaunchTarget, Problem> {
     let arrival = &message.arrival;
     let staff = role == LtiRole::Staff;
-    let Some(Place { id, course, slug, .. }) = place(transaction, platform.id, arrival).await? else {
+    let Some(Place { id, course, slug, .. }) = find_place(transaction, platform.id, arrival).await? else {
         let detail = "this course is not connected with the grading server yet";
         ensure(
             staff,
@@ -220,7 +220,7 @@ async fn arrive(
             if !staff {
                 score::note_arrival(transaction, link, account).await?;
             }
-            let session = identity::begin_session(transaction, account, Way::Own).await?;
+            let session = identity::begin_session(transaction, account, SignInMethod::Own).await?;
             Ok(LaunchTarget { session, to: format!("/c/{slug}/a/{assignment}") })
         }
         None if staff => choose(transaction, platform, arrival, account).await,
@@ -290,7 +290,7 @@ async fn choose(
     if !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;
     }
-    let session = identity::begin_session(transaction, account, Way::Own).await?;
+    let session = identity::begin_session(transaction, account, SignInMethod::Own).await?;
     Ok(LaunchTarget { session, to: format!("/lti/choose/{}", secret.reveal()) })
 }
 

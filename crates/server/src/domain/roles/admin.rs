@@ -1,7 +1,7 @@
 //! Administrators and their actions.
 use crate::domain::{
     App, NewSecret,
-    accounts::identity::{self, Link, NewToken, TokenInfo, Way},
+    accounts::identity::{self, Link, NewToken, SignInMethod, TokenInfo},
     courses::members::PEOPLE_PER_PAGE,
     view::{self, Account, Course, Entry, Event, Queue},
 };
@@ -130,7 +130,7 @@ impl Admin {
         if was.is_some_and(|was| was.is_admin != is_admin) {
             identity::end_all(&mut transaction, account).await?;
         }
-        let link = identity::new_link(&mut transaction, account, Some(self.account.id), Way::Own).await?;
+        let link = identity::new_link(&mut transaction, account, Some(self.account.id), SignInMethod::Own).await?;
         let text = format!("{login}{}; a link to sign in", if is_admin { " is an administrator" } else { "" });
         self.note(&mut transaction, "account", &text).await?;
         transaction.commit().await?;
@@ -210,7 +210,7 @@ impl App {
     async fn new_worker_token(&self, name: &str, by: i64) -> Result<NewToken, Problem> {
         identity::check_slug("a worker's name", name)?;
         let mut transaction = self.0.database.begin().await?;
-        let token = identity::new_token(&mut transaction, None, name, by, Way::Own).await?;
+        let token = identity::new_token(&mut transaction, None, name, by, SignInMethod::Own).await?;
         let text = format!("{name} ({})", token.info.id);
         view::note(&mut transaction, &Entry::new("worker token", by, &text)).await?;
         transaction.commit().await?;
@@ -247,7 +247,7 @@ impl App {
         let statement = "SELECT id FROM account WHERE login = 'admin' AND is_admin = 1";
         let account = transaction.one(statement, values![]).await?.int("id")?;
         // Another server that started at the same time has also printed a link, so both must stay valid.
-        let link = identity::further_link(&mut transaction, account, None, Way::Own).await?;
+        let link = identity::further_link(&mut transaction, account, None, SignInMethod::Own).await?;
         transaction.commit().await?;
         Ok(Some(link))
     }
@@ -262,7 +262,7 @@ impl App {
         let statement = "SELECT id FROM account WHERE login = ? AND is_admin = 1 AND disabled_at IS NULL";
         let row =
             transaction.row(statement, values![login]).await?.ok_or_else(|| Problem::not_found("administrator"))?;
-        let link = identity::new_link(&mut transaction, row.int("id")?, None, Way::Own).await?;
+        let link = identity::new_link(&mut transaction, row.int("id")?, None, SignInMethod::Own).await?;
         transaction.commit().await?;
         Ok(link)
     }

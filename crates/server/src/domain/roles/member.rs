@@ -133,7 +133,7 @@ impl Member {
             None => shown::read_texts(&self.app.0.store, &grade.outcome.files).await?.shown,
         };
         if let Some(shown) = ShownGrade::read(&kept) {
-            shown.cover(&mut grade.outcome, STUDENT_PAGE);
+            shown.hide_from(&mut grade.outcome, STUDENT_PAGE);
             grade.created_at = shown::round_to_hour(grade.created_at);
             submission.is_withheld = true;
             grade.outcome.shown = Some(kept);

@@ -1,7 +1,7 @@
 //! A person who is signed in.
 use crate::domain::{
     App,
-    accounts::identity::{self, NewToken, SessionState, TokenInfo, Way},
+    accounts::identity::{self, NewToken, SessionState, SignInMethod, TokenInfo},
     view::{Account, Course},
 };
 use crate::{
@@ -87,7 +87,7 @@ impl Person {
     /// Fails if its name is invalid, there are too many, or the person did not sign in recently.
     pub async fn new_token(&self, name: &str) -> Result<NewToken, Problem> {
         identity::check_title("a token's name", name)?;
-        let way = if self.lately_at_browser()?.is_vouched { Way::Vouched } else { Way::Own };
+        let way = if self.lately_at_browser()?.is_vouched { SignInMethod::Vouched } else { SignInMethod::Own };
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL";
         let count = transaction.one(statement, values![self.account.id]).await?;

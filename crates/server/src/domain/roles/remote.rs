@@ -46,7 +46,7 @@ impl Remote {
     fn source(&self) -> LocalSource {
         let parts = &self.app.0;
         LocalSource::new(
-            parts.database.first(),
+            parts.database.with_priority(),
             parts.store.clone(),
             parts.notifier.clone(),
             parts.policy,
@@ -57,7 +57,7 @@ impl Remote {
 
     /// Returns whether a lease was given to this token; other leases are ignored.
     async fn owns(&self, lease: &Lease) -> Result<bool, Problem> {
-        let mut transaction = self.app.0.database.first().read().await?;
+        let mut transaction = self.app.0.database.with_priority().read().await?;
         let statement = "SELECT token FROM job WHERE id = ? AND attempt = ?";
         let row = transaction.row(statement, values![lease.job, lease.attempt]).await?;
         Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
@@ -147,7 +147,7 @@ impl Remote {
         outcome.version = strip_controls(&outcome.version, 60);
         let is_digest = |text: &str| text.parse::<Digest>().is_ok();
         ensure(outcome.grader.is_empty() || is_digest(&outcome.grader), Problem::invalid("grader must be a digest"))?;
-        let mut transaction = self.app.0.database.first().read().await?;
+        let mut transaction = self.app.0.database.with_priority().read().await?;
         let mut names = std::collections::BTreeSet::new();
         for file in &mut outcome.files {
             // The server, not the worker, chooses the names and media types of reports.
@@ -169,7 +169,7 @@ impl Remote {
 
     /// Returns the task of a job that the worker holds.
     async fn leased_task(&self, lease: &Lease) -> Result<Task, Problem> {
-        let mut transaction = self.app.0.database.first().read().await?;
+        let mut transaction = self.app.0.database.with_priority().read().await?;
         let statement = "SELECT payload FROM job
             WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running' AND token = ?";
         let row = transaction.row(statement, values![lease.job, lease.attempt, &lease.key, self.token]).await?;
@@ -197,7 +197,7 @@ impl Remote {
     pub async fn store(&self, lease: &Lease, file: &Path) -> Result<Artifact, Problem> {
         self.leased_task(lease).await?;
         let artifact = self.app.0.store.put_file(file).await?;
-        let mut transaction = self.app.0.database.first().begin().await?;
+        let mut transaction = self.app.0.database.with_priority().begin().await?;
         // This transaction and one that takes the job away wait for each other.
         let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
             {for update}";

@@ -226,7 +226,7 @@ impl Staff {
     /// # Errors
     ///
     /// Fails if the database does not answer.
-    pub async fn hides(&self, assignment: &Assignment) -> Result<bool, Problem> {
+    pub async fn is_hidden(&self, assignment: &Assignment) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         // Results of older versions may contain the hidden parts, too.
         let statement = "SELECT result.id FROM submission JOIN result ON result.submission = submission.id

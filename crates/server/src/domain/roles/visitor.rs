@@ -1,7 +1,7 @@
 //! Visitors, who need not be signed in.
 use crate::domain::{
     App, NewSecret,
-    accounts::identity::{self, Way},
+    accounts::identity::{self, SignInMethod},
     accounts::throttle,
 };
 use crate::problem::{Problem, ensure};
@@ -35,7 +35,7 @@ const MAX_SIGN_INS: u32 = 600;
 impl Visitor {
     fn count_sign_in(&self) -> Result<(), Problem> {
         let bucket = throttle::bucket_id(self.secrets.address, "sign-in");
-        let passes = self.app.0.throttle.pass(bucket, MAX_SIGN_INS, Instant::now());
+        let passes = self.app.0.throttle.try_acquire(bucket, MAX_SIGN_INS, Instant::now());
         ensure(passes, Problem::too_many("too many people are signing in from your address"))
     }
 
@@ -76,7 +76,7 @@ impl Visitor {
         let (account, token) = identity::account_of_token(&mut transaction, token).await?;
         drop(transaction);
         let mut transaction = self.app.0.database.begin().await?;
-        let session = identity::begin_session(&mut transaction, account.id, Way::Token(token)).await?;
+        let session = identity::begin_session(&mut transaction, account.id, SignInMethod::Token(token)).await?;
         transaction.commit().await?;
         Ok(session)
     }

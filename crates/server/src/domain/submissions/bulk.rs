@@ -7,7 +7,7 @@ use crate::{
 };
 use std::ops::RangeInclusive;
 
-/// Builds the payload of a job for a row of `submission`, as described at [`pieces`].
+/// Builds the payload of a job for a row of `submission`, as described at [`statement_pieces`].
 macro_rules! payload {
     () => {
         "CAST(? AS TEXT) || submission.form || CAST(? AS TEXT) || {quoted}(submission.file_name) || CAST(? AS TEXT)
@@ -18,7 +18,7 @@ pub(in crate::domain) use payload;
 
 /// Returns the constant texts between the columns in a [`payload`]. They are the same for all submissions to an
 /// assignment.
-pub(in crate::domain) fn pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
+pub(in crate::domain) fn statement_pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
     let any = crate::store::Artifact { digest: crate::store::Digest::from_bytes(b""), size: 0 };
     let task = assignment.settings.task(Input { form: Form::Program, name: String::new(), artifact: any });
     let mut task = serde_json::to_value(task).map_err(|_| Problem::fault())?;
@@ -40,7 +40,7 @@ pub(in crate::domain) async fn enqueue_replaced(
     by: i64,
     ids: RangeInclusive<i64>,
 ) -> Result<i64, Problem> {
-    let pieces = pieces(assignment)?;
+    let pieces = statement_pieces(assignment)?;
     let mut values: Vec<Value> = vec![format!("again {}", assignment.id).into()];
     values.extend(pieces.into_iter().map(Value::from));
     values.extend([by, assignment.id, *ids.start(), *ids.end()].map(Value::from));

@@ -1,6 +1,6 @@
 //! The operations of regrades. One statement handles all submissions, so that each step is complete or has no effect.
 use crate::domain::{
-    submissions::bulk::{payload, pieces},
+    submissions::bulk::{payload, statement_pieces},
     view::Assignment,
 };
 use crate::{
@@ -26,7 +26,7 @@ pub(in crate::domain) async fn enqueue_missing(
     let turn = Turn::Campaign(campaign);
     let from = turn.next(transaction).await?;
     let mut values: Vec<Value> = vec![campaign.into(), turn.key().into()];
-    values.extend(pieces(assignment)?.into_iter().map(Value::from));
+    values.extend(statement_pieces(assignment)?.into_iter().map(Value::from));
     values.extend([from, turn.spacing_millis(), assignment.id, campaign].map(Value::from));
     // The unary plus prevents an index, with which SQLite would search all jobs of the regrade for each submission.
     let statement = concat!(

@@ -261,7 +261,7 @@ impl Member {
             FROM submission LEFT JOIN member ON member.account = submission.account AND member.course = ?
                AND member.role = 'student'
             WHERE submission.assignment = ?";
-        let (recent, id) = (health::recent(&self.app.0.policy), assignment.id);
+        let (recent, id) = (health::recency_millis(&self.app.0.policy), assignment.id);
         Ok(transaction.find(statement, values![self.course, id, id, recent, recent, self.course, id]).await?)
     }
 

@@ -48,7 +48,7 @@ pub(super) use accounts::{TokenName, WorkerTokenName};
 pub(super) use assignments::{Revision, receive_suite};
 pub(super) use courses::CourseWish;
 pub use submissions::export_csv;
-pub(super) use submissions::{RequestWish, cell, receive};
+pub(super) use submissions::{RequestWish, escape_cell, receive};
 
 use crate::domain::App;
 use utoipa_axum::{router::OpenApiRouter, routes};

@@ -178,7 +178,7 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
             groups.push(group);
         }
     }
-    let named = groups.iter().map(|group| cell(group));
+    let named = groups.iter().map(|group| escape_cell(group));
     writer.write_record(head.split(',').map(str::to_owned).chain(named)).map_err(fault)?;
     for standing in standings {
         let counts = standing.counts.as_ref();
@@ -191,15 +191,15 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
         };
         let of_groups = groups.iter().map(|group| of_group(group).unwrap_or_default());
         let row = [
-            cell(&standing.login),
-            cell(&standing.name),
+            escape_cell(&standing.login),
+            escape_cell(&standing.name),
             standing.submissions.to_string(),
             counts.map(|counts| counts.id.to_string()).unwrap_or_default(),
-            grade.map(|grade| cell(&grade.verdict)).unwrap_or_default(),
+            grade.map(|grade| escape_cell(&grade.verdict)).unwrap_or_default(),
             or_empty(grade.and_then(|grade| grade.points.as_ref())),
             or_empty(grade.and_then(|grade| grade.max_points.as_ref())),
             grade.map(|grade| grade.created_at.to_string()).unwrap_or_default(),
-            parts.map(|parts| cell(&parts.mistakes.join(" "))).unwrap_or_default(),
+            parts.map(|parts| escape_cell(&parts.mistakes.join(" "))).unwrap_or_default(),
         ];
         writer.write_record(row.into_iter().chain(of_groups)).map_err(fault)?;
     }
@@ -208,7 +208,7 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
 }
 
 /// Returns the text in a form that no spreadsheet takes for a formula.
-pub(in crate::web) fn cell(text: &str) -> String {
+pub(in crate::web) fn escape_cell(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
 }
 

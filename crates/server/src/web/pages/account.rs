@@ -66,7 +66,7 @@ pub(super) async fn home(person: Person) -> Page {
 }
 
 async fn page(person: &Person, new: Option<String>) -> Page {
-    let frame = PageFrame::for_account(&person.account).then("/account".to_owned(), "Account");
+    let frame = PageFrame::for_account(&person.account).with_parent("/account".to_owned(), "Account");
     let (is_connected, tokens) = (person.is_connected().await?, person.tokens().await?);
     show(&AccountPage { frame, person, is_connected, tokens, new })
 }

@@ -18,7 +18,7 @@ use axum::{http::Uri, response::Redirect};
 use serde::Deserialize;
 
 /// The subjects, each with the end of its address and its title.
-const PARTS: [(&str, &str); 5] = [
+const SECTIONS: [(&str, &str); 5] = [
     ("", "Courses"),
     ("/people", "People"),
     ("/platforms", "Learning platforms"),
@@ -55,13 +55,14 @@ pub(super) struct NewAccount {
 }
 
 async fn make(admin: &Admin, end: &str, look: People, link: Option<String>, token: Option<String>) -> Page {
-    let part = PARTS.into_iter().find(|part| part.0 == end).unwrap_or(PARTS[0]);
-    let frame =
-        PageFrame::for_account(&admin.account).then("/admin".to_owned(), "Administration").with_pages("/admin", &PARTS);
+    let part = SECTIONS.into_iter().find(|part| part.0 == end).unwrap_or(SECTIONS[0]);
+    let frame = PageFrame::for_account(&admin.account)
+        .with_parent("/admin".to_owned(), "Administration")
+        .with_pages("/admin", &SECTIONS);
     let (accounts, has_more) = admin.accounts_page(&look.q, &look.after).await?;
     let after = look.next(accounts.last().filter(|_| has_more).map(|last| last.login.as_str()));
     show(&AdminPage {
-        frame: frame.then(format!("/admin{}", part.0), part.1),
+        frame: frame.with_parent(format!("/admin{}", part.0), part.1),
         part,
         courses: admin.course_sizes().await?,
         accounts,

@@ -34,10 +34,10 @@ struct ComparisonPage {
 type DifferingScenes = BTreeMap<[String; 2], Vec<String>>;
 
 /// Lists of at most this many scenes are shown unfolded.
-const FEW: usize = 6;
+const MAX_OPEN_SCENES: usize = 6;
 
 /// Returns the URL fragment of a scene in a report.
-fn place(scene: &str) -> String {
+fn scene_place(scene: &str) -> String {
     byte_serialize(scene.as_bytes()).collect()
 }
 
@@ -78,7 +78,7 @@ pub(super) async fn page(
     let [Some(first), Some(second)] = results.map(|result| kept.get(&result)) else { return Err(missing()) };
     let kinds = find_differing(&first.failed, &second.failed);
     let address = format!("/c/{slug}/s/{id}/beside");
-    let frame = grades::class_frame(&staff, &assignment).then(address, "Side by side");
+    let frame = grades::class_frame(&staff, &assignment).with_parent(address, "Side by side");
     show(&ComparisonPage { frame, slug, both: [one, other], count: kinds.values().map(Vec::len).sum(), kinds })
 }
 

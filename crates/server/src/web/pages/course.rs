@@ -153,7 +153,8 @@ pub(super) async fn rows(member: &Member) -> Result<Vec<Row>, Problem> {
 pub(super) async fn course(member: Member) -> Page {
     let assignments = rows(&member).await?;
     let place = format!("/c/{}", member.slug);
-    let (frame, kept) = (PageFrame::course(&member).then(place, &member.title), member.describe_kept_bytes().await?);
+    let (frame, kept) =
+        (PageFrame::course(&member).with_parent(place, &member.title), member.describe_kept_bytes().await?);
     show(&CoursePage { frame, member, assignments, kept })
 }
 
@@ -184,7 +185,7 @@ const PEOPLE_PER_PAGE: usize = 200;
 
 impl People {
     /// Returns whether the filter includes a member.
-    fn wants(&self, member: &MemberInfo) -> bool {
+    fn includes(&self, member: &MemberInfo) -> bool {
         let words = self.q.trim().to_lowercase();
         let has_words = member.login.contains(&words) || member.name.to_lowercase().contains(&words);
         has_words && (self.role.is_empty() || member.role == self.role) && member.login > self.after
@@ -199,13 +200,13 @@ impl People {
 
 async fn members_page(staff: &Staff, look: People, link: Option<(String, String)>) -> Page {
     let slug = staff.slug.clone();
-    let frame = PageFrame::course(staff).then(format!("/c/{slug}/members"), "Members");
+    let frame = PageFrame::course(staff).with_parent(format!("/c/{slug}/members"), "Members");
     // Read the event before the members, so that later changes are detected.
     let seen = staff.last_event().await?;
     let mut members = staff.members().await?;
     let staff_count = members.iter().filter(|member| member.role == "staff").count();
     let students = members.len() - staff_count;
-    members.retain(|member| look.wants(member));
+    members.retain(|member| look.includes(member));
     // The database may sort differently from this program.
     members.sort_by(|one, other| one.login.cmp(&other.login));
     let has_more = members.len() > PEOPLE_PER_PAGE;
@@ -232,12 +233,12 @@ pub(super) async fn member_link(staff: Staff, AddressParts { login, .. }: Addres
 
 pub(super) async fn audit(staff: Staff, QueryInput(asked): QueryInput<ListEnd>) -> Page {
     let slug = staff.slug.clone();
-    let frame = PageFrame::course(&staff).then(format!("/c/{slug}/audit"), "Audit log");
+    let frame = PageFrame::course(&staff).with_parent(format!("/c/{slug}/audit"), "Audit log");
     show(&AuditPage { frame, slug, events: staff.audit(asked.number()).await? })
 }
 
 pub(super) async fn queue(staff: Staff) -> Page {
-    let frame = PageFrame::course(&staff).then(format!("/c/{}/queue", staff.slug), "Queue");
+    let frame = PageFrame::course(&staff).with_parent(format!("/c/{}/queue", staff.slug), "Queue");
     show(&QueuePage { frame, queue: staff.queue().await? })
 }
 

@@ -119,7 +119,7 @@ pub(super) struct NewRegrade {
 /// Returns the frame for the pages of the class.
 pub(super) fn class_frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
     let frame = PageFrame::assignment(staff, assignment);
-    frame.then(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")
+    frame.with_parent(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")
 }
 
 pub(super) async fn class(
@@ -150,7 +150,7 @@ pub(super) async fn class(
         kept,
         standings,
         suites: suites(&staff, &assignment.settings).await?,
-        hides: staff.hides(&assignment).await?,
+        hides: staff.is_hidden(&assignment).await?,
         assignment,
     })
 }
@@ -173,7 +173,12 @@ pub(super) async fn show_regrade(
     let assignment = staff.assignment(&assignment).await?;
     let regrade = staff.show_regrade(&assignment.slug, id, asked.after).await?;
     let address = format!("/c/{slug}/a/{}/regrades/{id}", assignment.slug);
-    show(&RegradePage { frame: class_frame(&staff, &assignment).then(address, "Regrade"), slug, assignment, regrade })
+    show(&RegradePage {
+        frame: class_frame(&staff, &assignment).with_parent(address, "Regrade"),
+        slug,
+        assignment,
+        regrade,
+    })
 }
 
 deeds! {

@@ -186,7 +186,7 @@ impl PageFrame {
 
     fn course(member: &Member) -> Self {
         let place = format!("/c/{}", member.slug);
-        let frame = Self::for_account(&member.account).then(place.clone(), &member.title);
+        let frame = Self::for_account(&member.account).with_parent(place.clone(), &member.title);
         let pages = [("", "Assignments"), ("/members", "Members"), ("/queue", "Queue"), ("/audit", "Audit log")];
         if member.is_staff { frame.with_pages(&place, &pages) } else { frame }
     }
@@ -197,8 +197,8 @@ impl PageFrame {
         let pages = [("/class", "Class"), ("", "Hand in"), ("/settings", "Settings")];
         let frame = Self::course(member);
         match member.is_staff {
-            true => frame.then(format!("{place}/class"), &assignment.title).with_pages(&place, &pages),
-            false => frame.then(place, &assignment.title),
+            true => frame.with_parent(format!("{place}/class"), &assignment.title).with_pages(&place, &pages),
+            false => frame.with_parent(place, &assignment.title),
         }
     }
 
@@ -209,7 +209,7 @@ impl PageFrame {
     }
 
     /// Returns the frame for a related page, or for a page below.
-    fn then(mut self, address: String, title: &str) -> Self {
+    fn with_parent(mut self, address: String, title: &str) -> Self {
         if self.tabs.iter().any(|(tab, _)| *tab == address) {
             self.tab = address;
         } else if self.way.last().is_none_or(|(last, _)| *last != address) {

@@ -179,7 +179,7 @@ pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
         "oidc_initiation_url": format!("{public}/lti/login"),
         "target_link_uri": launch,
         "public_jwk_url": format!("{public}/lti/keys.json"),
-        "scopes": [scope::SCORE, scope::LINE_ITEM, scope::MEMBERS],
+        "scopes": [scope::SCORE_SCOPE, scope::LINE_ITEM, scope::MEMBERS_SCOPE],
         "extensions": [{
             "platform": "canvas.instructure.com",
             "domain": host,
@@ -243,7 +243,7 @@ pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) 
         return Ok(redirect_to(&members).into_response());
     }
     let read = staff.read_roster(RosterWish::Preview).await?;
-    let frame = PageFrame::course(&staff).then(members, "Members");
+    let frame = PageFrame::course(&staff).with_parent(members, "Members");
     Ok(show(&RosterPage { frame, slug: staff.slug.clone(), read })?.into_response())
 }
 

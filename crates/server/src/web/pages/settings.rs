@@ -154,7 +154,7 @@ pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Opt
 pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
     let address = format!("/c/{slug}/a/{}/settings", assignment.slug);
-    let frame = PageFrame::assignment(&staff, &assignment).then(address, "Settings");
+    let frame = PageFrame::assignment(&staff, &assignment).with_parent(address, "Settings");
     let suites = suites(&staff, &assignment.settings).await?;
     let megabytes = assignment.settings.max_bytes as f64 / MIB;
     show(&SettingsPage { frame, slug, assignment, suites, megabytes })

@@ -13,7 +13,7 @@ mod histogram;
 const NEVER_RAN: [&str; 2] = ["US", "CE"];
 
 /// The parts of a class to choose from, each with its name and its text.
-pub(super) const PARTS: [(&str, &str); 6] = [
+pub(super) const SECTIONS: [(&str, &str); 6] = [
     ("accepted", "accepted"),
     ("wrong", "not accepted"),
     ("waiting", "not graded yet"),
@@ -48,7 +48,7 @@ pub(super) type SharedBy = (String, Vec<String>, i64);
 /// The statistics of a class's results.
 pub(super) struct Statistics {
     pub(super) students: usize,
-    /// The number of students in each of the [`PARTS`], with the part's name and text.
+    /// The number of students in each of the [`SECTIONS`], with the part's name and text.
     pub(super) parts: Vec<(&'static str, &'static str, usize)>,
     /// The mean and the median of the points of all submissions that were run, in percent; `None` if none was run.
     pub(super) points: Option<(String, String)>,
@@ -71,7 +71,7 @@ impl Statistics {
         let points = Some(shares.len()).filter(|count| *count > 0);
         Self {
             students: standings.len(),
-            parts: PARTS.map(|(name, words)| (name, words, count(name))).to_vec(),
+            parts: SECTIONS.map(|(name, words)| (name, words, count(name))).to_vec(),
             points: points.map(|count| (round_points(mean(count)), round_points(middle(count)))),
             bars: histogram::html(shares.iter().map(|share| share / 100.0)),
             mistakes: find_shared(standings, mistake),

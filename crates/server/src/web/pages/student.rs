@@ -1,7 +1,7 @@
 //! The page for staff about one student's work, and the import of a class from a table.
 use super::{
     super::{
-        api::{RequestWish, cell},
+        api::{RequestWish, escape_cell},
         input::{AddressParts, Fields},
         upload,
     },
@@ -88,7 +88,7 @@ pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, 
     let seen = staff.last_event().await?;
     let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
-    let frame = grades::class_frame(&staff, &assignment).then(address, &work.name);
+    let frame = grades::class_frame(&staff, &assignment).with_parent(address, &work.name);
     let changes = staff.changes(&work.submissions).await?;
     let changes = changes.iter().map(|(id, change)| (*id, scenes::describe_change(change))).collect();
     show(&StudentPage { frame, slug, assignment, work, changes, seen })
@@ -106,31 +106,32 @@ fn read_points(field: &str) -> Option<String> {
 async fn import_page(staff: &Staff, table: String, lines: Vec<ImportRow>, is_done: bool) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff)
-        .then(format!("/c/{slug}/members"), "Members")
-        .then(format!("/c/{slug}/members/import"), "Import");
+        .with_parent(format!("/c/{slug}/members"), "Members")
+        .with_parent(format!("/c/{slug}/members/import"), "Import");
     let is_wrong = lines.iter().any(|line| line.member.error.is_some());
     let mut writer = csv::Writer::from_writer(Vec::new());
     for line in &lines {
         let cells = [&line.member.name, &line.member.login, &line.member.email, &line.member.role, &line.link]
-            .map(|text| cell(text));
+            .map(|text| escape_cell(text));
         writer.write_record(cells).map_err(|_| Problem::fault())?;
     }
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
     let seen = staff.last_event().await?;
-    let download = format!("data:text/csv;charset=utf-8,{}", percent(&bytes));
+    let download = format!("data:text/csv;charset=utf-8,{}", percent_encode(&bytes));
     let left_out = lines.iter().flat_map(|line| line.member.unused.clone()).collect();
     show(&ImportPage { frame, slug, table, lines, left_out, is_wrong, is_done: is_done && !is_wrong, download, seen })
 }
 
 /// Encodes bytes for a URL.
-fn percent(bytes: &[u8]) -> String {
+fn percent_encode(bytes: &[u8]) -> String {
     byte_serialize(bytes).collect::<String>().replace('+', "%20")
 }
 
 fn import_row(course: &str, of: MemberLine) -> ImportRow {
     let link = of.link.clone().unwrap_or_default();
-    let (subject, body) = (percent(course.as_bytes()), percent(format!("{}:\n{link}\n", of.name).as_bytes()));
-    let letter = format!("mailto:{}?subject={subject}&body={body}", percent(of.email.as_bytes()));
+    let (subject, body) =
+        (percent_encode(course.as_bytes()), percent_encode(format!("{}:\n{link}\n", of.name).as_bytes()));
+    let letter = format!("mailto:{}?subject={subject}&body={body}", percent_encode(of.email.as_bytes()));
     ImportRow { member: of, link, letter }
 }
 

@@ -48,7 +48,7 @@ struct SubmissionPage {
 pub(super) async fn assignment(member: Member, AddressParts { assignment, .. }: AddressParts) -> Page {
     let assignment = member.assignment(&assignment).await?;
     let address = format!("/c/{}/a/{}", member.slug, assignment.slug);
-    let frame = PageFrame::assignment(&member, &assignment).then(address, "Hand in");
+    let frame = PageFrame::assignment(&member, &assignment).with_parent(address, "Hand in");
     let work = OwnWork::read(&member, &assignment).await?;
     show(&AssignmentPage { frame, member, assignment, work, key: secret::random_hex() })
 }
@@ -71,11 +71,15 @@ async fn find_assignment(member: &Member, submission: &Submission) -> Result<Opt
 fn frame(member: &Member, assignment: Option<&Assignment>, submission: &Submission) -> PageFrame {
     let of = |assignment: &Assignment| {
         let frame = PageFrame::assignment(member, assignment);
-        if member.is_staff { frame.then(format!("/c/{}/a/{}/class", member.slug, assignment.slug), "") } else { frame }
+        if member.is_staff {
+            frame.with_parent(format!("/c/{}/a/{}/class", member.slug, assignment.slug), "")
+        } else {
+            frame
+        }
     };
     let frame = assignment.map_or_else(|| PageFrame::course(member), of);
     let address = format!("/c/{}/s/{}", member.slug, submission.id);
-    frame.then(address, &format!("Submission {}", submission.number))
+    frame.with_parent(address, &format!("Submission {}", submission.number))
 }
 
 pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressParts) -> Page {

@@ -87,7 +87,7 @@ pub(super) fn is_accepted(submission: &Option<Submission>) -> bool {
 
 /// Returns a size in bytes, in a unit with few digits.
 pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
-    problem::size((*bytes).try_into().unwrap_or(0))
+    problem::format_size((*bytes).try_into().unwrap_or(0))
 }
 
 /// Returns the grade's points; a dash if there are none. Points from staff are those of the whole grade, so the maximum

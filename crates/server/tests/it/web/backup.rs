@@ -144,7 +144,7 @@ fn a_backup_that_is_damaged_incomplete_or_newer_is_refused() {
         let said = fs::read_to_string(&manifest).expect("a manifest");
         fs::write(&manifest, said.replace("\"schema\": 1", "\"schema\": 2")).expect("written");
         refused(4, "the backup has format 2, this program reads up to 1");
-        let tables = format!("\"tables\": {}", db::LATEST);
+        let tables = format!("\"tables\": {}", db::NEWEST);
         assert!(said.contains(&tables), "{said}");
         fs::write(&manifest, said.replace(&tables, "\"tables\": 9999")).expect("written");
         refused(5, "the backup's tables have version 9999");

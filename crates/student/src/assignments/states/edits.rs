@@ -26,7 +26,7 @@ fn row(of: &'static TermRow, slip: Slip) -> RowOf<StepMistake> {
 }
 
 /// The catalogue rows that edit one term of a formula. Rows for functions that the student left empty come first.
-pub static EDITS: LazyLock<Vec<RowOf<StepMistake>>> = LazyLock::new(|| {
+pub static EDIT_ROWS: LazyLock<Vec<RowOf<StepMistake>>> = LazyLock::new(|| {
     let of = |row: &'static TermRow| row.slips.iter().copied().flatten().map(move |slip| (row, *slip));
     let mut all: Vec<(&TermRow, Slip)> = TERMS.iter().flat_map(of).collect();
     all.sort_by_key(|(row, slip)| !(row.is_function && *slip == Slip::Missing));

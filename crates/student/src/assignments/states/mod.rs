@@ -7,7 +7,7 @@ mod steps;
 mod terms;
 mod words;
 
-pub use edits::EDITS;
+pub use edits::EDIT_ROWS;
 pub use slips::Slip;
 pub use steps::{STEPS, StepMistake};
 pub use terms::{Edit, TERMS, Term, TermRow};

@@ -3,7 +3,7 @@ use super::{Inputs, Subject, formulas::Letter, inputs::root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
 /// Returns letters that do not belong in the formulas of a polynomial, but may be used there.
-pub fn extras(subject: Subject) -> &'static [Letter] {
+pub fn extra_letters(subject: Subject) -> &'static [Letter] {
     match subject {
         Subject::ParticleOverlap | Subject::ParticleApproach => PARTICLE_EXTRAS,
         Subject::EdgeOverlap => QUARTIC_EXTRAS,

@@ -74,10 +74,10 @@ pub fn readings(subject: Subject) -> &'static [Formula] {
     match subject {
         Subject::ParticleOverlap => PARTICLE_OVERLAP,
         Subject::ParticleApproach => PARTICLE_APPROACH,
-        Subject::EdgeOverlap => QUARTIC,
+        Subject::EdgeOverlap => QUARTIC_FORMULAS,
         Subject::AlphaLow => ALPHA_LOW,
         Subject::AlphaHigh => ALPHA_HIGH,
-        Subject::EdgeApproach => &QUINTICS,
+        Subject::EdgeApproach => &QUINTIC_FORMULAS,
         Subject::HalfPlaneOverlap => HALF_PLANE_OVERLAP,
         Subject::HalfPlaneApproach => HALF_PLANE_APPROACH,
     }
@@ -91,7 +91,7 @@ const fn term(power: usize, weight: f64, letters: &'static [usize]) -> Term {
     Term { power, weight, letters }
 }
 
-const PARTICLES: [Letter; 4] = [
+const PARTICLE_LETTERS: [Letter; 4] = [
     letter("d21.d21", "", 2, |inputs| inputs.d21().dot(inputs.d21())),
     letter("x21.d21", "", 1, |inputs| inputs.x21().dot(inputs.d21())),
     letter("x21.x21", "", 0, |inputs| inputs.x21().dot(inputs.x21())),
@@ -99,13 +99,13 @@ const PARTICLES: [Letter; 4] = [
 ];
 
 const PARTICLE_OVERLAP: &[Formula] = &[Formula {
-    letters: &PARTICLES,
+    letters: &PARTICLE_LETTERS,
     terms: &[term(2, -1.0, &[0]), term(1, -2.0, &[1]), term(0, 1.0, &[3]), term(0, -1.0, &[2])],
     degree: 2,
 }];
 
 const PARTICLE_APPROACH: &[Formula] =
-    &[Formula { letters: &PARTICLES, terms: &[term(1, -1.0, &[0]), term(0, -1.0, &[1])], degree: 1 }];
+    &[Formula { letters: &PARTICLE_LETTERS, terms: &[term(1, -1.0, &[0]), term(0, -1.0, &[1])], degree: 1 }];
 
 const HALF_PLANE: [Letter; 4] = [
     letter("(dx.n)", "", 1, |inputs| inputs.d[0].dot(inputs.normal())),
@@ -124,7 +124,7 @@ const HALF_PLANE_APPROACH: &[Formula] =
     &[Formula { letters: &HALF_PLANE, terms: &[term(1, -1.0, &[0, 0]), term(0, 1.0, &[0, 1])], degree: 1 }];
 
 /// The letters `a..i` of the quartic, and the squared sum of the radii.
-const EDGE: [Letter; 10] = [
+const EDGE_LETTERS: [Letter; 10] = [
     letter("a", "x12.x32", 0, |inputs| inputs.x12().dot(inputs.x32())),
     letter("b", "x12.d32 + d12.x32", 1, |inputs| inputs.x12().dot(inputs.d32()) + inputs.d12().dot(inputs.x32())),
     letter("c", "d12.d32", 2, |inputs| inputs.d12().dot(inputs.d32())),
@@ -137,8 +137,8 @@ const EDGE: [Letter; 10] = [
     letter("R^2", "", 0, |inputs| inputs.square),
 ];
 
-const QUARTIC: &[Formula] = &[Formula {
-    letters: &EDGE,
+const QUARTIC_FORMULAS: &[Formula] = &[Formula {
+    letters: &EDGE_LETTERS,
     terms: &[
         term(4, 1.0, &[2, 2]),
         term(4, -1.0, &[5, 8]),
@@ -185,7 +185,7 @@ const ALPHA_HIGH: &[Formula] = &[
         degree: 2,
     },
     Formula {
-        letters: &EDGE,
+        letters: &EDGE_LETTERS,
         terms: &[
             term(2, 1.0, &[8]),
             term(2, -1.0, &[2]),
@@ -199,7 +199,7 @@ const ALPHA_HIGH: &[Formula] = &[
 ];
 
 /// The letters `a..j` of the supplied quintic.
-const SUPPLIED: [Letter; 10] = [
+const SUPPLIED_LETTERS: [Letter; 10] = [
     letter("a", "x32.x32", 0, |inputs| inputs.x32().dot(inputs.x32())),
     letter("b", "x32.d32", 1, |inputs| inputs.x32().dot(inputs.d32())),
     letter("c", "d32.d32", 2, |inputs| inputs.d32().dot(inputs.d32())),
@@ -216,7 +216,7 @@ const SUPPLIED: [Letter; 10] = [
 macro_rules! quintic {
     ($slip:expr) => {
         Formula {
-            letters: &SUPPLIED,
+            letters: &SUPPLIED_LETTERS,
             terms: &[
                 term(5, -1.0, &[2, 7, 7]),
                 term(5, -1.0, &[2, 2, 3]),
@@ -267,4 +267,4 @@ macro_rules! quintic {
 }
 
 /// The quintic as supplied, and with the right letter in t³.
-const QUINTICS: [Formula; 2] = [quintic!(term(3, -2.0, &[2, 5, 6])), quintic!(term(3, -2.0, &[2, 5, 7]))];
+const QUINTIC_FORMULAS: [Formula; 2] = [quintic!(term(3, -2.0, &[2, 5, 6])), quintic!(term(3, -2.0, &[2, 5, 7]))];

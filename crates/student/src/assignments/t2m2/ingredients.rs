@@ -17,7 +17,7 @@ const fn ingredient(name: &'static str, cost: f64, value: fn(&Inputs) -> Bounded
     Ingredient { name, value, cost }
 }
 
-const PARTICLES: &[Ingredient] = &[
+const PARTICLE_VECTORS: &[Ingredient] = &[
     ingredient("x21", 0.0, Inputs::x21),
     ingredient("d21", 0.0, Inputs::d21),
     ingredient("x1", 0.5, |inputs| inputs.x[0]),
@@ -27,7 +27,7 @@ const PARTICLES: &[Ingredient] = &[
     ingredient("(x21+d21)", 0.8, |inputs| inputs.x21() + inputs.d21()),
 ];
 
-const EDGE: &[Ingredient] = &[
+const EDGE_VECTORS: &[Ingredient] = &[
     ingredient("x21", 0.0, Inputs::x21),
     ingredient("d21", 0.0, Inputs::d21),
     ingredient("x32", 0.0, Inputs::x32),
@@ -56,8 +56,8 @@ const HALF_PLANE: &[Ingredient] = &[
 /// Returns the vectors that are available in a detection of the given kind.
 pub const fn ingredients(kind: PairKind) -> &'static [Ingredient] {
     match kind {
-        PairKind::ParticleParticle => PARTICLES,
-        PairKind::ParticleEdge => EDGE,
+        PairKind::ParticleParticle => PARTICLE_VECTORS,
+        PairKind::ParticleEdge => EDGE_VECTORS,
         PairKind::ParticleHalfPlane => HALF_PLANE,
     }
 }

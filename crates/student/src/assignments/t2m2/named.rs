@@ -15,7 +15,7 @@ use fosssim_num::bounded::{BoundedValue, BoundedVector};
 const PP: PairKind = PairKind::ParticleParticle;
 const PE: PairKind = PairKind::ParticleEdge;
 const PH: PairKind = PairKind::ParticleHalfPlane;
-const NOTHING: BoundedVector = BoundedVector { x: BoundedValue::exact(0.0), y: BoundedValue::exact(0.0) };
+const ZERO_VECTOR: BoundedVector = BoundedVector { x: BoundedValue::exact(0.0), y: BoundedValue::exact(0.0) };
 
 /// Returns the positions at the end of the step.
 fn end_positions(inputs: &Inputs) -> [BoundedVector; 3] {
@@ -27,7 +27,7 @@ fn square(value: BoundedValue) -> BoundedValue {
 }
 
 /// Removes one component from all vectors.
-fn without(inputs: &mut Inputs, component: fn(&mut BoundedVector) -> &mut BoundedValue) {
+fn drop_component(inputs: &mut Inputs, component: fn(&mut BoundedVector) -> &mut BoundedValue) {
     inputs.x.iter_mut().chain(&mut inputs.d).for_each(|vector| *component(vector) = BoundedValue::exact(0.0));
     inputs.normal_square = inputs.normal().dot(inputs.normal());
 }
@@ -64,18 +64,18 @@ named_edits! {
         => "Positions at the end of the step are used instead of displacements"
         => "the displacements dx are end positions instead of end minus start";
     DISPLACEMENT_REVERSED "displacement-reversed" [PP, PE, PH] 4.2:
-        OtherInputs(|inputs| inputs.d = inputs.d.map(|d| NOTHING - d))
+        OtherInputs(|inputs| inputs.d = inputs.d.map(|d| ZERO_VECTOR - d))
         => "All displacements have the wrong sign"
         => "the displacements dx are start minus end instead of end minus start";
-    PARTICLE_STILL "particle-still" [PP, PE] 4.0: OtherInputs(|inputs| inputs.d[0] = NOTHING)
+    PARTICLE_STILL "particle-still" [PP, PE] 4.0: OtherInputs(|inputs| inputs.d[0] = ZERO_VECTOR)
         => "The first particle's displacement is missing" => "dx1 is 0 in the formulas";
-    SECOND_PARTICLE_STILL "second-particle-still" [PP] 4.0: OtherInputs(|inputs| inputs.d[1] = NOTHING)
+    SECOND_PARTICLE_STILL "second-particle-still" [PP] 4.0: OtherInputs(|inputs| inputs.d[1] = ZERO_VECTOR)
         => "The second particle's displacement is missing" => "dx2 is 0 in the formulas";
-    EDGE_STILL "edge-still" [PE] 4.0: OtherInputs(|inputs| (inputs.d[1], inputs.d[2]) = (NOTHING, NOTHING))
+    EDGE_STILL "edge-still" [PE] 4.0: OtherInputs(|inputs| (inputs.d[1], inputs.d[2]) = (ZERO_VECTOR, ZERO_VECTOR))
         => "The edge is treated as if it did not move" => "dx2 and dx3 are 0 in the formulas";
-    FIRST_END_STILL "first-end-still" [PE] 4.1: OtherInputs(|inputs| inputs.d[1] = NOTHING)
+    FIRST_END_STILL "first-end-still" [PE] 4.1: OtherInputs(|inputs| inputs.d[1] = ZERO_VECTOR)
         => "The displacement of the edge's first endpoint is missing" => "dx2 is 0 in the formulas";
-    SECOND_END_STILL "second-end-still" [PE] 4.1: OtherInputs(|inputs| inputs.d[2] = NOTHING)
+    SECOND_END_STILL "second-end-still" [PE] 4.1: OtherInputs(|inputs| inputs.d[2] = ZERO_VECTOR)
         => "The displacement of the edge's second endpoint is missing" => "dx3 is 0 in the formulas";
     FIRST_DISPLACEMENT_TWICE "first-displacement-twice" [PE] 4.2: OtherInputs(|inputs| inputs.d[2] = inputs.d[1])
         => "The first endpoint's displacement is used for both endpoints" => "dx2 is used instead of dx3";
@@ -116,7 +116,7 @@ named_edits! {
         => "The radius terms have the wrong sign" => "-R^2 is used instead of R^2";
     RADIUS_HALVED "radius-halved" [PP, PE, PH] 4.2: OtherInputs(|inputs| inputs.square = 0.25 * inputs.square)
         => "Half the radius is used" => "(R/2)^2 is used instead of R^2";
-    NO_POINT "no-point" [PH] 4.0: OtherInputs(|inputs| inputs.x[1] = NOTHING)
+    NO_POINT "no-point" [PH] 4.0: OtherInputs(|inputs| inputs.x[1] = ZERO_VECTOR)
         => "The half-plane's point is forgotten, as if the boundary went through the origin"
         => "-x is used instead of p - x";
     POINT_AND_NORMAL_SWAPPED "point-and-normal-swapped" [PH] 4.2: OtherInputs(|inputs| {
@@ -132,9 +132,9 @@ named_edits! {
     REVERSED_OFFSET "reversed-offset" [PH] 4.1: OtherInputs(|inputs| inputs.x.swap(0, 1))
         => "The vector from the particle to the half-plane is reversed"
         => "x - p is used instead of p - x";
-    X_ONLY "x-only" [PP, PE, PH] 5.0: OtherInputs(|inputs| without(inputs, |vector| &mut vector.y))
+    X_ONLY "x-only" [PP, PE, PH] 5.0: OtherInputs(|inputs| drop_component(inputs, |vector| &mut vector.y))
         => "The second components of all vectors are missing" => "all dot products are x x' without y y'";
-    Y_ONLY "y-only" [PP, PE, PH] 5.0: OtherInputs(|inputs| without(inputs, |vector| &mut vector.x))
+    Y_ONLY "y-only" [PP, PE, PH] 5.0: OtherInputs(|inputs| drop_component(inputs, |vector| &mut vector.x))
         => "The first components of all vectors are missing" => "all dot products are y y' without x x'";
     CONSTANT_ALPHA "constant-alpha" [PE] 2.5: Formula(Subject::EdgeApproach, constant_alpha)
         => "alpha is treated as constant during the step"

@@ -14,7 +14,7 @@
 //! This module runs nothing and never judges. The scenes are the same every time.
 /// Names and texts of the scenes: polynomials first, then contacts and responses, the impulse rounds, and zones. Each
 /// is valid for both readers, and reads back unchanged.
-pub const PROBES: &[(&str, &str)] = &[
+pub const PROBE_SCENES: &[(&str, &str)] = &[
     ("drift-of-particles", include_str!("probes/drift-of-particles.xml")),
     ("drift-of-edges", include_str!("probes/drift-of-edges.xml")),
     ("slanted-half-planes", include_str!("probes/slanted-half-planes.xml")),

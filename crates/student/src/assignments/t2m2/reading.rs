@@ -1,6 +1,6 @@
 //! Finds the letters of a polynomial's readings by name.
 use super::{
-    extras::extras,
+    extras::extra_letters,
     formulas::{Letter, readings},
 };
 use fosssim_findings::explanation::Reading;
@@ -9,7 +9,7 @@ use fosssim_findings::explanation::Reading;
 #[must_use]
 pub fn letter(reading: Reading, name: &str) -> Option<&'static Letter> {
     let own = readings(reading.subject).get(reading.number)?.letters.iter();
-    own.chain(extras(reading.subject)).find(|letter| letter.name == name)
+    own.chain(extra_letters(reading.subject)).find(|letter| letter.name == name)
 }
 
 #[cfg(test)]
@@ -29,7 +29,7 @@ mod tests {
                     assert_eq!((found.name, found.meaning), (letter.name, letter.meaning), "{subject:?} {number}");
                 }
             }
-            let names: Vec<&str> = extras(subject).iter().map(|letter| letter.name).collect();
+            let names: Vec<&str> = extra_letters(subject).iter().map(|letter| letter.name).collect();
             assert!(names.iter().all(|name| names.iter().filter(|other| other == &name).count() == 1), "{names:?}");
         }
     }

@@ -3,7 +3,7 @@
 use crate::diagnose::{
     Explanation, explain,
     known::{
-        applicable_rows::{applicable, is_of_states},
+        applicable_rows::{applicable_rows, is_of_states},
         find_known,
     },
 };
@@ -60,7 +60,7 @@ fn scene(name: &str) -> Scene {
 fn trace(scene: &Scene, ids: &[&str]) -> Vec<u8> {
     let student =
         ids.iter().fold(Student::default(), |student, id| student.with_mistake(find(id).map(|row| row.mistake)));
-    student::trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
+    student::record_trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
 /// Whether explanations name a mistake, told or as not to be told apart.
@@ -77,7 +77,8 @@ fn every_mistake_of_states_is_named_and_taken_for_no_other() {
         let correct = trace(&scene, &[]);
         // A mistake that shows only with the step before is none that one step makes.
         let is_of_step = |row: &&Row| is_of_states(row) && !row.id.ends_with("not-cleared");
-        let rows: Vec<&Row> = applicable(&scene).filter(is_of_step).filter(|row| !named.contains(row.id)).collect();
+        let rows: Vec<&Row> =
+            applicable_rows(&scene).filter(is_of_step).filter(|row| !named.contains(row.id)).collect();
         for row in rows {
             let trace = trace(&scene, &[row.id]);
             // Newton's method does not end with every mistake.
@@ -141,7 +142,7 @@ fn only_files_of_the_student_are_named() {
         ("t2m1/balls-meet", "symplectic-positions-doubled"),
     ] {
         let row = find(id).expect("a row");
-        assert!(applicable(&scene(name)).all(|other| other.id != row.id), "{id} on {name}");
+        assert!(applicable_rows(&scene(name)).all(|other| other.id != row.id), "{id} on {name}");
     }
 }
 

@@ -5,7 +5,7 @@ use fosssim_model::{
     scene::{Collision, Display, Edge, HalfPlane, Integrator, Particle, Scene},
     sim::{Pair, PairMotion, PointMotion},
 };
-use fosssim_num::vector::{Vec2, at};
+use fosssim_num::vector::{Vec2, vector_at};
 use fosssim_student::{Area, CATALOGUE, FALSE_POSITIVES, Object, Row, RowKind, StepLog, Student, World, find, step};
 
 /// The style of the scenes.
@@ -77,8 +77,8 @@ fn first_passes(row: &Row, style: Style) -> Vec<Sample> {
         }
         let mut lists = log.polynomials.iter().map(|list| list.coefficients().to_vec());
         let body = |index: usize| {
-            let place = at(&start.x, index);
-            let end = place + world.scene.time_step * at(&start.v, index);
+            let place = vector_at(&start.x, index);
+            let end = place + world.scene.time_step * vector_at(&start.v, index);
             PointMotion { start: place, shift: end - place }
         };
         let radius = |index: usize| world.scene.particles[index].radius;

@@ -17,7 +17,7 @@ use std::ops::Range;
 
 crate::drops_leading!();
 
-/// The numbers per pair with an edge: its coefficients, the known facts ([`OPEN`]), and padding.
+/// The numbers per pair with an edge: its coefficients, the known facts ([`OPEN_BIT`]), and padding.
 pub(super) const EDGE_ROW: usize = 20;
 
 /// The index of the known facts in the row of a pair with an edge.
@@ -29,22 +29,22 @@ pub(super) const EDGE_KNOWN: usize = 17;
 pub(super) const TWO_ROW: usize = 8;
 
 /// The index of the facts in the row.
-pub(super) const TWO_KNOWN: usize = 3;
+pub(super) const FACTS_INDEX: usize = 3;
 
 /// The index at which the line begins.
-pub(super) const LINE: usize = 4;
+pub(super) const LINE_INDEX: usize = 4;
 
 /// The numbers after a row that may be read, regardless of their values: the number of coefficients of a polynomial,
 /// plus two.
-pub(super) const BEHIND: usize = 8;
+pub(super) const ROW_PADDING: usize = 8;
 
 /// The facts about a pair, in the bits of a number. The lowest bit is set if the certificate must decide whether there
 /// is an impact. The next bits mark coefficients that are small enough to be dropped when they lead; the highest bits
 /// are unused.
-pub(super) const OPEN: u64 = 1;
+pub(super) const OPEN_BIT: u64 = 1;
 
 /// 2^52: after small powers of two are added, their sum is in the lowest bits of the mantissa.
-const NOTHING: f64 = (1_u64 << 52) as f64;
+const BIT_SUM_BASE: f64 = (1_u64 << 52) as f64;
 
 /// The pairs of a group of particles with edges and half-planes, as rows of numbers.
 #[derive(Debug, Clone, Default)]
@@ -87,19 +87,19 @@ impl Group {
     pub fn ensure_computed<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, first: usize, edge: usize) {
         let width = Lanes::<S>::COUNT;
         let edges = bodies.edges.len();
-        let mut largest = Lanes::all(simd, 0.0);
+        let mut largest = Lanes::splat(simd, 0.0);
         let is_alone = if self.particles.contains(&first) {
             let lane = 1 << (first - self.particles.start);
             if self.moved & lane == 0 {
                 return;
             }
             self.moved &= !lane;
-            largest = Lanes::all(simd, self.largest);
+            largest = Lanes::splat(simd, self.largest);
             true
         } else {
             self.particles = first..first + if self.has_moved_edges { 1 } else { width };
             self.moved = 0;
-            self.edges.resize((edges + width) * EDGE_ROW * width + BEHIND, 0.0);
+            self.edges.resize((edges + width) * EDGE_ROW * width + ROW_PADDING, 0.0);
             self.half_planes.resize(bodies.points.len() * TWO_ROW * width, 0.0);
             self.has_moved_edges
         };
@@ -107,7 +107,7 @@ impl Group {
             largest = self.with_edges(simd, lists, first, edge..edges, largest);
         } else {
             for edge in 0..edges {
-                largest = self.with_edge(simd, lists, bodies, edge, largest);
+                largest = self.edge(simd, lists, bodies, edge, largest);
             }
         }
         self.largest = self.with_half_planes(simd, lists, bodies, largest).largest();
@@ -115,17 +115,10 @@ impl Group {
 
     /// Computes the pairs of all particles with one edge. Returns the largest moduli so far.
     #[inline(always)]
-    fn with_edge<S: Simd>(
-        &mut self,
-        simd: S,
-        lists: &Lists,
-        bodies: &Bodies,
-        edge: usize,
-        largest: Lanes<S>,
-    ) -> Lanes<S> {
+    fn edge<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, edge: usize, largest: Lanes<S>) -> Lanes<S> {
         let (x, d, radius) = lists.particles(simd, self.particles.start);
         let motion = lists.edge(simd, bodies.edges[edge]);
-        let pair = particle_edge::coefficients(x, d, &motion, radius + Lanes::all(simd, bodies.edge_radii[edge]));
+        let pair = particle_edge::coefficients(x, d, &motion, radius + Lanes::splat(simd, bodies.edge_radii[edge]));
         let begin = edge * EDGE_ROW * Lanes::<S>::COUNT;
         store_edges(simd, &pair, EDGE_ROW, &mut self.edges[begin..], largest)
     }
@@ -165,9 +158,9 @@ impl Group {
     ) -> Lanes<S> {
         let (x, d, radius) = lists.particles(simd, self.particles.start);
         for (half_plane, rows) in self.half_planes.chunks_exact_mut(TWO_ROW * Lanes::<S>::COUNT).enumerate() {
-            let point = all(simd, bodies.points[half_plane]);
-            let normal = all(simd, bodies.normals[half_plane]);
-            let squared = Lanes::all(simd, lists.squares[half_plane]);
+            let point = splat_plane(simd, bodies.points[half_plane]);
+            let normal = splat_plane(simd, bodies.normals[half_plane]);
+            let squared = Lanes::splat(simd, lists.squares[half_plane]);
             let (overlap, approach) = particle_half_plane::coefficients(x, d, radius, point, normal, squared);
             largest = store(simd, overlap, approach, rows, largest);
         }
@@ -177,8 +170,8 @@ impl Group {
 
 /// Returns a vector in all lanes.
 #[inline(always)]
-fn all<S: Simd>(simd: S, vector: Vec2) -> Plane<Lanes<S>> {
-    Plane { x: Lanes::all(simd, vector.x), y: Lanes::all(simd, vector.y) }
+fn splat_plane<S: Simd>(simd: S, vector: Vec2) -> Plane<Lanes<S>> {
+    Plane { x: Lanes::splat(simd, vector.x), y: Lanes::splat(simd, vector.y) }
 }
 
 /// Computes the pairs of a particle with the particles from `second` on. Returns the largest moduli so far.
@@ -243,10 +236,10 @@ fn store<S: Simd>(
     largest
 }
 
-/// Returns the bits of small coefficients; see [`OPEN`].
+/// Returns the bits of small coefficients; see [`OPEN_BIT`].
 #[inline(always)]
 fn small_coefficient_bits<S: Simd, const COEFFICIENTS: usize>(simd: S, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
-    let mut known = Lanes::all(simd, NOTHING);
+    let mut known = Lanes::splat(simd, BIT_SUM_BASE);
     for (number, coefficient) in all.iter().enumerate() {
         known = known + is_small(*coefficient).or_zero(f64::from(2_u32 << number));
     }

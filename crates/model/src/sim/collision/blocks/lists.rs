@@ -4,7 +4,7 @@ use crate::sim::bodies::Bodies;
 use fosssim_num::{
     lanes::{Lanes, MAX_LANES, Plane, Simd},
     tolerances::LANES_MAX_INPUT,
-    vector::{Vec2, at},
+    vector::{Vec2, vector_at},
 };
 
 /// The lists of a pass.
@@ -65,7 +65,7 @@ impl Lists {
     /// Copies the current displacement of a particle.
     pub fn refresh(&mut self, setting: Setting<'_>, particle: usize) -> RefreshedBody {
         let Setting { bodies, displacements, .. } = setting;
-        let shift = at(displacements, particle);
+        let shift = vector_at(displacements, particle);
         let [_, _, dx, dy, _] = &self.particles;
         if [dx[particle], dy[particle]].map(f64::to_bits) == [shift.x, shift.y].map(f64::to_bits) {
             return RefreshedBody::Same;
@@ -73,12 +73,12 @@ impl Lists {
         if !are_moderate(&[shift.x, shift.y]) {
             return RefreshedBody::TooLarge;
         }
-        put(&mut self.particles[2..4], particle, bodies.particles(), shift);
+        store_vector(&mut self.particles[2..4], particle, bodies.particles(), shift);
         if std::mem::replace(&mut self.has_edges, true) {
             for &edge in &self.own_edges[particle] {
                 for (end, lists) in self.edges.chunks_exact_mut(4).enumerate() {
                     if bodies.edges[edge][end] == particle {
-                        put(&mut lists[2..4], edge, bodies.edges.len(), shift);
+                        store_vector(&mut lists[2..4], edge, bodies.edges.len(), shift);
                     }
                 }
             }
@@ -129,9 +129,9 @@ impl Lists {
     #[inline(always)]
     pub fn particle<S: Simd>(&self, simd: S, index: usize) -> Five<S> {
         let [x, y, dx, dy, radius] = &self.particles;
-        let position = Plane { x: Lanes::all(simd, x[index]), y: Lanes::all(simd, y[index]) };
-        let displacement = Plane { x: Lanes::all(simd, dx[index]), y: Lanes::all(simd, dy[index]) };
-        (position, displacement, Lanes::all(simd, radius[index]))
+        let position = Plane { x: Lanes::splat(simd, x[index]), y: Lanes::splat(simd, y[index]) };
+        let displacement = Plane { x: Lanes::splat(simd, dx[index]), y: Lanes::splat(simd, dy[index]) };
+        (position, displacement, Lanes::splat(simd, radius[index]))
     }
 
     /// Returns the motions of the particles from `first` on.
@@ -174,7 +174,7 @@ fn repeat_last(lists: &mut [Vec<f64>], count: usize) {
 }
 
 /// Writes a vector into entry `index` of two lists with `count` entries; the last entry is repeated after them.
-fn put(lists: &mut [Vec<f64>], index: usize, count: usize, vector: Vec2) {
+fn store_vector(lists: &mut [Vec<f64>], index: usize, count: usize, vector: Vec2) {
     for (list, value) in lists.iter_mut().zip([vector.x, vector.y]) {
         let end = if index + 1 == count { list.len() } else { index + 1 };
         list[index..end].fill(value);

@@ -1,7 +1,7 @@
 //! Processes all pairs in the order of the trace, particle by particle.
 use super::{
     Group, Lists, Setting,
-    group::{BEHIND, EDGE_KNOWN, EDGE_ROW, OPEN, TWO_KNOWN, TWO_ROW, compute_particles},
+    group::{EDGE_KNOWN, EDGE_ROW, FACTS_INDEX, OPEN_BIT, ROW_PADDING, TWO_ROW, compute_particles},
     settle::{EDGE_BYTES, LoggedRows, TWO_BYTES, decide_edge, decide_two},
 };
 use crate::sim::{
@@ -40,7 +40,7 @@ impl Work for Pairs<'_> {
             let first = self.place.first;
             let pairs = TWO_BYTES * (particles - first + bodies.points.len()) + EDGE_BYTES * bodies.edges.len();
             let mut bytes = self.bytes.take();
-            let room = bytes.as_mut().map_or(&mut [][..], |bytes| bytes.room(pairs));
+            let room = bytes.as_mut().map_or(&mut [][..], |bytes| bytes.reserve(pairs));
             let mut output = LoggedRows::new(room);
             let ends = self.row(simd, &mut rows, &mut output);
             let LoggedRows { used, polynomials, excluded, largest, found, .. } = output;
@@ -124,7 +124,7 @@ impl Pairs<'_> {
         output: &mut LoggedRows<'_>,
     ) -> bool {
         let width = Lanes::<S>::COUNT;
-        let mut largest = Lanes::all(simd, 0.0);
+        let mut largest = Lanes::splat(simd, 0.0);
         let mut ends = false;
         let mut block = seconds.start;
         while block < seconds.end && !ends {
@@ -149,14 +149,15 @@ impl Pairs<'_> {
 #[inline(always)]
 fn compute_edge(
     pair: Pair,
-    row: &[f64; EDGE_ROW + BEHIND],
+    row: &[f64; EDGE_ROW + ROW_PADDING],
     with: (&Setting<'_>, &mut SearchCounts),
     place: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[EDGE_KNOWN].to_bits();
-    let ends = known & OPEN != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
-    if known & OPEN == 0 {
+    let ends =
+        known & OPEN_BIT != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
+    if known & OPEN_BIT == 0 {
         output.excluded += 1;
     }
     output.write_edge(row, known >> 1);
@@ -173,9 +174,10 @@ fn compute_two(
     place: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
-    let known = row[TWO_KNOWN].to_bits();
-    let ends = known & OPEN != 0 && output.decide(with.1, |counts| decide_two(with.0, counts, pair, row), pair, place);
-    if known & OPEN == 0 {
+    let known = row[FACTS_INDEX].to_bits();
+    let ends =
+        known & OPEN_BIT != 0 && output.decide(with.1, |counts| decide_two(with.0, counts, pair, row), pair, place);
+    if known & OPEN_BIT == 0 {
         output.excluded += 1;
     }
     output.write_two(row, known >> 1);

@@ -2,7 +2,7 @@
 use super::{
     super::{impact::time_of_impact, motion::PairMotion},
     Setting,
-    group::{BEHIND, EDGE_ROW, LINE, TWO_ROW},
+    group::{EDGE_ROW, LINE_INDEX, ROW_PADDING, TWO_ROW},
 };
 use crate::sim::{
     observer::{Impulse, Time},
@@ -73,7 +73,7 @@ impl<'a> LoggedRows<'a> {
     /// Writes the polynomials of a pair with an edge without their small leading coefficients, whose bits are set in
     /// `small`.
     #[inline(always)]
-    pub fn write_edge(&mut self, row: &[f64; EDGE_ROW + BEHIND], small: u64) {
+    pub fn write_edge(&mut self, row: &[f64; EDGE_ROW + ROW_PADDING], small: u64) {
         let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<EDGE_BYTES>) else { return };
         let mut used = 0;
         write_one::<5>(room, &mut used, row, small);
@@ -90,7 +90,7 @@ impl<'a> LoggedRows<'a> {
         let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<TWO_BYTES>) else { return };
         let mut used = 0;
         write_one::<3>(room, &mut used, row, small);
-        write_one::<2>(room, &mut used, &row[LINE..], small >> 3);
+        write_one::<2>(room, &mut used, &row[LINE_INDEX..], small >> 3);
         self.used += used;
         self.polynomials += 2;
     }
@@ -118,7 +118,7 @@ pub(super) fn decide_edge(
     setting: &Setting<'_>,
     counts: &mut SearchCounts,
     pair: Pair,
-    row: &[f64; EDGE_ROW + BEHIND],
+    row: &[f64; EDGE_ROW + ROW_PADDING],
 ) -> Result<Option<Impulse>, StepError> {
     decide(setting, counts, pair, row, [5, 3, 3, 6])
 }

@@ -24,10 +24,10 @@ impl Observer for Log {
     fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         WantedPairs::Bytes(&mut self.polynomials)
     }
-    fn impulse(&mut self, impulse: &Impulse) {
+    fn observe_impulse(&mut self, impulse: &Impulse) {
         self.impulses.push(*impulse);
     }
-    fn synchronization(&mut self, state: &State) {
+    fn observe_synchronization(&mut self, state: &State) {
         self.end_step(0, state);
     }
     fn end_step(&mut self, _step: u32, state: &State) {

@@ -5,7 +5,7 @@ mod polynomials;
 
 use super::response::{Change, Response, Setting, clamp};
 use crate::sim::bodies::Bodies;
-use fosssim_num::vector::{Vec2, at, length, unit};
+use fosssim_num::vector::{Vec2, length, unit, vector_at};
 pub use polynomials::{EdgeMotions, EdgePolynomials, coefficients, coefficients_and_right_cubic};
 
 /// Returns the contact normal at time `t`, from the particle to the closest point of the edge's line. `None` (no hit)
@@ -26,9 +26,9 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, [first, second]: [usize;
     let v2 = law.mean_velocity(q_start, q_end, first);
     let v3 = law.mean_velocity(q_start, q_end, second);
     let time = t * law.time_step;
-    let y1 = at(q_start, i) + time * v1;
-    let y2 = at(q_start, first) + time * v2;
-    let y3 = at(q_start, second) + time * v3;
+    let y1 = vector_at(q_start, i) + time * v1;
+    let y2 = vector_at(q_start, first) + time * v2;
+    let y3 = vector_at(q_start, second) + time * v3;
     let alpha = nearest_parameter(y1, y2, y3);
     let on_edge = v2 + alpha * (v3 - v2);
     exchange(bodies, law.factor, law.time_step, [i, first, second], alpha, on_edge - v1, unit(n))
@@ -39,11 +39,11 @@ pub(super) fn response(setting: &Setting<'_>, i: usize, [first, second]: [usize;
 #[inline]
 pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, edge: usize) -> Option<Vec2> {
     let [first, second] = bodies.edges[edge];
-    let (x1, x2, x3) = (at(x, i), at(x, first), at(x, second));
+    let (x1, x2, x3) = (vector_at(x, i), vector_at(x, first), vector_at(x, second));
     let alpha = nearest_parameter(x1, x2, x3);
     let n = (x2 + alpha * (x3 - x2)) - x1;
     if length(n) < bodies.radii[i] + bodies.edge_radii[edge] {
-        let (v1, v2, v3) = (at(v, i), at(v, first), at(v, second));
+        let (v1, v2, v3) = (vector_at(v, i), vector_at(v, first), vector_at(v, second));
         return (((v1 - v2) - alpha * (v3 - v2)).dot(&n) > 0.0).then_some(n);
     }
     None
@@ -59,8 +59,8 @@ pub(super) fn simple_response(
     [first, second]: [usize; 2],
     n: Vec2,
 ) -> Response {
-    let alpha = nearest_parameter(at(x, i), at(x, first), at(x, second));
-    let (v1, v2, v3) = (at(v, i), at(v, first), at(v, second));
+    let alpha = nearest_parameter(vector_at(x, i), vector_at(x, first), vector_at(x, second));
+    let (v1, v2, v3) = (vector_at(v, i), vector_at(v, first), vector_at(v, second));
     let on_edge = v2 + alpha * (v3 - v2);
     exchange(bodies, factor, 0.0, [i, first, second], alpha, on_edge - v1, unit(n))
 }

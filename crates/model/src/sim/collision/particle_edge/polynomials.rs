@@ -115,7 +115,7 @@ where
     let quintic = [
         -h * h * q - c * c * d - 2.0 * o * j,
         -h * h * p - 2.0 * g * h * q - 4.0 * b * c * d - c * c * e - o * i - 2.0 * n * j,
-        less(-2.0 * g * h * p - 2.0 * f * g * q, others),
+        subtract_all(-2.0 * g * h * p - 2.0 * f * g * q, others),
         -2.0 * f * h * p
             - g * g * p
             - 2.0 * f * g * q
@@ -127,12 +127,12 @@ where
         -2.0 * f * g * p - f * f * q - a * a * d - 4.0 * a * b * e - l * i - 2.0 * k * j,
         -f * f * p - a * a * e - k * i,
     ];
-    (quintic, less(-2.0 * g * h * p - 2.0 * f * h * q, others))
+    (quintic, subtract_all(-2.0 * g * h * p - 2.0 * f * h * q, others))
 }
 
 /// Subtracts `others` from a number, one after the other.
 #[inline(always)]
-fn less<N: Number, const COUNT: usize>(mut number: N, others: [N; COUNT]) -> N {
+fn subtract_all<N: Number, const COUNT: usize>(mut number: N, others: [N; COUNT]) -> N {
     for other in others {
         number = number - other;
     }

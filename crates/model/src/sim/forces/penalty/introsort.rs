@@ -1,11 +1,11 @@
 //! Reproduces the order in which the C++ library's sort leaves entries with equal keys.
 //!
 //! Introsort is quicksort with a median of three, heapsort if the recursion is too deep, and a final insertion sort. Up
-//! to [`THRESHOLD`] entries with equal keys keep their order. Longer lists do not, and the original's sums depend on
-//! the order.
+//! to [`MAX_INSERTION_LENGTH`] entries with equal keys keep their order. Longer lists do not, and the original's sums
+//! depend on the order.
 
 /// The maximum length of parts that are left to the final insertion sort.
-const THRESHOLD: usize = 16;
+const MAX_INSERTION_LENGTH: usize = 16;
 
 /// Sorts entries by ascending keys. Entries with NaN keys end up in unspecified places.
 pub(super) fn sort<T: Copy>(list: &mut [T], key: impl Fn(&T) -> f64 + Copy) {
@@ -17,7 +17,7 @@ pub(super) fn sort<T: Copy>(list: &mut [T], key: impl Fn(&T) -> f64 + Copy) {
 }
 
 fn divide<T: Copy>(mut list: &mut [T], mut depth: u32, is_less: impl Fn(&T, &T) -> bool + Copy) {
-    while list.len() > THRESHOLD {
+    while list.len() > MAX_INSERTION_LENGTH {
         if depth == 0 {
             return heapsort(list, is_less);
         }
@@ -99,7 +99,7 @@ fn insert_all<T: Copy>(list: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
     for end in 1..list.len() {
         let value = list[end];
         // Only in this case does the search pass NaN keys.
-        let is_least = end < THRESHOLD && is_less(&value, &list[0]);
+        let is_least = end < MAX_INSERTION_LENGTH && is_less(&value, &list[0]);
         let mut hole = end;
         while hole > 0 && (is_least || is_less(&value, &list[hole - 1])) {
             list[hole] = list[hole - 1];

@@ -22,7 +22,7 @@ use crate::{
 };
 use fosssim_num::{
     tolerances::CONTEST_DISTANCE,
-    vector::{at, length, unit},
+    vector::{length, unit, vector_at},
 };
 pub use pairs::PenaltyPairs;
 pub use sweep::SweepOrder;
@@ -86,7 +86,7 @@ impl Law {
     }
 
     fn particle_particle(self, bodies: &Bodies, i: usize, j: usize, x: &[f64], gradient: &mut [f64]) {
-        let n = at(x, j) - at(x, i);
+        let n = vector_at(x, j) - vector_at(x, i);
         let (r1, r2) = (bodies.radii[i], bodies.radii[j]);
         let reach = (r1 + r2) + self.thickness;
         let l = length(n);
@@ -103,7 +103,7 @@ impl Law {
     #[inline]
     fn particle_edge(self, bodies: &Bodies, i: usize, edge: usize, x: &[f64], gradient: &mut [f64]) {
         let [first, second] = bodies.edges[edge];
-        let (x1, x2, x3) = (at(x, i), at(x, first), at(x, second));
+        let (x1, x2, x3) = (vector_at(x, i), vector_at(x, first), vector_at(x, second));
         let x32 = x3 - x2;
         // Unlike the comparisons of the responses, these keep a NaN.
         let alpha = ((x1 - x2).dot(&x32) / x32.dot(&x32)).clamp(0.0, 1.0);
@@ -128,7 +128,7 @@ impl Law {
     fn particle_half_plane(self, bodies: &Bodies, i: usize, half_plane: usize, x: &[f64], gradient: &mut [f64]) {
         let (p, q) = (bodies.points[half_plane], bodies.normals[half_plane]);
         let squared = q.dot(&q);
-        let n = ((p - at(x, i)).dot(&q) / squared) * q;
+        let n = ((p - vector_at(x, i)).dot(&q) / squared) * q;
         let r = bodies.radii[i];
         let reach = r + self.thickness;
         if is_beyond(n, reach) {

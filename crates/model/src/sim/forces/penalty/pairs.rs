@@ -12,7 +12,7 @@ use crate::{
         pairs::{Objects, PassCursor, is_end},
     },
 };
-use fosssim_num::vector::{Vec2, at};
+use fosssim_num::vector::{Vec2, vector_at};
 
 /// The pairs of a scene's penalty force, with the memory to find near pairs.
 #[derive(Debug, Clone)]
@@ -79,7 +79,7 @@ impl PenaltyPairs {
                 edges.for_each(|edge| visit(pair(PairKind::ParticleEdge, i, edge)));
             } else {
                 // Nearly all other pairs are out of reach, which is tested with as few instructions as possible.
-                let (own, radius) = (at(x, i), self.radii[i]);
+                let (own, radius) = (vector_at(x, i), self.radii[i]);
                 let places = x.as_chunks::<2>().0[others.clone()].iter().zip(&self.radii[others.clone()]);
                 for (j, (&other, other_radius)) in others.zip(places) {
                     if !is_beyond(Vec2::from(other) - own, (radius + other_radius) + self.thickness) {

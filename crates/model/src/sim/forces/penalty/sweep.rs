@@ -6,14 +6,14 @@
 //! keep their order; the first order is that of the C++ library's sort.
 use super::introsort;
 use crate::scene::Scene;
-use fosssim_num::vector::{Vec2, at};
+use fosssim_num::vector::{Vec2, vector_at};
 use std::f64::consts::SQRT_2;
 
 /// The maximum number of particles per edge in scenes whose boxes have four axes.
 const PARTICLES_PER_EDGE: usize = 100;
 
 /// The number of boxes that are compared on y at a time.
-const BLOCK: usize = 8;
+const BLOCK_BOXES: usize = 8;
 
 /// The order of bodies after the previous search.
 ///
@@ -84,12 +84,12 @@ impl Sweep {
     pub fn update(&mut self, x: &[f64]) {
         let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, heights, sorting, furthest } = self;
         let particle = |body: u32| {
-            let place = at(x, body as usize);
+            let place = vector_at(x, body as usize);
             BodyExtent::around(body, [place; 2], radii[body as usize], *has_four_axes)
         };
         let edge = |body: u32| {
             let (ends, radius) = edges[body as usize];
-            BodyExtent::around(body, ends.map(|end| at(x, end)), radius, *has_four_axes)
+            BodyExtent::around(body, ends.map(|end| vector_at(x, end)), radius, *has_four_axes)
         };
         sort(particle_boxes, radii.len(), sorting, particle);
         sort(edge_boxes, edges.len(), sorting, edge);
@@ -130,16 +130,16 @@ impl Sweep {
             while end > index + 1 && begins_behind(&boxes[end - 1], one) {
                 end -= 1;
             }
-            let (lows, more_lows) = self.heights[0][index + 1..end].as_chunks::<BLOCK>();
-            let (highs, _) = self.heights[1][index + 1..end].as_chunks::<BLOCK>();
+            let (lows, more_lows) = self.heights[0][index + 1..end].as_chunks::<BLOCK_BOXES>();
+            let (highs, _) = self.heights[1][index + 1..end].as_chunks::<BLOCK_BOXES>();
             for (block, (lows, highs)) in lows.iter().zip(highs).enumerate() {
                 // Keys are as wide as the floating-point numbers, so that several are compared at a time.
-                let mut far = [0_u64; BLOCK];
+                let mut far = [0_u64; BLOCK_BOXES];
                 for ((far, low), high) in far.iter_mut().zip(lows).zip(highs) {
                     *far = u64::from(one.low[1] > *high) | u64::from(*low > one.high[1]);
                 }
-                if far.iter().sum::<u64>() < BLOCK as u64 {
-                    let first = index + 1 + block * BLOCK;
+                if far.iter().sum::<u64>() < BLOCK_BOXES as u64 {
+                    let first = index + 1 + block * BLOCK_BOXES;
                     let found = boxes[first..].iter().zip(far).filter(|(_, far)| *far == 0);
                     found.for_each(|(other, _)| hear_if_near(one, other));
                 }

@@ -7,7 +7,7 @@ use crate::{
         pair::{Pair, PairKind},
     },
 };
-use fosssim_num::vector::{Vec2, at, put};
+use fosssim_num::vector::{Vec2, set_vector, vector_at};
 
 /// The terms of a scene's penalty force, which a step sums.
 #[derive(Debug, Clone)]
@@ -41,9 +41,9 @@ impl PenaltyTerms {
             };
             let mut terms = bodies.particles_of(pair).map(|particle| (particle, Vec2::zeros()));
             let terms = &mut terms[..count];
-            terms.iter().for_each(|(particle, _)| put(gradient, *particle, Vec2::zeros()));
+            terms.iter().for_each(|(particle, _)| set_vector(gradient, *particle, Vec2::zeros()));
             law.add(bodies, pair, x, gradient);
-            terms.iter_mut().for_each(|(particle, force)| *force = -1.0 * at(gradient, *particle));
+            terms.iter_mut().for_each(|(particle, force)| *force = -1.0 * vector_at(gradient, *particle));
             if terms.iter().any(|(_, force)| *force != Vec2::zeros()) {
                 visit(pair, terms);
             }

@@ -25,13 +25,13 @@ struct MistakeFamily {
     rows: &'static [(&'static str, &'static [FamilyCell])],
 }
 
-const SUPPLIED: FamilyCell = No("the approach of edges is supplied, so students change it as a whole");
-const PRODUCTS: FamilyCell = No("the products of the overlap are separate rows");
+const SUPPLIED_APPROACH: FamilyCell = No("the approach of edges is supplied, so students change it as a whole");
+const SEPARATE_PRODUCTS: FamilyCell = No("the products of the overlap are separate rows");
 const ONE_RADIUS: FamilyCell = No("a half-plane has no radius");
 const AT_REST: FamilyCell = No("half-planes do not move");
 const ONE_IS_ENOUGH: FamilyCell = No("it holds a tolerance of the rules, for which one kind is enough");
 
-const PAIRS: MistakeFamily = MistakeFamily {
+const PAIR_FAMILY: MistakeFamily = MistakeFamily {
     sides: &["pp-", "pe-", "ph-"],
     rows: &[
         (
@@ -77,7 +77,7 @@ const PAIRS: MistakeFamily = MistakeFamily {
                 Is("ph-offset-not-squared"),
             ],
         ),
-        ("linear sign", &[Is("pp-linear-sign"), PRODUCTS, Is("ph-linear-sign")]),
+        ("linear sign", &[Is("pp-linear-sign"), SEPARATE_PRODUCTS, Is("ph-linear-sign")]),
         ("linear factor", &[Is("pp-no-two"), Is("pe-linear-one-ab"), Is("ph-no-two")]),
         ("leading sign", &[Is("pp-quadratic-sign"), Is("pe-quartic-plus-fi"), Is("ph-quadratic-sign")]),
         ("leading coefficient missing", &[Is("pp-no-quadratic"), Is("pe-three-terms"), Is("ph-no-quadratic")]),
@@ -85,11 +85,11 @@ const PAIRS: MistakeFamily = MistakeFamily {
         ("tiny error", &[Is("pp-tiny-error"), ONE_IS_ENOUGH, ONE_IS_ENOUGH]),
         ("one component only", &[Is("pp-x-only"), No("it affects all inputs"), No("it affects all inputs")]),
         ("approach negated", &[Is("pp-approach-negated"), Is("pe-approach-negated"), Is("ph-approach-negated")]),
-        ("approach, slope's sign", &[Is("pp-approach-slope-sign"), SUPPLIED, Is("ph-approach-slope-sign")]),
-        ("approach, slope twice", &[Is("pp-approach-slope-twice"), SUPPLIED, Is("ph-approach-slope-twice")]),
+        ("approach, slope's sign", &[Is("pp-approach-slope-sign"), SUPPLIED_APPROACH, Is("ph-approach-slope-sign")]),
+        ("approach, slope twice", &[Is("pp-approach-slope-twice"), SUPPLIED_APPROACH, Is("ph-approach-slope-twice")]),
         (
             "approach, constant's sign",
-            &[Is("pp-separating"), SUPPLIED, No("its sign comes with a factor: ph-approach-no-speed")],
+            &[Is("pp-separating"), SUPPLIED_APPROACH, No("its sign comes with a factor: ph-approach-no-speed")],
         ),
         (
             "approach at the start",
@@ -120,7 +120,7 @@ const PAIRS: MistakeFamily = MistakeFamily {
     ],
 };
 
-const ENDS: MistakeFamily = MistakeFamily {
+const END_FAMILY: MistakeFamily = MistakeFamily {
     sides: &["first", "second"],
     rows: &[
         ("still", &[Is("pe-first-end-still"), Is("pe-second-end-still")]),
@@ -132,7 +132,7 @@ const ENDS: MistakeFamily = MistakeFamily {
     ],
 };
 
-const ALPHAS: MistakeFamily = MistakeFamily {
+const ALPHA_FAMILY: MistakeFamily = MistakeFamily {
     sides: &["low", "high"],
     rows: &[
         ("slope's sign", &[Is("pe-alpha-low-slope-sign"), Is("pe-alpha-high-slope-sign")]),
@@ -146,7 +146,7 @@ const ALPHAS: MistakeFamily = MistakeFamily {
     ],
 };
 
-const PLACES: MistakeFamily = MistakeFamily {
+const PLACE_FAMILY: MistakeFamily = MistakeFamily {
     sides: &["first", "last"],
     rows: &[
         ("contact alone", &[Is("loop-first-only"), Is("loop-last-only")]),
@@ -160,7 +160,7 @@ const PLACES: MistakeFamily = MistakeFamily {
     ],
 };
 
-const QUANTITIES: MistakeFamily = MistakeFamily {
+const QUANTITY_FAMILY: MistakeFamily = MistakeFamily {
     sides: &["position", "velocit"],
     rows: &[
         ("alone changed by contacts", &[Is("response-positions-only"), Is("response-velocities-only")]),
@@ -171,7 +171,7 @@ const QUANTITIES: MistakeFamily = MistakeFamily {
     ],
 };
 
-const ROUNDS: MistakeFamily = MistakeFamily {
+const ROUND_FAMILY: MistakeFamily = MistakeFamily {
     sides: &["too few", "too many"],
     rows: &[
         ("impulse rounds", &[Is("loop-one-fewer"), Is("loop-one-more")]),
@@ -182,7 +182,7 @@ const ROUNDS: MistakeFamily = MistakeFamily {
     ],
 };
 
-const SUMS: MistakeFamily = MistakeFamily {
+const SUM_FAMILY: MistakeFamily = MistakeFamily {
     sides: &["center", "momentum", "angular", "inertia"],
     rows: &[
         (
@@ -242,10 +242,11 @@ const SUMS: MistakeFamily = MistakeFamily {
     ],
 };
 
-const FAMILIES: [&MistakeFamily; 7] = [&PAIRS, &ENDS, &ALPHAS, &PLACES, &QUANTITIES, &ROUNDS, &SUMS];
+const FAMILIES: [&MistakeFamily; 7] =
+    [&PAIR_FAMILY, &END_FAMILY, &ALPHA_FAMILY, &PLACE_FAMILY, &QUANTITY_FAMILY, &ROUND_FAMILY, &SUM_FAMILY];
 
 /// Prefixes of the ids of rows that exist only for one kind of pair, with the reasons.
-const ALONE: &[(&str, &str)] = &[
+const SINGLE_KIND_PREFIXES: &[(&str, &str)] = &[
     ("pe-quartic-", "a product of the quartic"),
     ("pe-cubic-", "a product of the quartic"),
     ("pe-no-cubic", "a coefficient of the quartic"),
@@ -294,8 +295,8 @@ fn every_cell_is_a_row_or_has_its_reason() {
             No(reason) => assert!(reason.contains(' '), "{name}, {side}: the reason for the missing row is empty"),
         }
     }
-    for (name, cells) in PAIRS.rows {
-        for (cell, kind) in cells.iter().zip(PAIRS.sides) {
+    for (name, cells) in PAIR_FAMILY.rows {
+        for (cell, kind) in cells.iter().zip(PAIR_FAMILY.sides) {
             assert!(!matches!(cell, Is(id) if !id.starts_with(kind)), "{name} has a row of another kind");
         }
     }
@@ -306,14 +307,17 @@ fn every_cell_is_a_row_or_has_its_reason() {
 fn every_row_of_one_kind_of_pair_belongs_to_a_family() {
     let known: BTreeSet<&str> =
         cells().filter_map(|(.., cell)| if let Is(id) = cell { Some(*id) } else { None }).collect();
-    let is_alone = |id: &str| ALONE.iter().any(|(beginning, _)| id.starts_with(beginning));
+    let is_alone = |id: &str| SINGLE_KIND_PREFIXES.iter().any(|(beginning, _)| id.starts_with(beginning));
     let of_pairs = CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong && row.kind_of_pair().is_some());
     let gaps: Vec<&str> = of_pairs
         .filter(|row| row.area <= Area::ContactVector && !known.contains(row.id) && !is_alone(row.id))
         .map(|row| row.id)
         .collect();
     assert!(gaps.is_empty(), "which rows are like these for other kinds of pairs? {gaps:?}");
-    let vain: Vec<&str> =
-        ALONE.iter().map(|(id, _)| *id).filter(|id| !CATALOGUE.iter().any(|row| row.id.starts_with(id))).collect();
+    let vain: Vec<&str> = SINGLE_KIND_PREFIXES
+        .iter()
+        .map(|(id, _)| *id)
+        .filter(|id| !CATALOGUE.iter().any(|row| row.id.starts_with(id)))
+        .collect();
     assert!(vain.is_empty(), "{vain:?} do not name a row");
 }

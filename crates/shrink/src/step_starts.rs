@@ -5,18 +5,18 @@ use fosssim_model::{
     sim::State,
     trace::{Layout, Lenient, LenientFrame},
 };
-use fosssim_num::vector::at;
+use fosssim_num::vector::vector_at;
 
 /// The maximum number of wrong steps that are tried. A later step may show one cause alone that the first one shows
 /// together with others.
-const MOST_STEPS: usize = 6;
+const MAX_STEPS: usize = 6;
 
 /// Returns scenes to begin with, each with its wrong step, in the order in which they are tried: each of these wrong
 /// steps alone, then the first one with the step before it, then the whole run up to it. `trace` is the program's trace
 /// of the scene; steps count from 1 and ascend. Parts that only a display uses are removed.
 #[must_use]
-pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<(u32, Scene)> {
-    let wrong = &wrong[..wrong.len().min(MOST_STEPS)];
+pub fn step_starts(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<(u32, Scene)> {
+    let wrong = &wrong[..wrong.len().min(MAX_STEPS)];
     let (Some(&first), Some(&last)) = (wrong.first(), wrong.last()) else { return Vec::new() };
     let layout = Layout::for_scene(scene);
     let (mut reader, mut frame) = (Lenient::from_slice(trace, layout), LenientFrame::default());
@@ -32,7 +32,8 @@ pub fn beginnings(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<(u32, Scene
         let state = states.get(step.checked_sub(1)? as usize).filter(|state| state.is_finite())?;
         let mut scene = Scene { description: None, display: Display::default(), ..scene.clone() };
         for (index, particle) in scene.particles.iter_mut().enumerate() {
-            (particle.position, particle.velocity) = (at(&state.positions, index), at(&state.velocities, index));
+            (particle.position, particle.velocity) =
+                (vector_at(&state.positions, index), vector_at(&state.velocities, index));
             particle.tag = None;
         }
         set_steps(&mut scene, steps);
