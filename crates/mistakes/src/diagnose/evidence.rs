@@ -5,7 +5,7 @@
 //! exactly the same symptoms cannot be distinguished, unless other traces with wrong polynomials of the same kind do
 //! not allow one of them.
 use super::{
-    Detail, Explanation, PolynomialDetail, Weight,
+    Detail, Explanation, Guess, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
     explain::is_formula,
     naming::{alternatives, as_row},
@@ -83,12 +83,15 @@ struct Support<'a> {
     against: usize,
     /// The most detailed explanation with this statement.
     told: Option<&'a Explanation>,
+    /// Whether the statement is a known formula, which is tried on every trace.
+    is_known: bool,
 }
 
 impl Support<'_> {
-    /// Returns whether at least as many traces contradict a guess about polynomials as support it.
+    /// Returns whether at least as many traces contradict a guess about polynomials as support it. A known formula is
+    /// tried on every trace, so half as many are enough.
     fn is_denied(&self) -> bool {
-        self.against > 0 && self.against >= self.complete
+        self.against > 0 && self.against * if self.is_known { 2 } else { 1 } >= self.complete
     }
 
     /// Returns the weight of an explanation. Every symptom of a stage shows that the stage is wrong; the most frequent
@@ -117,6 +120,14 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
         }
     }
     for (word, evidence) in &mut all {
+        let row = find(word);
+        let is_named = |told: &Explanation| {
+            matches!(&told.about, About::Polynomials { found: OfPolynomials::Guess(Guess::Named(_)), .. })
+        };
+        evidence.is_known = row.is_some() || evidence.told.is_some_and(is_named);
+        let place = evidence.symptoms.first().copied();
+        let first = place.map(|(trace, place)| &open[trace].symptoms[place].one);
+        let as_told = row.zip(first).map(|(row, first)| as_row(first, row, Vec::new()));
         for trace in open {
             let told = evidence.told;
             let is_kin = |one: &&Explanation| trace.symptoms.iter().any(|other| other.one.key == one.key);
@@ -124,7 +135,10 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
             evidence.complete += usize::from(trace.allows_wholly(word));
             if trace.allows_statement(word) {
                 evidence.traces += 1;
-            } else if told.is_some_and(|told| trace.symptoms.iter().any(|one| contradicts(&one.one, told))) {
+            } else if told
+                .or(as_told.as_ref())
+                .is_some_and(|told| trace.symptoms.iter().any(|one| contradicts(&one.one, told)))
+            {
                 evidence.against += 1;
             }
         }

@@ -150,7 +150,9 @@ fn wrong_polynomials(
 ) -> Option<Explanation> {
     let mut wrong: BTreeMap<Subject, usize> = BTreeMap::new();
     for list in traces {
-        let of_polynomials = list.iter().filter(|one| matches!(one.about, About::Polynomials { .. }));
+        let is_formula_row = |one: &&Explanation| find(&one.key).is_some_and(|row| is_formula(row.area));
+        let of_polynomials =
+            list.iter().filter(|one| matches!(one.about, About::Polynomials { .. }) || is_formula_row(one));
         let subjects: BTreeSet<Subject> = of_polynomials.flat_map(Explanation::subjects).collect();
         let subjects = subjects.into_iter().filter(|one| !is_unwritten(one));
         subjects.for_each(|subject| *wrong.entry(subject).or_default() += 1);

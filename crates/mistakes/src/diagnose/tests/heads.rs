@@ -125,6 +125,21 @@ fn what_most_traces_speak_against_is_not_told() {
     assert_eq!((likely[0].reproduced, likely[0].samples), (5, 35), "the others are counted");
 }
 
+/// A known formula is tried on every trace: half as many that it does not reproduce deny it, even where no trace
+/// reports it first.
+#[test]
+fn a_known_formula_is_denied_by_half_as_many_traces() {
+    let both = ["ParticleOverlap/pp-one-radius/", "ParticleOverlap/pp-no-first-radius/"];
+    let mut like = letter(Subject::ParticleOverlap, "other");
+    like.claims.push(both[1].to_owned());
+    let mut traces = vec![vec![row("pp-one-radius", &both)]; 8];
+    traces.push(vec![like]);
+    traces.extend(vec![vec![unexplained(Subject::ParticleOverlap)]; 4]);
+    assert_eq!(heads(&traces)[0], ("pp-no-first-radius".to_owned(), 9));
+    traces.push(vec![unexplained(Subject::ParticleOverlap)]);
+    assert_eq!(heads(&traces), [("unexplained".to_owned(), 14)]);
+}
+
 /// Where traces see the same mistake in forms of their own, the head says what these have in common, and each trace
 /// keeps its form.
 #[test]
