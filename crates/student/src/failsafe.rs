@@ -20,6 +20,8 @@ const STOP_MISTAKES: &[Mistake] = &[
     Mistake::FailsafeFixedForgotten,
     Mistake::FailsafeHalfPlaneForgotten,
     Mistake::FailsafeAllFixedOnly,
+    Mistake::FailsafeFirstFixedOnly,
+    Mistake::FailsafeLastFixedOnly,
     Mistake::FailsafeAlwaysStops,
     Mistake::FailsafeStopsFixedOnly,
     Mistake::FailsafeStopKeepsPosition,
@@ -54,6 +56,12 @@ fn is_stopped(world: &World, zone: &Zone) -> bool {
     let half_plane = zone.half_plane && !student.makes(Mistake::FailsafeHalfPlaneForgotten);
     let fixed = match () {
         () if student.makes(Mistake::FailsafeFixedForgotten) => false,
+        () if student.makes(Mistake::FailsafeFirstFixedOnly) => {
+            zone.particles.first().is_some_and(|&first| world.is_fixed(first))
+        }
+        () if student.makes(Mistake::FailsafeLastFixedOnly) => {
+            zone.particles.last().is_some_and(|&last| world.is_fixed(last))
+        }
         () if student.makes(Mistake::FailsafeAllFixedOnly) => {
             zone.particles.iter().all(|&particle| world.is_fixed(particle))
         }

@@ -35,7 +35,12 @@ pub fn apply(
     while rounds < limit {
         let is_old = student.makes(Mistake::ImpulsesDetectPrediction);
         let q_end = if is_old { &prediction.x } else { &state.x };
-        let found = detection::detect_contacts(world, &start, q_end, log)?;
+        let is_repeated = rounds > 0 && student.makes(Mistake::ImpulsesDetectOnce);
+        let found = if is_repeated {
+            std::mem::take(&mut list)
+        } else {
+            detection::detect_contacts(world, &start, q_end, log)?
+        };
         let is_as_before = rounds > 0 && found.len() == list.len();
         if !student.makes(Mistake::ImpulsesListKept) {
             list.clear();
@@ -53,6 +58,9 @@ pub fn apply(
         if is_as_before && student.makes(Mistake::ImpulsesSameCountFails) {
             return Ok(false);
         }
+        if rounds + 1 == limit && student.makes(Mistake::ImpulsesLastNotApplied) {
+            return Ok(false);
+        }
         let follows = student.makes(Mistake::ImpulsesStartFollows);
         let detected_to = follows.then(|| state.x.clone());
         resolve(world, if follows { q_start } else { &start }, contacts, &prediction, state, log);
@@ -61,6 +69,9 @@ pub fn apply(
         }
         if let Some(end) = detected_to {
             start = end;
+        }
+        if student.makes(Mistake::ImpulsesSucceedAfterOne) {
+            return Ok(true);
         }
         rounds += if student.makes(Mistake::ImpulsesCountContacts) {
             i32::try_from(contacts.len()).unwrap_or(i32::MAX)

@@ -49,6 +49,8 @@ const REJECTION_MISTAKES: &[Mistake] = &[
     Mistake::DecisionApproachMargin,
     Mistake::DecisionHalfPlaneOneSided,
     Mistake::DecisionFixedEdges,
+    Mistake::DecisionFixedAtEdges,
+    Mistake::DecisionFixedAtHalfPlanes,
 ];
 
 /// The usual maximum number of steps in the root searches of one pair.
@@ -260,7 +262,7 @@ pub fn detect(
     if matches!(motion, PairMotion::Edge { .. }) && length(n) == 0.0 {
         return Ok(None);
     }
-    if is_rejected(student, &motion, time) || (student.makes(Mistake::DecisionFixedEdges) && is_held(world, pair)) {
+    if is_rejected(student, &motion, time) || is_held(world, pair) {
         return Ok(None);
     }
     match student.mistake_in(&[Area::ContactVector]) {
@@ -338,11 +340,17 @@ fn is_rejected(student: Student, motion: &PairMotion, time: f64) -> bool {
     }
 }
 
-/// Returns whether both ends of the pair's edge are fixed.
+/// Returns whether this student's program rejects the impact because something is fixed.
 fn is_held(world: &World, pair: Pair) -> bool {
-    let Object::Edge(index) = pair.object else { return false };
-    let edge = world.scene.edges[index];
-    world.is_fixed(edge.first) && world.is_fixed(edge.second)
+    match (world.student.mistake_among(REJECTION_MISTAKES), pair.object) {
+        (Some(Mistake::DecisionFixedAtEdges), Object::Edge(_))
+        | (Some(Mistake::DecisionFixedAtHalfPlanes), Object::HalfPlane(_)) => world.is_fixed(pair.particle),
+        (Some(Mistake::DecisionFixedEdges), Object::Edge(index)) => {
+            let edge = world.scene.edges[index];
+            world.is_fixed(edge.first) && world.is_fixed(edge.second)
+        }
+        _ => false,
+    }
 }
 
 /// Returns whether the particles' paths stay far apart, judged by bounding circles. The assignment does not require

@@ -156,6 +156,7 @@ rows! {
         HalfPlaneOffsetNotSquared "ph-offset-not-squared" [Formula(HalfPlaneOverlap, offset_not_squared)];
         HalfPlaneOverlapNegated "ph-overlap-negated" [List(HalfPlaneOverlap, negate)];
         HalfPlaneOverlapSigned "ph-overlap-signed" [Named(&SIGNED_DISTANCE)];
+        HalfPlaneOverlapToPoint "ph-overlap-to-point" [Formula(HalfPlaneOverlap, overlap_to_point)];
         HalfPlaneFirst "ph-first-half-plane";
         HalfPlanePositionIndex "ph-position-index";
         HalfPlaneNoPoint "ph-no-point" [Named(&NO_POINT)];
@@ -236,6 +237,8 @@ rows! {
         DecisionApproachMargin "decision-approach-margin";
         DecisionHalfPlaneOneSided "decision-half-plane-one-sided";
         DecisionFixedEdges "decision-fixed-edges";
+        DecisionFixedAtEdges "decision-fixed-at-edges";
+        DecisionFixedAtHalfPlanes "decision-fixed-at-half-planes";
         ParticleParticlePrediction "pp-detects-prediction";
         ParticleEdgePrediction "pe-detects-prediction";
         HalfPlanePrediction "ph-detects-prediction";
@@ -300,6 +303,9 @@ rows! {
         ImpulsesAlwaysFail "loop-always-fails";
         ImpulsesAlwaysSucceed "loop-always-succeeds";
         ImpulsesOneLeftSucceeds "loop-one-left-succeeds";
+        ImpulsesSucceedAfterOne "loop-succeeds-after-one";
+        ImpulsesLastNotApplied "loop-last-not-applied";
+        ImpulsesDetectOnce "loop-detects-once";
         ImpulsesInverted "loop-inverted";
         ImpulsesFromPrediction "loop-from-prediction";
         ImpulsesPredictedVelocities "loop-predicted-velocities";
@@ -404,6 +410,8 @@ rows! {
         FailsafeFixedForgotten "failsafe-fixed-forgotten";
         FailsafeHalfPlaneForgotten "failsafe-half-plane-forgotten";
         FailsafeAllFixedOnly "failsafe-all-fixed-only";
+        FailsafeFirstFixedOnly "failsafe-first-fixed-only";
+        FailsafeLastFixedOnly "failsafe-last-fixed-only";
         FailsafeAlwaysStops "failsafe-always-stops";
         FailsafeStopsFixedOnly "failsafe-stops-fixed-only";
         FailsafeStopKeepsPosition "failsafe-stop-keeps-position";

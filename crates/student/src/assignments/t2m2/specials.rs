@@ -42,6 +42,12 @@ pub(super) fn signed_distance(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![-inputs.d[0].dot(n), inputs.radii[0] * root(n.dot(n)) + inputs.x21().dot(n)]
 }
 
+/// Returns the overlap with the half-plane's point, as if it were a particle without a radius.
+pub(super) fn overlap_to_point(inputs: &Inputs) -> Vec<BoundedValue> {
+    let (d, x) = (inputs.d[0], inputs.x21());
+    vec![-d.dot(d), 2.0 * x.dot(d), inputs.square - x.dot(x)]
+}
+
 /// Returns the approach to a half-plane without the speed as a factor.
 pub(super) fn no_speed_factor(inputs: &Inputs) -> Vec<BoundedValue> {
     let n = inputs.normal();
