@@ -75,7 +75,7 @@ problems! {
     /// A sign-in at a provider is rejected.
     refused_sign_in(detail: impl Into<String>): 403, "sign-in-refused", "This sign-in is not possible",
         detail,
-        "sign in again; if it happens again, tell the server's administrator";
+        "sign in again, or with a link from the course's staff; if it happens again, tell the administrator";
     /// A learning platform did not fulfill a request.
     platform_failed(detail: impl Into<String>): 502, "platform-failed", "The learning platform failed",
         detail,

@@ -20,7 +20,7 @@ pub use assignments::suites::{Suites, is_file_name};
 pub use counts::Counts;
 pub use courses::import::MemberLine;
 pub use courses::members::MemberInfo;
-pub use platforms::choice::{LinkStep, LinkTarget};
+pub use platforms::choice::{LinkStep, LinkTarget, slug_of};
 pub use platforms::launch::{LaunchTarget, LoginAnswer, LoginRequest};
 pub use platforms::platform::{RosterRead, RosterWish, ScoreInfo};
 pub use roles::admin::{Admin, CourseSize};
@@ -35,7 +35,9 @@ pub use submissions::mark::{Overview, Request, StudentHistory};
 pub use submissions::regrade::{Change, Regrade, RegradeState};
 pub use submissions::standings::{CountedSubmission, ShortStanding, Standing};
 pub use submissions::submit::{SubmitResult, Upload};
-pub use view::{Account, Assignment, Course, Event, History, Mark, Queue, QueueWorker, ResultView, Submission};
+pub use view::{
+    Account, Assignment, Course, Event, EventQuery, History, Mark, Queue, QueueWorker, ResultView, Submission,
+};
 
 use crate::{
     db::Database,

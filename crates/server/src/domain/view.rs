@@ -10,9 +10,9 @@ use crate::{
     task::{Outcome, OutputFile, Suite, Task},
     values,
 };
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::ops::Deref;
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 
 /// An account of a person.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
@@ -220,10 +220,23 @@ pub struct Event {
     pub text: String,
 }
 
-/// Selects events; the argument is the rest of the statement.
+/// The filter of the audit log's events; an empty part stands for all.
+#[derive(Debug, Clone, Default, Deserialize, IntoParams)]
+#[serde(default)]
+#[into_params(parameter_in = Query)]
+pub struct EventQuery {
+    /// Only events before this one.
+    pub(crate) before: Option<u64>,
+    /// Only events with these words in the text, the actor's login or the owner's.
+    pub(crate) who: String,
+    /// Only events of this kind.
+    pub(crate) kind: String,
+}
+
+/// Selects events by an [`EventQuery`] and further values; the second argument is the rest of the statement.
 macro_rules! events {
-    ($which:literal) => {
-        concat!(
+    ($transaction:ident, $query:ident, $which:literal $(, $value:expr)*) => {{
+        let statement = concat!(
             "SELECT event.id, event.happened_at, event.kind, actor.login, event.submission, event.text,
                 course.slug AS course, assignment.slug AS assignment, submission.number, owner.login AS owner FROM event
              LEFT JOIN account AS actor ON actor.id = event.actor
@@ -231,11 +244,16 @@ macro_rules! events {
              LEFT JOIN assignment ON assignment.id = event.assignment
              LEFT JOIN submission ON submission.id = event.submission
              LEFT JOIN account AS owner ON owner.id = submission.account
-             WHERE event.id < ? ",
+             WHERE event.id < ? AND (? = '' OR event.kind = ?) AND
+                {strpos}(lower(coalesce(actor.login, '') || ' ' || coalesce(owner.login, '') || ' ' || event.text), ?)
+                > 0 ",
             $which,
             " ORDER BY event.id DESC LIMIT 200"
-        )
-    };
+        );
+        let before = $query.before.map_or(i64::MAX, |before| i64::try_from(before).unwrap_or(i64::MAX));
+        let (kind, who) = (&$query.kind, $query.who.trim().to_lowercase());
+        $transaction.all(statement, values![before, kind, kind, who $(, $value)*]).await?
+    }};
 }
 pub(super) use events;
 

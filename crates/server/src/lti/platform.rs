@@ -84,21 +84,24 @@ impl PlatformWish {
         for (name, text) in
             [("login_url", &self.login_url), ("token_url", &self.token_url), ("keys_url", &self.keys_url)]
         {
-            if address(text, over_http).is_none() {
-                return Err(Problem::invalid(format!("{name} must be an address that begins with https://")));
-            }
+            ensure(
+                address(text, over_http).is_some(),
+                Problem::invalid(format!("{name} must be an address that begins with https://")),
+            )?;
         }
         if self.deployments.is_empty() || self.deployments.len() > 1000 || !self.deployments.iter().all(|d| is_word(d))
         {
             return Err(Problem::invalid("deployments must be a list of their numbers, with at least one"));
         }
-        if self.audience.as_deref().is_some_and(|audience| !is_word(audience)) {
-            return Err(Problem::invalid("audience must be 1 to 255 characters long"));
-        }
+        ensure(
+            self.audience.as_deref().is_none_or(is_word),
+            Problem::invalid("audience must be 1 to 255 characters long"),
+        )?;
         let is_host = |host: &String| Url::parse(&format!("https://{host}/")).is_ok_and(|url| place(&url) == *host);
-        if self.hosts.len() > 50 || !self.hosts.iter().all(is_host) {
-            return Err(Problem::invalid("hosts must be a list of host names, such as lms.example.org"));
-        }
+        ensure(
+            self.hosts.len() <= 50 && self.hosts.iter().all(is_host),
+            Problem::invalid("hosts must be a list of host names, such as lms.example.org"),
+        )?;
         Ok(())
     }
 }

@@ -18,10 +18,8 @@ pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact
     let names_it =
         |tags: &str| tags == "*" || tags.split(',').any(|other| other.trim().trim_start_matches("W/") == tag);
     let known = asked.get(header::IF_NONE_MATCH).and_then(|value| value.to_str().ok()).is_some_and(names_it);
-    let mut response = match known {
-        true => StatusCode::NOT_MODIFIED.into_response(),
-        false => whole_answer(member.open(artifact).await?, Some(transfer)),
-    };
+    let unchanged = || StatusCode::NOT_MODIFIED.into_response();
+    let mut response = if known { unchanged() } else { whole_answer(member.open(artifact).await?, Some(transfer)) };
     insert(&mut response, header::ETAG, &tag);
     Ok(response)
 }

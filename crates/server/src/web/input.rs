@@ -1,5 +1,8 @@
-//! Reads requests; an invalid request is answered with a description of its error.
-use crate::{domain::App, problem::Problem};
+//! Reads requests, with error answers that name the fault.
+use crate::{
+    domain::App,
+    problem::{Problem, ensure},
+};
 use axum::{
     extract::{FromRequest, FromRequestParts, MatchedPath, Path, Query, Request},
     http::{HeaderMap, Method, header, request::Parts},
@@ -35,19 +38,6 @@ pub(super) struct AddressParts {
 /// The query of the address.
 pub(super) struct QueryInput<T>(pub(super) T);
 
-/// The query's parameter for the end of a list.
-#[derive(Deserialize)]
-pub(super) struct ListEnd {
-    before: Option<u64>,
-}
-
-impl ListEnd {
-    /// Returns the number before which the list ends.
-    pub(super) fn number(&self) -> Option<i64> {
-        self.before.map(|before| i64::try_from(before).unwrap_or(i64::MAX))
-    }
-}
-
 /// The query's parameter for the event that the sender of a change has seen.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
@@ -66,14 +56,18 @@ impl SeenEvent {
 }
 
 /// The query's parameter for the start of a list.
-#[derive(Deserialize)]
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(super) struct ListStart {
+    /// Only changes of submissions after this one: `next` of the answer before.
     pub(super) after: Option<i64>,
 }
 
-fn is_of_type(headers: &HeaderMap, wanted: &str) -> bool {
+/// Rejects a request whose body has another media type.
+fn check_type(headers: &HeaderMap, wanted: &str, otherwise: &str) -> Result<(), Problem> {
     let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
-    value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted))
+    let is_wanted = value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted));
+    ensure(is_wanted, Problem::invalid(otherwise))
 }
 
 /// The time when a request's head arrived.
@@ -92,9 +86,7 @@ async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
         let mut bytes = Vec::new();
         while let Some(chunk) = stream.next().await {
             bytes.extend_from_slice(&chunk.map_err(|_| Problem::invalid("the request was interrupted"))?);
-            if bytes.len() > most {
-                return Err(Problem::too_long(most));
-            }
+            ensure(bytes.len() <= most, Problem::too_long(most))?;
         }
         Ok(bytes)
     };
@@ -136,9 +128,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Body<T> {
     type Rejection = Problem;
 
     async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {
-        if !is_of_type(request.headers(), "application/json") {
-            return Err(Problem::invalid("the body must be JSON: Content-Type: application/json"));
-        }
+        check_type(request.headers(), "application/json", "the body must be JSON: Content-Type: application/json")?;
         let bytes = read_body(request, state).await?;
         let read = serde_json::from_slice(&bytes);
         let read = read.or_else(|error| with_whole_numbers(&bytes).ok_or(error));
@@ -150,9 +140,7 @@ impl FromRequest<App> for PlainBody {
     type Rejection = Problem;
 
     async fn from_request(request: Request, state: &App) -> Result<Self, Problem> {
-        if !is_of_type(request.headers(), "text/csv") {
-            return Err(Problem::invalid("the body must be CSV: Content-Type: text/csv"));
-        }
+        check_type(request.headers(), "text/csv", "the body must be CSV: Content-Type: text/csv")?;
         let bytes = read_body(request, state).await?;
         String::from_utf8(bytes).map(Self).map_err(|_| Problem::invalid("the table must be in UTF-8"))
     }
@@ -166,9 +154,7 @@ impl<T: DeserializeOwned> FromRequest<App> for Fields<T> {
             let QueryInput(form) = QueryInput::from_request_parts(&mut request.into_parts().0, state).await?;
             return Ok(Self(form));
         }
-        if !is_of_type(request.headers(), "application/x-www-form-urlencoded") {
-            return Err(Problem::invalid("the body must be a form"));
-        }
+        check_type(request.headers(), "application/x-www-form-urlencoded", "the body must be a form")?;
         let bytes = read_body(request, state).await?;
         let request = Request::builder()
             .method("POST")

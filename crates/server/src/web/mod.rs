@@ -43,7 +43,7 @@ pub fn openapi() -> String {
 pub fn router(app: App) -> Router {
     let (api, _) = api_router();
     let client_address = app.client_address.clone().unwrap_or(ClientIpSource::ConnectInfo);
-    let pages = pages::router().layer(middleware::from_fn(pages::show_problems));
+    let pages = pages::router().layer(middleware::from_fn_with_state(app.clone(), pages::show_problems));
     Router::new()
         .merge(api)
         .merge(pages)
@@ -52,7 +52,7 @@ pub fn router(app: App) -> Router {
         // Every reader of a body enforces its own limit.
         .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(app.clone(), guard::check_site))
-        .layer(middleware::from_fn(pages::show_others))
+        .layer(middleware::from_fn_with_state(app.clone(), pages::show_others))
         .layer(middleware::from_fn_with_state(app.clone(), guard::renew_cookie))
         .layer(middleware::from_fn_with_state(app.clone(), guard::add_headers))
         .layer(middleware::from_fn_with_state(app.clone(), guard::log_request))

@@ -1,7 +1,7 @@
 //! Receives uploads. They are written to a file while they arrive, and are never completely in memory.
 use crate::{
     domain::{App, is_file_name},
-    problem::Problem,
+    problem::{Problem, ensure},
     task::Form,
 };
 use axum::{
@@ -136,9 +136,7 @@ pub(super) fn announced_size(request: &Request) -> Option<u64> {
 async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
     let deadline = Instant::now() + place.patience * MAX_PAUSES + fair_time(most);
     if !is_form(&request) {
-        if announced_size(&request).is_some_and(|announced| announced > most) {
-            return Err(Problem::too_large(most));
-        }
+        ensure(announced_size(&request).is_none_or(|announced| announced <= most), Problem::too_large(most))?;
         let body: Body = request.into_body();
         let file = write_file(place, body.into_data_stream(), most, deadline, None).await?;
         return Ok(ReceivedFile { file, name: None, form: None, key: None });
@@ -202,9 +200,7 @@ async fn write_file<E: Display>(
     let mut size = 0;
     loop {
         let left = deadline.saturating_duration_since(Instant::now());
-        if left == Duration::ZERO {
-            return Err(Problem::too_slow());
-        }
+        ensure(left != Duration::ZERO, Problem::too_slow())?;
         let next = tokio::time::timeout(left.min(place.patience), stream.next()).await;
         match next.map_err(|_| Problem::too_slow())? {
             None => break,
@@ -217,9 +213,7 @@ async fn write_file<E: Display>(
                     untaken.take(chunk.len());
                 }
                 size += chunk.len() as u64;
-                if size > most {
-                    return Err(Problem::too_large(most));
-                }
+                ensure(size <= most, Problem::too_large(most))?;
                 file.write_all(&chunk).await?;
             }
         }

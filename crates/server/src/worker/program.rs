@@ -147,10 +147,7 @@ impl Program {
             return Err(format!("grading an example ended with exit code {ended}, not {code}: {said}"));
         }
         let graded = reading::read_grade(&grade)?;
-        match (graded.code == "AC") == (code == 0) {
-            true => Ok(()),
-            false => Err(format!("an example was graded {}", graded.code)),
-        }
+        crate::problem::ensure((graded.code == "AC") == (code == 0), format!("an example was graded {}", graded.code))
     }
 }
 

@@ -213,10 +213,18 @@ pub(in crate::domain) async fn further_link(
     Ok(secret)
 }
 
-/// Returns whether a link can still be used to sign in.
-pub(in crate::domain) async fn is_link(transaction: &mut Transaction, link: &str) -> Result<bool, DbError> {
-    let statement = "SELECT account FROM sign_in_link WHERE digest = ? AND used_at IS NULL AND expires_at > {now}";
-    Ok(transaction.row(statement, values![digest(link)]).await?.is_some())
+/// Returns the name and the courses of the owner of a link that can still be used.
+pub(in crate::domain) async fn link_owner(
+    transaction: &mut Transaction,
+    link: &str,
+) -> Result<Option<(String, Option<String>)>, DbError> {
+    let statement = "SELECT account.name,
+           (SELECT string_agg(course.title, ', ') FROM course JOIN member ON member.course = course.id
+               WHERE member.account = account.id) AS courses
+        FROM sign_in_link JOIN account ON account.id = sign_in_link.account
+        WHERE sign_in_link.digest = ? AND used_at IS NULL AND expires_at > {now}";
+    let row = transaction.row(statement, values![digest(link)]).await?;
+    row.map(|row| Ok((row.text("name")?, row.maybe_text("courses")?))).transpose()
 }
 
 /// Uses up a link, and returns its owner and the way in which the owner signs in.

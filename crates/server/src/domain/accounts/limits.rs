@@ -5,7 +5,7 @@ use crate::domain::{
 };
 use crate::{
     db::Transaction,
-    problem::{self, Problem},
+    problem::{self, Problem, ensure},
     values,
 };
 use std::{
@@ -96,11 +96,12 @@ impl Member {
     /// Fails if too many archives wait, or too many of the account's were rejected.
     pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
         let turn = self.app.limits.archives.wait(self.account.id).await?;
-        if !self.app.limits.refused.try_acquire(self.account.id, MAX_REJECTED_PER_MINUTE, Instant::now()) {
-            return Err(Problem::too_many(format!(
+        ensure(
+            self.app.limits.refused.try_acquire(self.account.id, MAX_REJECTED_PER_MINUTE, Instant::now()),
+            Problem::too_many(format!(
                 "more than {MAX_REJECTED_PER_MINUTE} of your archives were rejected in a minute"
-            )));
-        }
+            )),
+        )?;
         Ok(turn)
     }
 

@@ -114,9 +114,10 @@ async fn connect(
     let (account, is_vouched) = (connects.account.id, connects.lately_at_browser()?.is_vouched);
     let issuer = issuer(provider);
     let statement = "SELECT 1 AS n FROM platform_account WHERE account = ? AND issuer = ?";
-    if transaction.row(statement, values![account, &issuer]).await?.is_some() {
-        return Err(Problem::conflict("your account is connected already", "disconnect it first, on the page Account"));
-    }
+    ensure(
+        transaction.row(statement, values![account, &issuer]).await?.is_none(),
+        Problem::conflict("your account is connected already", "disconnect it first, on the page Account"),
+    )?;
     identity::end_sessions(transaction, account).await?;
     identity::end_vouched(transaction, account).await?;
     // The person may already have another account, from an earlier sign-in at the provider.

@@ -1,6 +1,6 @@
 //! Turns for checking archives, which may occupy a processor for seconds. An account has one turn at a time, and the
 //! account with the least recent use goes first, so that no account waits for another's bad uploads.
-use crate::problem::Problem;
+use crate::problem::{Problem, ensure};
 use std::{
     collections::{BTreeMap, HashMap},
     sync::{Arc, Mutex, MutexGuard, PoisonError},
@@ -98,9 +98,10 @@ impl Turns {
                     return Ok(turn);
                 }
             }
-            if tokio::time::timeout_at(until, changed).await.is_err() {
-                return Err(Problem::unavailable("too many archives are being checked"));
-            }
+            ensure(
+                tokio::time::timeout_at(until, changed).await.is_ok(),
+                Problem::unavailable("too many archives are being checked"),
+            )?;
         }
     }
 }

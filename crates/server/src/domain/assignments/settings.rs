@@ -4,7 +4,7 @@ use crate::{
     calendar,
     db::DbError,
     late::LatePolicy,
-    problem::{Problem, ensure},
+    problem::{Problem, ensure, format_size},
     store::Digest,
     task::{Form, Input, Suite, Task},
 };
@@ -144,21 +144,31 @@ impl Settings {
         serde_json::from_str(text).map_err(wrong)
     }
 
-    /// Describes the settings that differ from earlier ones.
-    pub(in crate::domain) fn changes(&self, before: &Self) -> String {
+    /// Returns the settings that differ from earlier ones, as text; `suite` is the name of the uploaded suite.
+    pub(in crate::domain) fn changes(&self, before: &Self, suite: &str) -> String {
         let fields = |settings: &Self| match serde_json::to_value(settings) {
             Ok(Value::Object(fields)) => fields,
             _ => Map::new(),
         };
         let (new, old) = (fields(self), fields(before));
         let names: BTreeSet<&String> = new.keys().chain(old.keys()).collect();
-        let words = |name: &String| match (name.as_str(), new.get(name)) {
-            (_, None) => format!("no {name}"),
-            ("due_at", Some(Value::Number(due))) => {
-                format!("{name} {} UTC", calendar::format_minute(due.as_i64().unwrap_or_default()))
+        let words = |name: &String| {
+            let label = name.replace('_', " ");
+            match (name.as_str(), new.get(name)) {
+                ("suite_archive", Some(_)) => format!("uploaded suite \"{suite}\""),
+                ("suite_archive", None) => "no uploaded suite".to_owned(),
+                (_, None) => format!("no {label}"),
+                ("due_at", Some(Value::Number(due))) => {
+                    format!("{label} {} UTC", calendar::format_minute(due.as_i64().unwrap_or_default()))
+                }
+                ("late_percent", Some(value)) => format!("late penalty {value} %"),
+                ("max_bytes", Some(value)) => {
+                    format!("largest upload {}", format_size(value.as_u64().unwrap_or_default()))
+                }
+                ("forms", _) => format!("{label} {}", self.forms.join(" or ")),
+                (_, Some(Value::String(text))) => format!("{label} {text}"),
+                (_, Some(value)) => format!("{label} {value}"),
             }
-            (_, Some(Value::String(text))) => format!("{name} {text}"),
-            (_, Some(value)) => format!("{name} {value}"),
         };
         names.into_iter().filter(|name| new.get(*name) != old.get(*name)).map(words).collect::<Vec<_>>().join(", ")
     }
@@ -224,29 +234,20 @@ impl Settings {
         if self.forms.is_empty() || self.forms.iter().any(|form| Form::from_name(form).is_none()) {
             return Err(Problem::invalid("choose the accepted forms (forms): program, sources or traces"));
         }
-        ensure(
-            is_file_name(&self.program),
-            Problem::invalid("the program's name (program) must be a plain file name"),
-        )?;
+        let program = "the program's name (program) must be a plain file name";
+        ensure(is_file_name(&self.program), Problem::invalid(program))?;
         if let Some(due) = self.due_at.filter(|due| !calendar::is_plausible(*due)) {
             return Err(Problem::invalid(format!(
                 "the due date (due_at) must be milliseconds since 1970, but {due} looks like seconds; write \
                  milliseconds, or a date such as 2026-12-01T23:59:00+01:00"
             )));
         }
-        if self.late_days > 365 || self.late_percent > 100 {
-            return Err(Problem::invalid(
-                "late days (late_days) must be at most 365, and the late penalty (late_percent) at most 100 %",
-            ));
-        }
-        ensure(
-            (1..=3600).contains(&self.seconds),
-            Problem::invalid("the time limit (seconds) must be 1 to 3600 seconds"),
-        )?;
-        ensure(
-            (1..=1 << 30).contains(&self.max_bytes),
-            Problem::invalid("the largest upload (max_bytes) must be 1 byte to 1 GiB"),
-        )?;
+        let late = "late days (late_days) must be at most 365, and the late penalty (late_percent) at most 100 %";
+        ensure(self.late_days <= 365 && self.late_percent <= 100, Problem::invalid(late))?;
+        let seconds = "the time limit (seconds) must be 1 to 3600 seconds";
+        ensure((1..=3600).contains(&self.seconds), Problem::invalid(seconds))?;
+        let size = "the largest upload (max_bytes) must be 1 byte to 1 GiB";
+        ensure((1..=1 << 30).contains(&self.max_bytes), Problem::invalid(size))?;
         Ok(())
     }
 

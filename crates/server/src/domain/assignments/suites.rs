@@ -3,16 +3,11 @@
 use crate::problem::Problem;
 use serde::Deserialize;
 
-/// The names of the grader's suites. A server whose workers are elsewhere may have no grader. It accepts any plain name
-/// then, and the worker's grader reports whether it has such a suite.
+/// The grader's suites, the newest version first. A server whose workers are elsewhere may have no grader. It accepts
+/// any plain name then, and the worker's grader reports whether it has such a suite.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Suites {
-    names: Vec<String>,
-    /// The titles of the suites, in the same order.
-    titles: Vec<String>,
-    /// The names without a version, each with the name of the newest version.
-    newest: Vec<(String, String)>,
-    default: String,
+    entries: Vec<Entry>,
 }
 
 #[derive(Deserialize)]
@@ -20,7 +15,7 @@ struct ListedSuites {
     suites: Vec<Entry>,
 }
 
-#[derive(Deserialize)]
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 struct Entry {
     name: String,
     /// The suite's name without its version.
@@ -29,6 +24,16 @@ struct Entry {
     #[serde(default)]
     title: String,
     default: bool,
+    #[serde(default)]
+    groups: Vec<SuiteGroup>,
+}
+
+/// A group of a suite.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
+pub struct SuiteGroup {
+    pub(crate) name: String,
+    pub(crate) scenes: u64,
+    pub(crate) points: serde_json::Number,
 }
 
 /// Returns whether a name is a single file name on every system, and is unambiguous in every message.
@@ -45,28 +50,15 @@ impl Suites {
     /// Fails if the JSON is not such a list.
     pub fn read(json: &[u8]) -> Result<Self, serde_json::Error> {
         let list: ListedSuites = serde_json::from_slice(json)?;
-        let default = list.suites.iter().find(|suite| suite.default).map(|suite| suite.name.clone());
-        let mut newest: Vec<(String, String)> = Vec::new();
-        for entry in list.suites.iter().filter(|entry| !entry.suite.is_empty()) {
-            // The newest version is listed first.
-            if newest.iter().all(|(suite, _)| *suite != entry.suite) {
-                newest.push((entry.suite.clone(), entry.name.clone()));
-            }
-        }
-        let (names, titles) = list.suites.into_iter().map(|suite| (suite.name, suite.title)).unzip();
-        Ok(Self { names, titles, newest, default: default.unwrap_or_default() })
+        Ok(Self { entries: list.suites })
     }
 
     /// Returns the suite's name for settings. An empty name becomes the grader's default, and a name without a version
     /// gets the newest version, so that later versions of the grader change nothing. If the grader can't be called, the
     /// name stays, and the grader chooses.
     pub(in crate::domain) fn or_default(&self, name: &str) -> String {
-        let newest = self.newest.iter().find(|(suite, _)| suite == name);
-        match newest {
-            Some((_, newest)) => newest.clone(),
-            None if name.is_empty() => self.default.clone(),
-            None => name.to_owned(),
-        }
+        let is_meant = |entry: &&Entry| if name.is_empty() { entry.default } else { entry.suite == name };
+        self.entries.iter().find(is_meant).map_or(name, |entry| &entry.name).to_owned()
     }
 
     /// Checks that a suite exists.
@@ -75,21 +67,26 @@ impl Suites {
         let is_name = name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name);
         match () {
             () if !is_name => Err(Problem::invalid(format!("suite is {}", self.describe()))),
-            () if self.names.is_empty() || self.names.iter().any(|known| known == name) => Ok(()),
+            () if self.entries.is_empty() || self.entries.iter().any(|known| known.name == name) => Ok(()),
             () => Err(Problem::conflict(format!("suite is {}", self.describe()), "name an existing one")),
         }
     }
 
     /// Returns the suites' names and titles; empty if the grader can't be called.
     pub fn titles(&self) -> impl Iterator<Item = (&str, &str)> {
-        self.names.iter().zip(&self.titles).map(|(name, title)| (name.as_str(), title.as_str()))
+        self.entries.iter().map(|suite| (suite.name.as_str(), suite.title.as_str()))
+    }
+
+    /// Returns the groups of a suite; empty if the grader does not list them.
+    pub(crate) fn groups(&self, name: &str) -> &[SuiteGroup] {
+        self.entries.iter().find(|suite| suite.name == name).map_or(&[], |suite| &suite.groups)
     }
 
     /// Returns the existing names, as text.
     pub fn describe(&self) -> String {
-        match self.names.as_slice() {
+        match self.entries.iter().map(|suite| suite.name.as_str()).collect::<Vec<_>>().as_slice() {
             [] => "a name that `fosssim-oracle suite list` shows".to_owned(),
-            [only] => only.clone(),
+            [only] => (*only).to_owned(),
             [some @ .., last] => format!("{} or {last}", some.join(", ")),
         }
     }

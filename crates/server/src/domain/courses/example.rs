@@ -4,7 +4,10 @@ use crate::domain::{
     accounts::identity::{self, SignInMethod},
     roles::admin,
 };
-use crate::{problem::Problem, values};
+use crate::{
+    problem::{Problem, ensure},
+    values,
+};
 
 /// The name and title of the course. An existing course with this name is taken for the example.
 const COURSE: (&str, &str) = ("example", "Example course");
@@ -23,9 +26,10 @@ impl App {
         let statement = "SELECT count(*) AS courses, count(CASE WHEN slug = ? THEN 1 END) AS examples FROM course";
         let known = transaction.one(statement, values![COURSE.0]).await?;
         if known.int("examples")? == 0 {
-            if known.int("courses")? > 0 {
-                return Err(Problem::conflict("this server has courses already", "start it without --example"));
-            }
+            ensure(
+                known.int("courses")? <= 0,
+                Problem::conflict("this server has courses already", "start it without --example"),
+            )?;
             let settings = Settings::default().validate(&self.suites)?;
             let course = admin::make_course(&mut transaction, COURSE).await?;
             let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)

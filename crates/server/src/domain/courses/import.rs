@@ -1,6 +1,6 @@
 //! Imports a class from a table (CSV), as spreadsheets write it: name, login, e-mail address and role of each member.
 use crate::domain::{Staff, courses::members::check_member};
-use crate::problem::Problem;
+use crate::problem::{Problem, ensure};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use utoipa::ToSchema;
@@ -106,19 +106,9 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             Ok(()) if unused.is_none() => Some("this line has more fields than name, login, email and role".to_owned()),
             Ok(()) => None,
         };
-        lines.push(MemberLine {
-            line,
-            name,
-            login,
-            email,
-            role,
-            unused: unused.unwrap_or_default(),
-            error,
-            link: None,
-        });
-        if lines.len() > MAX_LINES {
-            return Err(Problem::invalid(format!("a table has at most {MAX_LINES} lines")));
-        }
+        let unused = unused.unwrap_or_default();
+        lines.push(MemberLine { line, name, login, email, role, unused, error, link: None });
+        ensure(lines.len() <= MAX_LINES, Problem::invalid(format!("a table has at most {MAX_LINES} lines")))?;
     }
     if lines.is_empty() { Err(Problem::invalid("the table has no lines: name, login, email, role")) } else { Ok(lines) }
 }

@@ -135,10 +135,8 @@ impl Staff {
             identity::end_vouched(transaction, account).await?;
         }
         self.add_account(transaction, account, login, role).await?;
-        match ends_all || is_of_others {
-            true => Ok(self.link(transaction, account, SignInMethod::Own).await?),
-            false => Ok(None),
-        }
+        let is_new = ends_all || is_of_others;
+        if is_new { Ok(self.link(transaction, account, SignInMethod::Own).await?) } else { Ok(None) }
     }
 
     /// Checks that the course still has staff if this member loses the role.

@@ -173,7 +173,7 @@ impl Person {
 }
 
 /// Returns a proposed name for addresses.
-fn slug_of(title: &str) -> String {
+pub fn slug_of(title: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let text: String = title.chars().map(plain).take(60).collect();
     text.split('-').filter(|part| !part.is_empty()).collect::<Vec<_>>().join("-")

@@ -3,7 +3,7 @@ use crate::domain::{
     App, NewSecret,
     accounts::identity::{self, Link, NewToken, SignInMethod, TokenInfo},
     courses::members::PEOPLE_PER_PAGE,
-    view::{self, Account, Course, Entry, Event, Queue},
+    view::{self, Account, Course, Entry, Event, EventQuery, Queue},
 };
 use crate::{
     db::{DbError, Transaction, from_row},
@@ -195,14 +195,14 @@ impl Admin {
         Ok(view::queue(&mut transaction, &self.app).await?)
     }
 
-    /// Returns the events before an event, latest first.
+    /// Returns the latest events that match, latest first.
     ///
     /// # Errors
     ///
-    /// Fails if the database does not answer.
-    pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
+    /// When the database does not answer.
+    pub async fn audit(&self, query: &EventQuery) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        Ok(transaction.all(view::events!(""), values![before.unwrap_or(i64::MAX)]).await?)
+        Ok(view::events!(transaction, query, ""))
     }
 }
 

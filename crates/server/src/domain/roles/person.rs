@@ -6,7 +6,7 @@ use crate::domain::{
 };
 use crate::{
     db::{DbError, FromRow, Row},
-    problem::Problem,
+    problem::{Problem, ensure},
     values,
 };
 use serde::Serialize;
@@ -47,10 +47,8 @@ impl Person {
     /// further ways to sign in.
     pub(in crate::domain) fn lately_at_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.at_browser()?;
-        match session.is_recent {
-            true => Ok(session),
-            false => Err(Problem::sign_in_again("you signed in more than twelve hours ago")),
-        }
+        ensure(session.is_recent, Problem::sign_in_again("you signed in more than twelve hours ago"))?;
+        Ok(session)
     }
 
     /// Returns the courses that the person may see.
@@ -91,9 +89,7 @@ impl Person {
         let mut transaction = self.app.0.database.begin().await?;
         let statement = "SELECT count(*) AS n FROM token WHERE account = ? AND revoked_at IS NULL";
         let count = transaction.one(statement, values![self.account.id]).await?;
-        if count.int("n")? >= 50 {
-            return Err(Problem::conflict("an account has at most 50 tokens", "revoke unused ones"));
-        }
+        ensure(count.int("n")? < 50, Problem::conflict("an account has at most 50 tokens", "revoke unused ones"))?;
         let token = identity::new_token(&mut transaction, Some(self.account.id), name, self.account.id, way).await?;
         transaction.commit().await?;
         Ok(token)

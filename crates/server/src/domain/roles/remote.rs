@@ -125,9 +125,10 @@ impl Remote {
 
     async fn check_outcome(&self, lease: &Lease, outcome: &Outcome) -> Result<Outcome, Problem> {
         let short = |code: &str| (1..=4).contains(&code.len()) && code.bytes().all(|c| c.is_ascii_uppercase());
-        if !short(&outcome.code) || outcome.code == crate::task::JUDGE_ERROR {
-            return Err(Problem::invalid("the verdict's code is unknown"));
-        }
+        ensure(
+            short(&outcome.code) && outcome.code != crate::task::JUDGE_ERROR,
+            Problem::invalid("the verdict's code is unknown"),
+        )?;
         let seconds = Some(outcome.seconds.clone()).filter(|seconds| !seconds.is_empty());
         for number in [&outcome.points, &outcome.max_points, &seconds].into_iter().flatten() {
             let is_number = number.parse::<f64>().is_ok_and(f64::is_finite)

@@ -107,10 +107,8 @@ impl Person {
     ///
     /// Fails if the person is not an administrator.
     pub fn admin(self) -> Result<Admin, Problem> {
-        match self.account.is_admin {
-            true => Ok(Admin { account: self.account, app: self.app }),
-            false => Err(Problem::not_allowed("only administrators can do this")),
-        }
+        ensure(self.account.is_admin, Problem::not_allowed("this is for administrators"))?;
+        Ok(Admin { account: self.account, app: self.app })
     }
 }
 

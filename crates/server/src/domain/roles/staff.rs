@@ -2,7 +2,7 @@
 use crate::domain::{
     Member, Settings,
     accounts::identity,
-    view::{self, Assignment, Event, Queue, Submission},
+    view::{self, Assignment, Event, EventQuery, Queue, Submission},
 };
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
@@ -120,7 +120,7 @@ impl Staff {
                 ON CONFLICT (course, digest) DO UPDATE SET name = excluded.name, uploaded_at = excluded.uploaded_at";
             transaction.execute(statement, values![self.course, digest, name]).await?;
         }
-        self.check_suite(&mut transaction, &settings).await?;
+        let suite = self.check_suite(&mut transaction, &settings).await?;
         let statement = "INSERT INTO assignment (course, slug, title, visible, settings, created_at)
             VALUES (?, ?, ?, ?, ?, {now})
             ON CONFLICT (course, slug) DO UPDATE SET title = excluded.title, visible = excluded.visible,
@@ -138,7 +138,7 @@ impl Staff {
             score::send_all(&mut transaction, assignment.id, false).await?;
         }
         let mut text = format!("{slug} ({title}), {}", if visible { "visible" } else { "hidden" });
-        let changes = settings.changes(&before);
+        let changes = settings.changes(&before, &suite);
         if !changes.is_empty() {
             text = format!("{text}: {changes}");
         }
@@ -153,23 +153,25 @@ impl Staff {
         Ok(assignment)
     }
 
-    /// Checks that an archive in settings is a suite of this course, because a digest alone must not give access.
+    /// Checks that an archive in settings is a suite of this course, because a digest alone must not give
+    /// access. Returns its name.
     pub(in crate::domain) async fn check_suite(
         &self,
         transaction: &mut Transaction,
         settings: &Settings,
-    ) -> Result<(), Problem> {
-        let Some(digest) = &settings.suite_archive else { return Ok(()) };
-        let statement = "SELECT digest FROM suite WHERE course = ? AND digest = ?";
-        let known = transaction.row(statement, values![self.course, digest]).await?.is_some();
+    ) -> Result<String, Problem> {
+        let Some(digest) = &settings.suite_archive else { return Ok(String::new()) };
+        let statement = "SELECT name FROM suite WHERE course = ? AND digest = ?";
+        let known = transaction.row(statement, values![self.course, digest]).await?;
         let kept = match digest.parse() {
-            Ok(digest) if known => self.app.0.store.has(&digest).await?,
+            Ok(digest) if known.is_some() => self.app.0.store.has(&digest).await?,
             _ => false,
         };
         ensure(
             kept,
             Problem::conflict("suite_archive: no suite of this digest was uploaded to this course", "upload it"),
-        )
+        )?;
+        Ok(known.map_or(Ok(String::new()), |row| row.text("name"))?)
     }
 
     /// Publishes the groups that the suite hides, or withholds them again; platforms receive the shown points.
@@ -245,15 +247,14 @@ impl Staff {
         Ok(view::submissions_after(&mut transaction, assignment, after).await?)
     }
 
-    /// Returns the events of the course before a number, latest first; `None` for the latest.
+    /// Returns the latest events of the course that match, latest first.
     ///
     /// # Errors
     ///
-    /// Fails if the database does not answer.
-    pub async fn audit(&self, before: Option<i64>) -> Result<Vec<Event>, Problem> {
+    /// When the database does not answer.
+    pub async fn audit(&self, query: &EventQuery) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        let statement = view::events!("AND event.course = ?");
-        Ok(transaction.all(statement, values![before.unwrap_or(i64::MAX), self.course]).await?)
+        Ok(view::events!(transaction, query, "AND event.course = ?", self.course))
     }
 
     /// Returns the queue and the workers.

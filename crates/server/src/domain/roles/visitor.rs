@@ -48,7 +48,7 @@ impl Visitor {
         self.count_sign_in()?;
         let unknown = || Problem::unknown_secret("link", "ask the course's staff for a new one");
         // Only requests with a valid link may take the write lock.
-        ensure(self.is_link(link).await?, unknown())?;
+        ensure(self.link_owner(link).await?.is_some(), unknown())?;
         let mut transaction = self.app.0.database.begin().await?;
         let (account, way) = identity::use_link(&mut transaction, link).await?.ok_or_else(unknown)?;
         let session = identity::begin_session(&mut transaction, account, way).await?;
@@ -56,13 +56,13 @@ impl Visitor {
         Ok(session)
     }
 
-    /// Returns whether a link can still be used to sign in.
+    /// Returns the name and the courses of the owner of a link that can still be used.
     ///
     /// # Errors
-    /// Fails if the database does not answer.
-    pub async fn is_link(&self, link: &str) -> Result<bool, Problem> {
+    /// When the database does not answer.
+    pub async fn link_owner(&self, link: &str) -> Result<Option<(String, Option<String>)>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
-        Ok(identity::is_link(&mut transaction, link).await?)
+        Ok(identity::link_owner(&mut transaction, link).await?)
     }
 
     /// Signs in with a token of a person, until it is revoked.

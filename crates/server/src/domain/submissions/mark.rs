@@ -64,10 +64,8 @@ fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
     let length = text.chars().count();
     let is_hidden = |c| identity::is_control(c) && !matches!(c, '\n' | '\r' | '\t');
     if let Some(hidden) = text.chars().find(|c| is_hidden(*c)) {
-        return Err(Problem::invalid(format!(
-            "{what} must not hold the invisible character {}",
-            hidden.escape_unicode()
-        )));
+        let hidden = hidden.escape_unicode();
+        return Err(Problem::invalid(format!("{what} must not hold the invisible character {hidden}")));
     }
     let is_fit = (least..=MAX_TEXT_LENGTH).contains(&length);
     ensure(is_fit, Problem::invalid(format!("{what} must have {least} to {MAX_TEXT_LENGTH} characters")))
@@ -89,17 +87,19 @@ impl Staff {
         seen: Option<Option<i64>>,
     ) -> Result<Submission, Problem> {
         check_words("a comment", comment, 0)?;
-        if points.is_some() && comment.is_empty() {
-            return Err(Problem::conflict("different points need a reason", "write it in the comment"));
-        }
+        ensure(
+            points.is_none() || !comment.is_empty(),
+            Problem::conflict("different points need a reason", "write it in the comment"),
+        )?;
         let is_number = |text: &str| {
             text.len() <= 30
                 && text.bytes().all(|c| c.is_ascii_digit() || c == b'.')
                 && text.parse::<f64>().is_ok_and(|points| (0.0..=1e6).contains(&points))
         };
-        if points.is_some_and(|points| !is_number(points)) {
-            return Err(Problem::invalid("points must be a number between 0 and a million, such as 7.5"));
-        }
+        ensure(
+            points.is_none_or(is_number),
+            Problem::invalid("points must be a number between 0 and a million, such as 7.5"),
+        )?;
         let mut transaction = self.begin().await?;
         transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
         let submission = self.find_submission(&mut transaction, id).await?;
@@ -109,9 +109,10 @@ impl Staff {
             let detail = format!("{who} marked it meanwhile: {}", mark.comment);
             return Err(Problem::conflict(detail, "load the page again, and mark it there"));
         }
-        if points.is_some() && submission.grade.is_none() {
-            return Err(Problem::conflict("it is not graded yet", "wait for its grade"));
-        }
+        ensure(
+            points.is_none() || submission.grade.is_some(),
+            Problem::conflict("it is not graded yet", "wait for its grade"),
+        )?;
         let before = submission.mark.and_then(|mark| mark.points);
         if before.as_deref() != points {
             let what = if points.is_some() { "points by hand" } else { "the grader's points again" };
@@ -188,11 +189,8 @@ impl Staff {
     /// Fails if there is no such student, or the date was changed after the event `seen`.
     pub async fn extend(&self, slug: &str, login: &str, due_at: Option<i64>, seen: Option<i64>) -> Result<(), Problem> {
         identity::check_slug("a login", login)?;
-        if due_at.is_some_and(|due| !calendar::is_plausible(due)) {
-            return Err(Problem::invalid(
-                "due_at must be milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00",
-            ));
-        }
+        let wrong = "due_at must be milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00";
+        ensure(due_at.is_none_or(calendar::is_plausible), Problem::invalid(wrong))?;
         let mut transaction = self.begin().await?;
         let assignment = self.find_assignment(&mut transaction, slug).await?;
         let account = self.student(&mut transaction, &assignment, login).await?.int("id")?;
@@ -227,13 +225,15 @@ impl Member {
         check_words("a request", text, 1)?;
         let mut transaction = self.app.0.database.begin().await?;
         let submission = self.find_submission(&mut transaction, id).await?;
-        if submission.account != self.account.id {
-            return Err(Problem::not_allowed("only the person who submitted it can do this"));
-        }
+        ensure(
+            submission.account == self.account.id,
+            Problem::not_allowed("only the person who submitted it can do this"),
+        )?;
         let before = submission.mark.and_then(|mark| mark.request).unwrap_or_default();
-        if before.chars().count() + text.chars().count() > 5 * MAX_TEXT_LENGTH {
-            return Err(Problem::conflict("your requests exceed the total length limit", "talk to the course's staff"));
-        }
+        ensure(
+            before.chars().count() + text.chars().count() <= 5 * MAX_TEXT_LENGTH,
+            Problem::conflict("your requests are too long altogether", "talk to the course's staff"),
+        )?;
         let text = if before.is_empty() { text.to_owned() } else { format!("\n\n{text}") };
         let statement = "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})
             ON CONFLICT (submission) DO UPDATE SET request = coalesce(mark.request, '') || excluded.request,

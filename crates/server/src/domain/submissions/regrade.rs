@@ -48,11 +48,23 @@ pub struct Regrade {
     pub failed: usize,
     /// The number of grades that change.
     pub changed: usize,
+    /// The number of grades that get more points.
+    pub more: usize,
+    /// The number of grades that get fewer points.
+    pub fewer: usize,
     /// The changes by submission, up to the requested number.
     pub changes: Vec<Change>,
     /// The submission after which there are more changes; null if there are none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<i64>,
+}
+
+impl Regrade {
+    /// Returns the reasons that all shown changes share.
+    pub fn shared_why(&self) -> Option<String> {
+        let (first, rest) = self.changes.split_first()?;
+        rest.iter().all(|change| change.why == first.why).then(|| first.why.join("; "))
+    }
 }
 
 /// A changed grade, with the reasons.
@@ -105,9 +117,10 @@ impl Staff {
         self.check_suite(&mut transaction, &settings).await?;
         transaction.one("SELECT id FROM assignment WHERE id = ? {for update}", values![assignment.id]).await?;
         let statement = "SELECT id FROM campaign WHERE assignment = ? AND state = 'open'";
-        if transaction.row(statement, values![assignment.id]).await?.is_some() {
-            return Err(Problem::conflict("another regrade is open", "apply or discard it first"));
-        }
+        ensure(
+            transaction.row(statement, values![assignment.id]).await?.is_none(),
+            Problem::conflict("another regrade is open", "apply or discard it first"),
+        )?;
         let statement = "INSERT INTO campaign (assignment, state, reason, settings, started_by, created_at)
             VALUES (?, 'open', ?, ?, ?, {now}) RETURNING id";
         let values = values![assignment.id, reason, settings.text(), self.account.id];
@@ -234,6 +247,8 @@ impl FromRow for Regrade {
             left: 0,
             failed: 0,
             changed: 0,
+            more: 0,
+            fewer: 0,
             changes: Vec::new(),
             next: None,
         }))
@@ -275,7 +290,14 @@ async fn find(transaction: &mut Transaction, assignment: &Assignment, id: i64, a
     regrade.submissions = count(jobs.int("n")?);
     regrade.left = count(jobs.int("waiting")?);
     regrade.failed = count(failed.int("n")?);
-    regrade.changed = count(transaction.one(changes!("count(*) AS n", ""), values![id]).await?.int("n")?);
+    let statement = changes!(
+        "count(*) AS n, count(CASE WHEN CAST(new.points AS REAL) > CAST(old.points AS REAL) THEN 1 END) AS more,
+            count(CASE WHEN CAST(new.points AS REAL) < CAST(old.points AS REAL) THEN 1 END) AS fewer",
+        ""
+    );
+    let counts = transaction.one(statement, values![id]).await?;
+    regrade.changed = count(counts.int("n")?);
+    (regrade.more, regrade.fewer) = (count(counts.int("more")?), count(counts.int("fewer")?));
     let statement = changes!(
         "job.submission, submission.number, account.login, new.code AS new_code, new.points AS new_points,
             new.summary AS new_summary, new.version AS new_version, new.task AS new_task,

@@ -8,7 +8,7 @@ use crate::{
     calendar,
     db::Transaction,
     lti::score,
-    problem::Problem,
+    problem::{Problem, ensure},
     queue::{self, Lane, NewJob, Turn},
     store::{Artifact, digest_of_file},
     task::{Form, Input},
@@ -146,10 +146,8 @@ impl Member {
         let row = transaction.row(statement, values![self.account.id, key]).await?;
         let Some(row) = row else { return Ok(None) };
         if row.int("assignment")? != assignment.id || row.text("digest")? != artifact.digest.as_str() {
-            return Err(Problem::conflict(
-                "this key was already used for another upload",
-                "use a different key for every upload",
-            ));
+            let detail = "this key was already used for another upload";
+            return Err(Problem::conflict(detail, "use a different key for every upload"));
         }
         Ok(Some(self.find_submission(transaction, row.int("submission")?).await?))
     }
@@ -175,12 +173,13 @@ impl Member {
         if due.is_some_and(|due| came_at > settings.late_policy().closes_at(due)) {
             return Err(Problem::conflict("the due date has passed", "ask the course's staff"));
         }
-        if settings.attempts > 0 && row.int("n")? >= settings.attempts.into() {
-            return Err(Problem::conflict(
+        ensure(
+            settings.attempts == 0 || row.int("n")? < settings.attempts.into(),
+            Problem::conflict(
                 format!("all {} submissions to this assignment are used up", settings.attempts),
                 "ask the course's staff",
-            ));
-        }
+            ),
+        )?;
         if settings.per_hour > 0 && row.int("recent")? >= settings.per_hour.into() {
             // The next submission is allowed when the oldest of the last hour is an hour old.
             let again = row.int("oldest")? + HOUR;

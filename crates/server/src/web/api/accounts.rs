@@ -1,7 +1,7 @@
 //! The API of accounts, tokens, and administrators' lists.
-use super::super::input::{AddressParts, Body, ListEnd, QueryInput};
+use super::super::input::{AddressParts, Body, QueryInput};
 use crate::{
-    domain::{Account, Admin, Event, Link, NewToken, Person, Queue, TokenInfo},
+    domain::{Account, Admin, Event, EventQuery, Link, NewToken, Person, Queue, TokenInfo},
     problem::Problem,
     schema::{Slug, Title},
 };
@@ -52,14 +52,6 @@ pub(super) async fn new_token(
     Ok((StatusCode::CREATED, Json(person.new_token(&wish.name).await?)))
 }
 
-/// Returns the events of the audit log, latest first, 200 at a time.
-#[utoipa::path(get, path = "/api/v1/audit", tag = "administration",
-    params(("before" = Option<i64>, Query, description = "Only events before this one")),
-    responses((status = 200, body = Vec<Event>)))]
-pub(super) async fn audit(admin: Admin, QueryInput(asked): QueryInput<ListEnd>) -> Result<Json<Vec<Event>>, Problem> {
-    Ok(Json(admin.audit(asked.number()).await?))
-}
-
 answers! { CREATED:
     /// Creates a token for workers on other machines.
     post "/api/v1/worker-tokens" "administration"
@@ -79,6 +71,8 @@ answers! { OK:
     get "/api/v1/worker-tokens" "administration" worker_tokens(admin: Admin) -> Vec<TokenInfo>: admin.worker_tokens();
     /// Returns the queue and the workers.
     get "/api/v1/queue" "administration" queue(admin: Admin) -> Queue: admin.queue();
+    /// Returns the events of the audit log, latest first, 200 at a time.
+    get "/api/v1/audit" "administration" audit(admin: Admin, ?asked: EventQuery) -> Vec<Event>: admin.audit(&asked);
 }
 
 deeds! { NO_CONTENT:

@@ -74,7 +74,7 @@ pub(super) struct Extension {
     seen: Option<i64>,
 }
 
-/// Uploads an archive (zip, tar, tar.gz) with a `suite.toml` at its top as the assignment's suite. Groups that it hides
+/// Uploads a `suite.toml`, or an archive (zip, tar, tar.gz) with one at its top, as the suite. Groups that it hides
 /// are withheld, even if others were published.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
     params(("revision" = Option<i64>, Query, description = "The revision that the change is based on")),
@@ -99,6 +99,7 @@ pub(in crate::web) async fn receive_suite(
     let received = upload::receive(&staff.app, request, MAX_SUITE_BYTES).await?;
     let app = &staff.app;
     ensure(std::fs::metadata(&received.file)?.len() > 0, Problem::no_suite("the file is empty"))?;
+    pack_lone_suite(&received.file)?;
     let folder = tempfile::tempdir_in(&app.incoming)?;
     look::unpack(staff, &received.file, folder.path()).await?;
     let suite = check_scenes(folder.path())?;
@@ -110,6 +111,19 @@ pub(in crate::web) async fn receive_suite(
 
 /// The maximum size of a `suite.toml`, in bytes.
 const MAX_SUITE_FILE_BYTES: u64 = 1 << 20;
+
+/// Puts a `suite.toml` that was uploaded alone into an archive.
+fn pack_lone_suite(file: &Path) -> std::io::Result<()> {
+    let is_small = std::fs::metadata(file)?.len() <= MAX_SUITE_FILE_BYTES;
+    let text = is_small.then(|| std::fs::read_to_string(file).ok()).flatten();
+    let Some(text) = text.filter(|text| !text.contains('\0')) else { return Ok(()) };
+    let mut archive = tar::Builder::new(std::fs::File::create(file)?);
+    let mut header = tar::Header::new_gnu();
+    header.set_size(text.len() as u64);
+    header.set_mode(0o644);
+    archive.append_data(&mut header, "suite.toml", text.as_bytes())?;
+    archive.finish()
+}
 
 /// Checks that the scenes of a suite are in the archive, or are scenes of the grader; otherwise a worker would read
 /// other files of its machine. Returns the suite without its digest.

@@ -1,13 +1,13 @@
 //! The API of courses and their members.
-use super::super::input::{AddressParts, Body, ListEnd, PlainBody, QueryInput, SeenEvent};
+use super::super::input::{AddressParts, Body, PlainBody, QueryInput, SeenEvent};
 use crate::{
-    domain::{Admin, Course, CourseOf, Event, Link, MemberInfo, MemberLine, Person, Staff},
-    problem::Problem,
+    domain::{Admin, Course, CourseOf, Event, EventQuery, Link, MemberInfo, MemberLine, Person, Staff},
+    problem::{Problem, ensure},
     schema::{Slug, Title},
 };
 use axum::{Json, http::StatusCode};
 use serde::Deserialize;
-use utoipa::ToSchema;
+use utoipa::{IntoParams, ToSchema};
 
 /// The new state of a course.
 #[derive(Deserialize, ToSchema)]
@@ -35,25 +35,11 @@ pub(super) struct MemberWish {
     seen: Option<i64>,
 }
 
-/// Removes a course with its assignments, submissions and log, forever. Accounts stay.
-#[utoipa::path(delete, path = "/api/v1/courses/{course}", tag = "administration",
-    params(("confirm" = String, Query, description = "The course's name, as confirmation")),
-    responses((status = 204, description = "Removed")))]
-pub(super) async fn remove_course(
-    admin: Admin,
-    AddressParts { course, .. }: AddressParts,
-    QueryInput(asked): QueryInput<Confirm>,
-) -> Result<StatusCode, Problem> {
-    if asked.confirm != course {
-        return Err(Problem::conflict("confirm must be the course's name", "repeat the course's name in confirm"));
-    }
-    admin.remove_course(&course).await?;
-    Ok(StatusCode::NO_CONTENT)
-}
-
 /// The confirmation of a removal.
-#[derive(Deserialize)]
+#[derive(Deserialize, IntoParams)]
+#[into_params(parameter_in = Query)]
 pub(super) struct Confirm {
+    /// The course's name, as confirmation.
     confirm: String,
 }
 
@@ -79,14 +65,6 @@ pub(super) async fn import(
     Ok(Json(staff.import(&table, asked.preview, seen.event()).await?))
 }
 
-/// Returns the events of the course, latest first, 200 at a time.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/audit", operation_id = "course_audit", tag = "courses",
-    params(("before" = Option<i64>, Query, description = "Only events before this one")),
-    responses((status = 200, body = Vec<Event>)))]
-pub(super) async fn audit(staff: Staff, QueryInput(asked): QueryInput<ListEnd>) -> Result<Json<Vec<Event>>, Problem> {
-    Ok(Json(staff.audit(asked.number()).await?))
-}
-
 answers! { CREATED:
     /// Creates a course.
     post "/api/v1/courses" "administration"
@@ -106,9 +84,19 @@ answers! { OK:
     get "/api/v1/courses" "courses" courses(person: Person) -> Vec<CourseOf>: person.courses();
     /// Lists the members of a course.
     get "/api/v1/courses/{course}/members" "courses" members(staff: Staff) -> Vec<MemberInfo>: staff.members();
+    /// Returns the events of the course, latest first, 200 at a time.
+    get "/api/v1/courses/{course}/audit" "courses"
+        course_audit(staff: Staff, ?asked: EventQuery) -> Vec<Event>: staff.audit(&asked);
 }
 
 deeds! { NO_CONTENT:
+    /// Removes a course with its assignments, submissions and log, forever. Accounts stay.
+    delete "/api/v1/courses/{course}" "administration"
+        remove_course(admin: Admin, { course }, ?asked: Confirm) -> "Removed": async {
+            let other = Problem::conflict("confirm must be the course's name", "repeat the course's name in confirm");
+            ensure(asked.confirm == course, other)?;
+            admin.remove_course(&course).await
+        };
     /// Removes a person from the course; their submissions stay.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
         remove_member(staff: Staff, { login }, ?asked: SeenEvent) -> "The member is removed":

@@ -4,13 +4,14 @@
 /// serves, the parts of the address and the body; and the type of its answer. The status of the answers comes first.
 macro_rules! answers {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
-        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $wish:ident: $body:ty)?)
-            -> $type:ty: $answer:expr;)*) => {
+        $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, ?$asked:ident: $query:ty)?
+            $(, $wish:ident: $body:ty)?) -> $type:ty: $answer:expr;)*) => {
         $($(#[doc = $doc])*
-        #[utoipa::path($method, path = $path, tag = $tag $(, request_body = $body)?,
+        #[utoipa::path($method, path = $path, tag = $tag $(, params($query))? $(, request_body = $body)?,
             responses((status = $status, body = $type)))]
         pub(super) async fn $name(
-            $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, Body($wish): Body<$body>)?
+            $who: $role $(, AddressParts { $($at,)* .. }: AddressParts)? $(, QueryInput($asked): QueryInput<$query>)?
+                $(, Body($wish): Body<$body>)?
         ) -> Result<(StatusCode, Json<$type>), Problem> {
             Ok((StatusCode::$status, Json($answer.await?.into())))
         })*
@@ -66,7 +67,7 @@ operations! {
     operations: health ready metrics openapi;
     accounts: show_own_account tokens new_token revoke_token accounts set_account disable_account remove_person
         worker_tokens new_worker_token revoke_worker_token queue audit;
-    courses: courses new_course remove_course members import set_member remove_member member_link audit;
+    courses: courses new_course remove_course members import set_member remove_member member_link course_audit;
     assignments: assignments assignment set_assignment remove_assignment set_suite publish withhold standings export
         extend extend_no_more;
     submissions: own submit submission remove_submission mark request history report upload grade_again

@@ -7,34 +7,33 @@ use crate::{
 };
 use axum::{Json, http::StatusCode};
 use serde::Deserialize;
+use utoipa::IntoParams;
 
-/// The parameters for reading a roster.
-#[derive(Deserialize)]
+/// Whether the roster is only read, or is applied even if many members leave.
+#[derive(Default, Deserialize, IntoParams)]
+#[serde(default)]
+#[into_params(parameter_in = Query)]
 pub(super) struct RosterParameters {
-    #[serde(default)]
+    /// Only report who would be added and removed.
     preview: bool,
-    #[serde(default)]
+    /// Proceed even if more than a third would be removed.
     confirm: bool,
 }
 
-/// Reads the members of the course from the connected platforms.
-#[utoipa::path(post, path = "/api/v1/courses/{course}/roster", tag = "courses",
-    params(("preview" = Option<bool>, Query, description = "Only report who would be added and removed"),
-        ("confirm" = Option<bool>, Query, description = "Proceed even if more than a third would be removed")),
-    responses((status = 200, body = RosterRead)))]
-pub(super) async fn roster(
-    staff: Staff,
-    QueryInput(asked): QueryInput<RosterParameters>,
-) -> Result<Json<RosterRead>, Problem> {
-    let wish = match asked {
-        RosterParameters { preview: true, .. } => RosterWish::Preview,
-        RosterParameters { confirm: true, .. } => RosterWish::Confirmed,
-        RosterParameters { .. } => RosterWish::Apply,
-    };
-    Ok(Json(staff.read_roster(wish).await?))
+impl RosterParameters {
+    fn wish(&self) -> RosterWish {
+        match self {
+            Self { preview: true, .. } => RosterWish::Preview,
+            Self { confirm: true, .. } => RosterWish::Confirmed,
+            Self { .. } => RosterWish::Apply,
+        }
+    }
 }
 
 answers! { OK:
+    /// Reads the members of the course from the connected platforms.
+    post "/api/v1/courses/{course}/roster" "courses"
+        roster(staff: Staff, ?asked: RosterParameters) -> RosterRead: staff.read_roster(asked.wish());
     /// Registers a platform, or changes it.
     put "/api/v1/platforms/{name}" "administration"
         set_platform(admin: Admin, { name }, wish: PlatformWish) -> Platform: admin.set_platform(&name, &wish);

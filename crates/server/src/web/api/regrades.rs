@@ -23,19 +23,6 @@ pub(super) struct RegradeWish {
     settings: Map<String, Value>,
 }
 
-/// Returns the changes of a regrade that is open or applied, with their reasons.
-#[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}", tag = "regrades",
-    params(("after" = Option<i64>, Query,
-        description = "Only changes of submissions after this one: `next` of the answer before")),
-    responses((status = 200, body = Regrade)))]
-pub(super) async fn show(
-    staff: Staff,
-    AddressParts { assignment, id, .. }: AddressParts,
-    QueryInput(asked): QueryInput<ListStart>,
-) -> Result<Json<Regrade>, Problem> {
-    Ok(Json(staff.show_regrade(&assignment, id, asked.after).await?))
-}
-
 answers! { CREATED:
     /// Grades all submissions again, without replacing the grades. Nothing changes until the regrade is applied.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
@@ -46,6 +33,10 @@ answers! { CREATED:
 }
 
 answers! { OK:
+    /// Returns the changes of a regrade that is open or applied, with their reasons.
+    get "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}" "regrades"
+        show(staff: Staff, { assignment, id }, ?asked: ListStart) -> Regrade:
+            staff.show_regrade(&assignment, id, asked.after);
     /// Makes the results of a regrade count.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/apply" "regrades"
         apply(staff: Staff, { assignment, id }) -> Regrade: staff.apply_regrade(&assignment, id);

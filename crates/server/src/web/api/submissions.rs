@@ -5,6 +5,7 @@ use super::super::{
     look, upload,
 };
 use crate::{
+    calendar,
     domain::{History, KeptResult, Member, RegradeOrder, Staff, Standing, Submission, SubmitResult, Upload},
     problem::Problem,
     queue::millis,
@@ -183,7 +184,7 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
     for standing in standings {
         let counts = standing.counts.as_ref();
         let grade = counts.and_then(|counts| counts.grade.as_ref());
-        let or_empty = |text: Option<&String>| text.cloned().unwrap_or_default();
+        let or_empty = |text: Option<&String>| text.map(round_points).unwrap_or_default();
         let parts = grade.and_then(|grade| Some(&kept.get(&grade.result)?.parts));
         let of_group = |name: &&str| {
             let found = parts?.groups.iter().find(|(group, _)| group == name)?;
@@ -198,7 +199,7 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
             grade.map(|grade| escape_cell(&grade.verdict)).unwrap_or_default(),
             or_empty(grade.and_then(|grade| grade.points.as_ref())),
             or_empty(grade.and_then(|grade| grade.max_points.as_ref())),
-            grade.map(|grade| grade.created_at.to_string()).unwrap_or_default(),
+            grade.map(|grade| calendar::format_iso(grade.created_at)).unwrap_or_default(),
             parts.map(|parts| escape_cell(&parts.mistakes.join(" "))).unwrap_or_default(),
         ];
         writer.write_record(row.into_iter().chain(of_groups)).map_err(fault)?;

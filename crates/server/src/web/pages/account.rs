@@ -9,7 +9,7 @@ use super::{
     redirect_to, show, text,
 };
 use crate::{
-    domain::{Course, Member, Person, TokenInfo},
+    domain::{Course, CourseOf, Member, Person, TokenInfo},
     problem::Problem,
 };
 use askama::Template;
@@ -45,6 +45,7 @@ struct AccountPage<'a> {
     frame: PageFrame,
     person: &'a Person,
     is_connected: bool,
+    courses: Vec<CourseOf>,
     tokens: Vec<TokenInfo>,
     new: Option<String>,
 }
@@ -67,8 +68,9 @@ pub(super) async fn home(person: Person) -> Page {
 
 async fn page(person: &Person, new: Option<String>) -> Page {
     let frame = PageFrame::for_account(&person.account).with_parent("/account".to_owned(), "Account");
-    let (is_connected, tokens) = (person.is_connected().await?, person.tokens().await?);
-    show(&AccountPage { frame, person, is_connected, tokens, new })
+    let (is_connected, courses, tokens) =
+        (person.is_connected().await?, person.courses().await?, person.tokens().await?);
+    show(&AccountPage { frame, person, is_connected, courses, tokens, new })
 }
 
 pub(super) async fn account(person: Person) -> Page {

@@ -9,7 +9,7 @@ use super::{
     redirect_to, show, text,
 };
 use crate::{
-    domain::{Account, Admin, CourseSize, Event, Queue, TokenInfo},
+    domain::{Account, Admin, App, CourseSize, Event, EventQuery, Queue, TokenInfo},
     lti::Platform,
     problem::Problem,
 };
@@ -28,7 +28,7 @@ const SECTIONS: [(&str, &str); 5] = [
 
 #[derive(Template)]
 #[template(path = "admin.html")]
-struct AdminPage {
+struct AdminPage<'a> {
     frame: PageFrame,
     /// The shown subject.
     part: (&'static str, &'static str),
@@ -39,12 +39,12 @@ struct AdminPage {
     after: Option<String>,
     workers: Vec<TokenInfo>,
     platforms: Vec<Platform>,
-    /// The public address of this service, to register on platforms.
-    public: String,
+    app: &'a App,
     queue: Queue,
     events: Vec<Event>,
-    link: Option<String>,
-    token: Option<String>,
+    query: EventQuery,
+    /// A person's link or a worker's token, which are shown once.
+    secret: Option<String>,
 }
 
 #[derive(Deserialize)]
@@ -54,42 +54,51 @@ pub(super) struct NewAccount {
     is_admin: Option<String>,
 }
 
-async fn make(admin: &Admin, end: &str, look: People, link: Option<String>, token: Option<String>) -> Page {
+async fn make(admin: &Admin, end: &str, (look, query): (People, EventQuery), secret: Option<String>) -> Page {
     let part = SECTIONS.into_iter().find(|part| part.0 == end).unwrap_or(SECTIONS[0]);
     let frame = PageFrame::for_account(&admin.account)
         .with_parent("/admin".to_owned(), "Administration")
         .with_pages("/admin", &SECTIONS);
+    let frame = frame.with_parent(format!("/admin{}", part.0), part.1);
     let (accounts, has_more) = admin.accounts_page(&look.q, &look.after).await?;
     let after = look.next(accounts.last().filter(|_| has_more).map(|last| last.login.as_str()));
+    let (courses, platforms) = (admin.course_sizes().await?, admin.platforms().await?);
+    let (workers, queue, events) = (admin.worker_tokens().await?, admin.queue().await?, admin.audit(&query).await?);
+    let app = &admin.app;
     show(&AdminPage {
-        frame: frame.with_parent(format!("/admin{}", part.0), part.1),
+        frame,
         part,
-        courses: admin.course_sizes().await?,
+        courses,
         accounts,
         look,
         after,
-        workers: admin.worker_tokens().await?,
-        platforms: admin.platforms().await?,
-        public: admin.app.public.clone(),
-        queue: admin.queue().await?,
-        events: admin.audit(None).await?,
-        link,
-        token,
+        workers,
+        platforms,
+        app,
+        queue,
+        events,
+        query,
+        secret,
     })
 }
 
-pub(super) async fn page(admin: Admin, uri: Uri, QueryInput(look): QueryInput<People>) -> Page {
-    make(&admin, uri.path().trim_start_matches("/admin"), look, None, None).await
+pub(super) async fn page(
+    admin: Admin,
+    uri: Uri,
+    QueryInput(look): QueryInput<People>,
+    QueryInput(query): QueryInput<EventQuery>,
+) -> Page {
+    make(&admin, uri.path().trim_start_matches("/admin"), (look, query), None).await
 }
 
 pub(super) async fn set_account(admin: Admin, Fields(form): Fields<NewAccount>) -> Page {
     let link = admin.set_account(form.login.trim(), form.name.trim(), form.is_admin.is_some()).await?.link;
-    make(&admin, "/people", People::default(), link, None).await
+    make(&admin, "/people", Default::default(), link).await
 }
 
 pub(super) async fn new_worker(admin: Admin, Fields(form): Fields<WorkerTokenName>) -> Page {
     let token = admin.new_worker_token(form.name.trim()).await?.token;
-    make(&admin, "/workers", People::default(), None, Some(token)).await
+    make(&admin, "/workers", Default::default(), Some(token)).await
 }
 
 deeds! {

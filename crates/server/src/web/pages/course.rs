@@ -1,10 +1,14 @@
 //! A course's pages: its assignments, members, queue and audit log.
 use super::{
-    super::input::{AddressParts, Fields, ListEnd, QueryInput},
+    super::input::{AddressParts, Fields, QueryInput, SeenEvent},
     Page, PageFrame, redirect_to, show, text,
 };
 use crate::{
-    domain::{Assignment, AssignmentChange, Event, Member, MemberInfo, Overview, Queue, Staff, Submission},
+    domain::{
+        Assignment, AssignmentChange, Event, EventQuery, Member, MemberInfo, Overview, Queue, Settings, Staff,
+        Submission,
+    },
+    late::Lateness,
     problem::Problem,
 };
 use askama::Template;
@@ -48,7 +52,9 @@ pub(super) struct OwnWork {
     pub(super) due: Option<i64>,
     /// Whether the due date has passed.
     pub(super) is_late: bool,
-    /// The time until which late uploads are accepted.
+    /// The delay of a submission now, and what it costs.
+    pub(super) delay: Option<Lateness>,
+    /// The time until which late uploads are taken.
     pub(super) closes_at: Option<i64>,
     /// Whether no submissions are accepted, not even late ones.
     pub(super) is_over: bool,
@@ -65,8 +71,10 @@ impl OwnWork {
         let due = member.due_date(assignment).await?;
         let submissions = member.submissions(&assignment.slug).await?;
         let now = SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |since| since.as_millis());
-        let passed = |at: Option<i64>| at.is_some_and(|at| u128::try_from(at).is_ok_and(|at| at < now));
-        let closes_at = due.map(|due| assignment.settings.late_policy().closes_at(due));
+        let now = i64::try_from(now).unwrap_or(i64::MAX);
+        let passed = |at: Option<i64>| at.is_some_and(|at| at < now);
+        let policy = assignment.settings.late_policy();
+        let closes_at = due.map(|due| policy.closes_at(due));
         let attempts = assignment.settings.attempts as usize;
         let points = |one: &Submission| one.grade.as_ref()?.points.as_ref()?.parse::<f64>().ok();
         let graded = submissions.iter().rev().filter_map(|one| Some((points(one)?, one)));
@@ -74,6 +82,7 @@ impl OwnWork {
         Ok(Self {
             due,
             is_late: passed(due),
+            delay: policy.lateness(due, now),
             closes_at,
             is_over: passed(closes_at),
             left: (attempts > 0).then(|| attempts.saturating_sub(submissions.len())),
@@ -102,16 +111,16 @@ struct MembersPage {
     platforms: Vec<String>,
     /// The last event of the course that the page shows.
     seen: i64,
-    /// A new sign-in link, and the login of its person.
-    link: Option<(String, String)>,
+    /// The person that was changed, and a sign-in link.
+    done: Option<(String, Option<String>)>,
 }
 
 #[derive(Template)]
 #[template(path = "audit.html")]
 struct AuditPage {
     frame: PageFrame,
-    slug: String,
     events: Vec<Event>,
+    query: EventQuery,
 }
 
 #[derive(Template)]
@@ -135,11 +144,6 @@ pub(super) struct NewMember {
     seen: Option<i64>,
 }
 
-#[derive(Deserialize)]
-pub(super) struct MemberRemoval {
-    seen: Option<i64>,
-}
-
 /// Returns the assignments of a course, in the form of its tables.
 pub(super) async fn rows(member: &Member) -> Result<Vec<Row>, Problem> {
     let mut rows = Vec::new();
@@ -158,15 +162,14 @@ pub(super) async fn course(member: Member) -> Page {
     show(&CoursePage { frame, member, assignments, kept })
 }
 
-pub(super) async fn new_assignment(staff: Staff, Fields(form): Fields<NewAssignment>) -> Result<Redirect, Problem> {
-    let slug = form.slug.trim();
+/// Creates a hidden assignment with a suite of the grader.
+pub(super) async fn make_assignment(staff: &Staff, slug: &str, title: &str, suite: &str) -> Result<(), Problem> {
     if staff.assignments().await?.iter().any(|assignment| assignment.slug == slug) {
         return Err(Problem::conflict("an assignment with this name already exists", "give it another name"));
     }
-    let change =
-        AssignmentChange { title: Some(form.title.trim()), visible: Some(false), ..AssignmentChange::default() };
-    staff.set_assignment(slug, change, |before| Ok(before.clone())).await?;
-    Ok(redirect_to(&format!("/c/{}/a/{slug}/settings", staff.slug)))
+    let change = AssignmentChange { title: Some(title), visible: Some(false), ..AssignmentChange::default() };
+    let settings = |before: &Settings| Ok(Settings { suite: suite.to_owned(), ..before.clone() });
+    staff.set_assignment(slug, change, settings).await.map(drop)
 }
 
 /// The filter of people: text in the login or name, a role in the course, and the login after which the page begins.
@@ -198,7 +201,7 @@ impl People {
     }
 }
 
-async fn members_page(staff: &Staff, look: People, link: Option<(String, String)>) -> Page {
+async fn members_page(staff: &Staff, look: People, done: Option<(String, Option<String>)>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff).with_parent(format!("/c/{slug}/members"), "Members");
     // Read the event before the members, so that later changes are detected.
@@ -213,7 +216,7 @@ async fn members_page(staff: &Staff, look: People, link: Option<(String, String)
     members.truncate(PEOPLE_PER_PAGE);
     let after = look.next(members.last().filter(|_| has_more).map(|last| last.login.as_str()));
     let platforms = staff.platforms().await?;
-    show(&MembersPage { frame, slug, members, students, staff: staff_count, look, after, platforms, seen, link })
+    show(&MembersPage { frame, slug, members, students, staff: staff_count, look, after, platforms, seen, done })
 }
 
 pub(super) async fn members(staff: Staff, QueryInput(look): QueryInput<People>) -> Page {
@@ -223,18 +226,17 @@ pub(super) async fn members(staff: Staff, QueryInput(look): QueryInput<People>) 
 pub(super) async fn set_member(staff: Staff, Fields(form): Fields<NewMember>) -> Page {
     let login = form.login.trim();
     let link = staff.set_member(login, form.name.trim(), &form.role, form.seen).await?.link;
-    members_page(&staff, People::default(), link.map(|link| (login.to_owned(), link))).await
+    members_page(&staff, People::default(), Some((login.to_owned(), link))).await
 }
 
 pub(super) async fn member_link(staff: Staff, AddressParts { login, .. }: AddressParts) -> Page {
     let link = staff.new_link(&login).await?.link;
-    members_page(&staff, People::default(), link.map(|link| (login, link))).await
+    members_page(&staff, People::default(), Some((login, link))).await
 }
 
-pub(super) async fn audit(staff: Staff, QueryInput(asked): QueryInput<ListEnd>) -> Page {
-    let slug = staff.slug.clone();
-    let frame = PageFrame::course(&staff).with_parent(format!("/c/{slug}/audit"), "Audit log");
-    show(&AuditPage { frame, slug, events: staff.audit(asked.number()).await? })
+pub(super) async fn audit(staff: Staff, QueryInput(query): QueryInput<EventQuery>) -> Page {
+    let frame = PageFrame::course(&staff).with_parent(format!("/c/{}/audit", staff.slug), "Audit log");
+    show(&AuditPage { frame, events: staff.audit(&query).await?, query })
 }
 
 pub(super) async fn queue(staff: Staff) -> Page {
@@ -243,7 +245,9 @@ pub(super) async fn queue(staff: Staff) -> Page {
 }
 
 deeds! {
-    remove_member(staff: Staff, { course, login }, form: MemberRemoval):
-        staff.remove_member(&login, form.seen) => "/c/{course}/members";
-    grade_errors_again(staff: Staff, { course }): staff.grade_errors_again(None) => "/c/{course}/queue";
+    new_assignment(staff: Staff, form: NewAssignment):
+        make_assignment(&staff, form.slug.trim(), form.title.trim(), "")
+        => "/c/{}/a/{}/settings", staff.slug, form.slug.trim();
+    remove_member(staff: Staff, { course, login }, form: SeenEvent):
+        staff.remove_member(&login, form.event()) => "/c/{course}/members";
 }

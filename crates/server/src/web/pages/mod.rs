@@ -34,20 +34,21 @@ mod student;
 mod submission;
 mod text;
 
+use super::input::AddressParts;
 use crate::{
-    domain::{Account, App, Assignment, Member},
+    domain::{Account, App, Assignment, Member, Person},
     problem::Problem,
 };
 use askama::Template;
 use axum::{
     Router,
-    extract::Request,
-    http::{HeaderValue, Method, StatusCode, Uri, header, uri::PathAndQuery},
+    extract::{FromRequestParts, Request, State},
+    http::{HeaderValue, Method, StatusCode, header, request::Parts, uri::PathAndQuery},
     middleware::Next,
     response::{Html, IntoResponse, Redirect, Response},
     routing,
 };
-use url::form_urlencoded::byte_serialize;
+use url::{Url, form_urlencoded::byte_serialize};
 
 /// Builds a router, and the list of its pages.
 macro_rules! pages {
@@ -121,7 +122,6 @@ pages! {
     post "/c/{course}/a/{assignment}/publish" => grades::publish,
     post "/c/{course}/a/{assignment}/withhold" => grades::withhold,
     post "/c/{course}/a/{assignment}/scores" => platform::send_scores,
-    post "/c/{course}/judge-errors" => course::grade_errors_again,
     post "/c/{course}/a/{assignment}/judge-errors" => grades::grade_errors_again,
     post "/c/{course}/s/{id}/again" => submission::grade_again,
     post "/c/{course}/a/{assignment}/regrades" => grades::begin,
@@ -240,21 +240,25 @@ fn redirect_to(address: &str) -> Redirect {
 struct ProblemPage {
     frame: PageFrame,
     problem: Problem,
+    /// The path of the page with the link or the form that led here.
+    back: Option<String>,
 }
 
 /// Turns rejections into pages, and shows the sign-in page to requests that are not signed in.
-pub(super) async fn show_problems(request: Request, next: Next) -> Response {
-    let wanted = (request.method() == Method::GET).then(|| request.uri().clone());
-    as_page(next.run(request).await, wanted.as_ref())
+pub(super) async fn show_problems(State(app): State<App>, request: Request, next: Next) -> Response {
+    let (head, body) = request.into_parts();
+    let kept = head.clone();
+    as_page(next.run(Request::from_parts(head, body)).await, kept, &app).await
 }
 
 /// Turns rejections outside of pages into pages, for browsers.
-pub(super) async fn show_others(request: Request, next: Next) -> Response {
+pub(super) async fn show_others(State(app): State<App>, request: Request, next: Next) -> Response {
     let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
     let is_browser = accepted.is_some_and(|accepted| accepted.contains("text/html"));
-    let wants_page = is_browser && !request.uri().path().starts_with("/api/");
-    let answer = next.run(request).await;
-    if wants_page { as_page(answer, None) } else { answer }
+    if !is_browser || request.uri().path().starts_with("/api/") {
+        return next.run(request).await;
+    }
+    show_problems(State(app), request, next).await
 }
 
 /// Returns the answer for addresses without a page.
@@ -267,18 +271,33 @@ pub(super) async fn wrong_method(method: Method) -> Problem {
     Problem::wrong_method(method.as_str())
 }
 
+/// Returns the frame of a rejected request: that of its assignment or course, if the person may see it.
+async fn find_frame(head: &mut Parts, app: &App) -> Option<PageFrame> {
+    let person = Person::from_request_parts(head, app).await.ok()?;
+    let frame = PageFrame::for_account(&person.account);
+    let Ok(at) = AddressParts::from_request_parts(head, app).await else { return Some(frame) };
+    let Ok(member) = person.member_of(&at.course).await else { return Some(frame) };
+    let assignment = member.assignment(&at.assignment).await;
+    Some(assignment.map_or_else(|_| PageFrame::course(&member), |found| PageFrame::assignment(&member, &found)))
+}
+
 /// Returns a rejection as a page; other answers do not change. A person who must sign in first is redirected to the
 /// page afterwards.
-fn as_page(mut response: Response, wanted: Option<&Uri>) -> Response {
+async fn as_page(mut response: Response, mut head: Parts, app: &App) -> Response {
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
-    if let Some(wanted) = wanted.filter(|_| problem.status() == StatusCode::UNAUTHORIZED) {
-        let to = wanted.path_and_query().map_or("/", PathAndQuery::as_str);
+    let status = problem.status();
+    if head.method == Method::GET && status == StatusCode::UNAUTHORIZED {
+        let to = head.uri.path_and_query().map_or("/", PathAndQuery::as_str);
         let query = byte_serialize(to.as_bytes()).collect::<String>();
         let address = if to == "/" { "/sign-in".to_owned() } else { format!("/sign-in?to={query}") };
         return redirect_to(&address).into_response();
     }
-    let status = problem.status();
-    match show(&ProblemPage { frame: PageFrame::default(), problem }) {
+    // The browser names only pages of this server.
+    let from = head.headers.get(header::REFERER).and_then(|from| Url::parse(from.to_str().ok()?).ok());
+    let back = from.map(|from| sign_in::local_path(&from[url::Position::BeforePath..]).to_owned());
+    // A server that fails is not asked for more.
+    let frame = if status.is_server_error() { None } else { find_frame(&mut head, app).await };
+    match show(&ProblemPage { frame: frame.unwrap_or_default(), problem, back }) {
         Ok(page) => {
             let mut answer = (status, page).into_response();
             if let Some(after) = response.headers_mut().remove(header::RETRY_AFTER) {

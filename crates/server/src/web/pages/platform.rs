@@ -4,10 +4,12 @@ use super::{
         input::{AddressParts, Fields},
         who::browser_cookie,
     },
-    Page, PageFrame, redirect_to, show, sign_in,
+    Page, PageFrame, course, redirect_to, show, sign_in, text,
 };
 use crate::{
-    domain::{Admin, App, LinkStep, LinkTarget, LoginRequest, Person, RosterRead, RosterWish, Staff, Visitor},
+    domain::{
+        Admin, App, LinkStep, LinkTarget, LoginRequest, Person, RosterRead, RosterWish, Staff, Suites, Visitor, slug_of,
+    },
     lti::{PlatformWish, scope},
     problem::Problem,
 };
@@ -20,15 +22,7 @@ use axum::{
 };
 use serde::Deserialize;
 use serde_json::{Value, json};
-
-/// The parameters of the platform's answer.
-#[derive(Deserialize)]
-pub(super) struct Answer {
-    state: Option<String>,
-    id_token: Option<String>,
-    error: Option<String>,
-    error_description: Option<String>,
-}
+use std::collections::BTreeMap;
 
 #[derive(Template)]
 #[template(path = "platform/window.html")]
@@ -39,10 +33,11 @@ struct WindowPage {
 
 #[derive(Template)]
 #[template(path = "platform/choice.html")]
-struct ChoicePage {
+struct ChoicePage<'a> {
     frame: PageFrame,
     secret: String,
     choice: LinkTarget,
+    suites: &'a Suites,
 }
 
 #[derive(Template)]
@@ -59,6 +54,7 @@ struct RosterPage {
     frame: PageFrame,
     slug: String,
     read: RosterRead,
+    is_done: bool,
 }
 
 #[derive(Deserialize)]
@@ -77,22 +73,21 @@ pub(super) struct CourseChoice {
 
 #[derive(Deserialize)]
 pub(super) struct AssignmentChoice {
+    #[serde(default)]
     assignment: String,
+    /// A new assignment's title; empty to choose an existing one.
+    #[serde(default)]
+    title: String,
+    #[serde(default)]
+    suite: String,
 }
 
+/// A platform's name and the fields of its registration, as a form sends them.
 #[derive(Deserialize)]
 pub(super) struct NewPlatform {
     name: String,
-    issuer: String,
-    client_id: String,
-    login_url: String,
-    token_url: String,
-    keys_url: String,
-    #[serde(default)]
-    audience: String,
-    deployments: String,
-    #[serde(default)]
-    hosts: String,
+    #[serde(flatten)]
+    fields: BTreeMap<String, String>,
 }
 
 /// Returns the cookie with the browser's secret during a launch from a platform. Other sites must be able to make the
@@ -147,14 +142,9 @@ pub(super) async fn login(
     Ok(sign_in::with_cookie(&browser_word(app, &answer.browser), &answer.address))
 }
 
-pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<Answer>) -> Result<Response, Problem> {
-    let (Some(state), Some(token)) = (&answer.state, &answer.id_token) else {
-        return Err(match sign_in::fault_of([answer.error, answer.error_description]) {
-            None => Problem::invalid("state and id_token are missing"),
-            Some(fault) => Problem::refused_launch(format!("the platform says: {fault}")),
-        });
-    };
-    let launched = visitor.launch(state, token).await?;
+pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<sign_in::Answer>) -> Result<Response, Problem> {
+    let (state, token) = answer.read("platform", Problem::refused_launch)?;
+    let launched = visitor.launch(&state, &token).await?;
     Ok(sign_in::start_session(&visitor.app, &launched.session, &launched.to))
 }
 
@@ -193,8 +183,8 @@ pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
 }
 
 pub(super) async fn choose(person: Person, AddressParts { secret, .. }: AddressParts) -> Page {
-    let choice = person.choice(&secret).await?;
-    show(&ChoicePage { frame: PageFrame::for_account(&person.account), secret, choice })
+    let (choice, app) = (person.choice(&secret).await?, &person.app);
+    show(&ChoicePage { frame: PageFrame::for_account(&person.account), secret, choice, suites: &app.suites })
 }
 
 pub(super) async fn choose_assignment(
@@ -202,7 +192,16 @@ pub(super) async fn choose_assignment(
     AddressParts { secret, .. }: AddressParts,
     Fields(choice): Fields<AssignmentChoice>,
 ) -> Result<Response, Problem> {
-    match person.choose_assignment(&secret, &choice.assignment).await? {
+    let mut slug = choice.assignment;
+    if !choice.title.trim().is_empty() {
+        slug = slug_of(&choice.title);
+        let LinkTarget::Assignment { course, .. } = person.choice(&secret).await? else {
+            return Err(Problem::not_found("course"));
+        };
+        let staff = person.clone().member_of(&course.slug).await?.staff()?;
+        course::make_assignment(&staff, &slug, choice.title.trim(), &choice.suite).await?;
+    }
+    match person.choose_assignment(&secret, &slug).await? {
         LinkStep::Assignment(path) => Ok(redirect_to(&path).into_response()),
         LinkStep::Answer { address, origins, token } => {
             let page =
@@ -217,34 +216,28 @@ pub(super) async fn choose_assignment(
 }
 
 impl NewPlatform {
-    fn wish(&self) -> PlatformWish {
-        let word = |text: &str| text.trim().to_owned();
+    fn wish(&self) -> Result<PlatformWish, Problem> {
         let words = |text: &str| -> Vec<String> {
-            text.split([' ', ',', '\n', '\r', '\t']).filter(|word| !word.is_empty()).map(str::to_owned).collect()
+            let words = text.split([' ', ',', '\n', '\r', '\t']).filter(|word| !word.is_empty());
+            words.map(str::to_owned).collect()
         };
-        PlatformWish {
-            issuer: word(&self.issuer),
-            client_id: word(&self.client_id),
-            login_url: word(&self.login_url),
-            token_url: word(&self.token_url),
-            keys_url: word(&self.keys_url),
-            audience: Some(word(&self.audience)).filter(|audience| !audience.is_empty()),
-            deployments: words(&self.deployments),
-            hosts: words(&self.hosts),
-        }
+        let given = self.fields.iter().map(|(name, text)| (name, text.trim())).filter(|(_, text)| !text.is_empty());
+        let fields: Value = given
+            .map(|(name, text)| match name.as_str() {
+                "deployments" | "hosts" => (name.clone(), Value::from(words(text))),
+                _ => (name.clone(), Value::from(text)),
+            })
+            .collect();
+        serde_json::from_value(fields).map_err(|error| Problem::invalid(error.to_string()))
     }
 }
 
-/// Shows who would join and leave, before anything changes.
-pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) -> Result<Response, Problem> {
-    let members = format!("/c/{}/members", staff.slug);
-    if form.confirm.is_some() {
-        staff.read_roster(RosterWish::Confirmed).await?;
-        return Ok(redirect_to(&members).into_response());
-    }
-    let read = staff.read_roster(RosterWish::Preview).await?;
-    let frame = PageFrame::course(&staff).with_parent(members, "Members");
-    Ok(show(&RosterPage { frame, slug: staff.slug.clone(), read })?.into_response())
+/// Shows first who would join and leave.
+pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) -> Page {
+    let is_done = form.confirm.is_some();
+    let read = staff.read_roster(if is_done { RosterWish::Confirmed } else { RosterWish::Preview }).await?;
+    let frame = PageFrame::course(&staff).with_parent(format!("/c/{}/members", staff.slug), "Members");
+    show(&RosterPage { frame, slug: staff.slug.clone(), read, is_done })
 }
 
 deeds! {
@@ -253,7 +246,7 @@ deeds! {
         person.choose_course(&secret, known, (choice.slug.trim(), choice.title.trim()))
     } => "/lti/choose/{secret}";
     set_platform(admin: Admin, form: NewPlatform):
-        admin.set_platform(form.name.trim(), &form.wish()) => "/admin/platforms";
+        async { admin.set_platform(form.name.trim(), &form.wish()?).await } => "/admin/platforms";
     shut_platform(admin: Admin, { name }): admin.shut_platform(&name) => "/admin/platforms";
     new_key(admin: Admin): admin.new_platform_key() => "/admin/platforms";
     send_scores(staff: Staff, { course, assignment }):

@@ -2,7 +2,7 @@
 use super::{
     super::{input::QueryInput, who::provider_cookie},
     redirect_to,
-    sign_in::{self, NextPage},
+    sign_in::{self, Answer, NextPage},
 };
 use crate::{
     domain::{App, LoginAnswer, Person, Visitor},
@@ -12,16 +12,6 @@ use axum::{
     http::StatusCode,
     response::{IntoResponse, Redirect, Response},
 };
-use serde::Deserialize;
-
-/// The parameters of the provider's answer.
-#[derive(Deserialize)]
-pub(super) struct Answer {
-    state: Option<String>,
-    code: Option<String>,
-    error: Option<String>,
-    error_description: Option<String>,
-}
 
 /// Redirects to the provider and sets a cookie that identifies the browser on return. The browser returns by opening a
 /// page, so `Lax` is sufficient.
@@ -53,13 +43,8 @@ pub(super) async fn connect(visitor: Visitor, person: Person) -> Result<Response
 }
 
 pub(super) async fn answer(visitor: Visitor, QueryInput(answer): QueryInput<Answer>) -> Result<Response, Problem> {
-    let (Some(state), Some(code)) = (&answer.state, &answer.code) else {
-        return Err(match sign_in::fault_of([answer.error, answer.error_description]) {
-            None => Problem::invalid("the parameters `state` and `code` must be given"),
-            Some(fault) => Problem::refused_sign_in(format!("the provider says: {fault}")),
-        });
-    };
-    let signed_in = visitor.sign_in_by_provider(state, code).await?;
+    let (state, code) = answer.read("provider", Problem::refused_sign_in)?;
+    let signed_in = visitor.sign_in_by_provider(&state, &code).await?;
     Ok(sign_in::start_session(&visitor.app, &signed_in.session, sign_in::local_path(&signed_in.to)))
 }
 

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::{
     domain::{Admin, Staff},
-    problem::Problem,
+    problem::{Problem, ensure},
 };
 use axum::response::Redirect;
 use serde::Deserialize;
@@ -18,11 +18,7 @@ pub(super) struct Confirmation {
 
 impl Confirmation {
     fn ensure_is(&self, what: &str) -> Result<(), Problem> {
-        if self.confirm == what {
-            Ok(())
-        } else {
-            Err(Problem::invalid("the form is for something else; reload the page"))
-        }
+        ensure(self.confirm == what, Problem::invalid(format!("to remove {what}, type its name")))
     }
 }
 

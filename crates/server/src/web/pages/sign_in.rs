@@ -34,7 +34,8 @@ struct SignIn {
 #[template(path = "welcome.html")]
 struct Welcome {
     frame: PageFrame,
-    is_good: bool,
+    /// The name and the courses of the link's owner; `None` if the link can't be used.
+    owner: Option<(String, Option<String>)>,
 }
 
 #[derive(Deserialize)]
@@ -63,11 +64,33 @@ pub(super) fn start_session(app: &App, session: &NewSecret, to: &str) -> Respons
     with_cookie(&session_cookie(app, session.reveal(), SESSION_SECONDS), to)
 }
 
-/// Returns the error that another service sent in answer to a sign-in, as one short line.
-pub(super) fn fault_of(words: [Option<String>; 2]) -> Option<String> {
-    let fault = words.into_iter().flatten().collect::<Vec<_>>().join(": ");
-    let fault: String = fault.chars().filter(|c| !c.is_control()).take(300).collect();
-    Some(fault).filter(|fault| !fault.is_empty())
+/// The parameters of another service's answer to a sign-in.
+#[derive(Deserialize)]
+pub(super) struct Answer {
+    state: Option<String>,
+    /// The code of a provider, or the token of a learning platform.
+    #[serde(alias = "id_token")]
+    code: Option<String>,
+    error: Option<String>,
+    error_description: Option<String>,
+}
+
+impl Answer {
+    /// Returns the state and the code, or the rejection with the service's error as one short line.
+    pub(super) fn read(self, service: &str, refused: fn(String) -> Problem) -> Result<(String, String), Problem> {
+        if let (Some(state), Some(code)) = (self.state, self.code) {
+            return Ok((state, code));
+        }
+        let fault = [self.error, self.error_description].into_iter().flatten().collect::<Vec<_>>().join(": ");
+        let fault: String = fault.chars().filter(|c| !c.is_control()).take(300).collect();
+        Err(match fault.as_str() {
+            "" => Problem::invalid("state, or the code or token, is missing"),
+            fault if fault.starts_with("access_denied") => {
+                refused(format!("the sign-in was stopped there, by you or by the {service} ({fault})"))
+            }
+            fault => refused(format!("the {service} says: {fault}")),
+        })
+    }
 }
 
 pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
@@ -97,7 +120,7 @@ pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> R
 
 /// Shows the page of a sign-in link. Opening the link does not sign in, because mail programs open links, too.
 pub(super) async fn welcome(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Page {
-    show(&Welcome { frame: PageFrame::default(), is_good: visitor.is_link(&secret).await? })
+    show(&Welcome { frame: PageFrame::default(), owner: visitor.link_owner(&secret).await? })
 }
 
 pub(super) async fn by_link(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Result<Response, Problem> {

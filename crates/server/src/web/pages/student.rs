@@ -10,7 +10,7 @@ use super::{
     show, text,
 };
 use crate::{
-    domain::{Assignment, Member, MemberLine, Staff, StudentHistory},
+    domain::{Assignment, Member, MemberInfo, MemberLine, Staff, StudentHistory},
     problem::Problem,
 };
 use askama::Template;
@@ -49,9 +49,17 @@ struct ImportPage {
     seen: i64,
 }
 
+impl ImportPage {
+    fn count(&self, change: &str) -> usize {
+        self.lines.iter().filter(|line| line.change == change).count()
+    }
+}
+
 /// A row of the imported table, with the sign-in link.
 struct ImportRow {
     member: MemberLine,
+    /// The change to the course: `new`, `other role` or `unchanged`.
+    change: &'static str,
     link: String,
     /// A message with the link, as a `mailto:` URL.
     letter: String,
@@ -110,9 +118,9 @@ async fn import_page(staff: &Staff, table: String, lines: Vec<ImportRow>, is_don
         .with_parent(format!("/c/{slug}/members/import"), "Import");
     let is_wrong = lines.iter().any(|line| line.member.error.is_some());
     let mut writer = csv::Writer::from_writer(Vec::new());
-    for line in &lines {
-        let cells = [&line.member.name, &line.member.login, &line.member.email, &line.member.role, &line.link]
-            .map(|text| escape_cell(text));
+    writer.write_record(["Name", "Login", "E-mail", "Role", "Link"]).map_err(|_| Problem::fault())?;
+    for ImportRow { member, link, .. } in &lines {
+        let cells = [&member.name, &member.login, &member.email, &member.role, link].map(|text| escape_cell(text));
         writer.write_record(cells).map_err(|_| Problem::fault())?;
     }
     let bytes = writer.into_inner().map_err(|_| Problem::fault())?;
@@ -127,12 +135,17 @@ fn percent_encode(bytes: &[u8]) -> String {
     byte_serialize(bytes).collect::<String>().replace('+', "%20")
 }
 
-fn import_row(course: &str, of: MemberLine) -> ImportRow {
+fn import_row(course: &str, before: &[MemberInfo], of: MemberLine) -> ImportRow {
+    let change = match before.iter().find(|member| member.login == of.login) {
+        None => "new",
+        Some(member) if member.role != of.role => "other role",
+        Some(_) => "unchanged",
+    };
     let link = of.link.clone().unwrap_or_default();
     let (subject, body) =
         (percent_encode(course.as_bytes()), percent_encode(format!("{}:\n{link}\n", of.name).as_bytes()));
     let letter = format!("mailto:{}?subject={subject}&body={body}", percent_encode(of.email.as_bytes()));
-    ImportRow { member: of, link, letter }
+    ImportRow { member: of, change, link, letter }
 }
 
 pub(super) async fn import(staff: Staff) -> Page {
@@ -150,8 +163,9 @@ pub(super) async fn import_file(staff: Staff, request: Request) -> Page {
 }
 
 async fn preview(staff: &Staff, table: String, seen: Option<i64>, is_meant: bool) -> Page {
+    let before = staff.members().await?;
     let lines = staff.import(&table, !is_meant, seen).await?;
-    let lines = lines.into_iter().map(|one| import_row(&staff.title, one)).collect();
+    let lines = lines.into_iter().map(|one| import_row(&staff.title, &before, one)).collect();
     import_page(staff, table, lines, is_meant).await
 }
 

@@ -90,9 +90,35 @@ fn a_suite_that_can_t_work_is_refused() {
         assert!(assignment["settings"]["suite_archive"].is_null(), "{assignment}");
         admin.send("PUT", path, &[], &suite("title = 'whole'")).expect(200);
         let audit = admin.get("/api/v1/courses/physics/audit").expect(200).text();
+        let course = admin.get("/api/v1/courses/physics/audit?who=M1+&kind=assignment").expect(200).json();
+        assert_eq!(course[0]["kind"], "assignment", "{course}");
+        for other in ["who=nobody", "kind=member&who=m1", "before=1"] {
+            let none = admin.get(&format!("/api/v1/courses/physics/audit?{other}")).expect(200).json();
+            assert_eq!(none.as_array().map(Vec::len), Some(0), "{other}: {none}");
+        }
         assert!(
-            audit.contains("m1 (Milestone one), visible: suite_archive ") && !audit.contains("max_bytes"),
+            audit.contains("m1 (Milestone one), visible: uploaded suite \\\"") && !audit.contains("largest upload"),
             "{audit}"
+        );
+        // A file alone is put into an archive.
+        admin.send("PUT", path, &[], b"title = 'alone'\n").expect(200);
+        let refused = admin.send("PUT", path, &[], b"title = \n").expect(422).json();
+        assert!(
+            refused["detail"].as_str().is_some_and(|text| text.starts_with("suite.toml can't be read")),
+            "{refused}"
+        );
+        admin.send("PUT", path, &[], &suite("title = 'whole'")).expect(200);
+        // A refusal stays in the frame of its assignment, and leads back to the form.
+        let form = [
+            ("Content-Type", "multipart/form-data; boundary=b"),
+            ("Sec-Fetch-Site", "same-origin"),
+            ("Referer", "https://grades.example.org/c/physics/a/m1/settings?x=1"),
+        ];
+        let file = b"--b\r\nContent-Disposition: form-data; name=\"file\"; filename=\"s\"\r\n\r\nx\r\n--b--\r\n";
+        let page = admin.send("POST", "/c/physics/a/m1/suite", &form, file).expect(422).text();
+        assert!(
+            page.contains("href=\"/c/physics/a/m1/settings?x=1\">Back") && page.contains(">Milestone one<"),
+            "{page}"
         );
         // Groups that it hides are not those that were published.
         let published =

@@ -110,8 +110,8 @@ async fn a_browser_gets_pages_and_goes_on_where_it_wanted(fresh: Fresh) {
     }
     // Forms that a session by a token may not send are not there.
     let page = admin.get("/account").expect(200).text();
-    assert!(page.contains("You signed in with a token") && !page.contains("Make a token"), "{page}");
-    assert!(session.get("/account").expect(200).text().contains("Make a token"));
+    assert!(page.contains("You signed in with a token") && !page.contains("Create a token"), "{page}");
+    assert!(session.get("/account").expect(200).text().contains("Create a token"));
     // Refusals are pages for a browser, and problems for programs.
     let html = ("Accept", "text/html,*/*;q=0.8");
     let page = visitor.send("POST", "/sign-out", &[html, ("Sec-Fetch-Site", "cross-site")], b"").expect(403).text();

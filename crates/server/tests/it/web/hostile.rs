@@ -106,7 +106,7 @@ fn cookies_and_headers_are_as_strict_as_can_be() {
             ("content-security-policy", "default-src 'none'; script-src 'self'"),
             ("content-security-policy", "frame-ancestors 'none'"),
             ("x-content-type-options", "nosniff"),
-            ("referrer-policy", "no-referrer"),
+            ("referrer-policy", "same-origin"),
             ("cross-origin-opener-policy", "same-origin"),
             ("strict-transport-security", "max-age="),
             ("cache-control", "no-store"),

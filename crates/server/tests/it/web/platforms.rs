@@ -35,7 +35,8 @@ pub(super) fn connect(server: &Server, platform: &Platform) -> Client {
     let page = teacher.get(&place).expect(200).text();
     assert!(page.contains("Physics &#60;1&#62;") && page.contains(r#"value="phys-1""#), "{page}");
     teacher.post_form(&format!("{place}/course"), "slug=physics&title=Physics").expect(303);
-    assert!(teacher.get(&place).expect(200).text().contains("There are none yet"));
+    // The assignment can be made on the way.
+    assert!(teacher.get(&place).expect(200).text().contains("A new assignment"));
     let wish = r#"{"title": "Milestone one", "visible": true, "settings": {"per_hour": 0}}"#;
     teacher.send("PUT", "/api/v1/courses/physics/assignments/m1", JSON, wish.as_bytes()).expect(200);
     // The form of before does as well as a new one.
@@ -272,7 +273,8 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
     let token = KEYS[0].sign(&platform.claims(&begun.nonce, "ada", INSTRUCTOR));
     assert!(come(&server, &begun, &token).expect(403).text().contains("sign in on its own pages"));
     // A list without an end is given up, and changes nothing.
-    teacher.post_form("/c/physics/members/roster", "confirm=yes").expect(303);
+    let done = teacher.post_form("/c/physics/members/roster", "confirm=yes").expect(200).text();
+    assert!(done.contains(" joined, ") && done.contains(" left."), "{done}");
     platform.inside().published.clear();
     assert!(teacher.get("/c/physics/members").expect(200).text().contains("Read the members from lms"));
 }
@@ -353,6 +355,13 @@ fn links_are_chosen_in_the_platform() {
         come(&server, &begun, &KEYS[0].sign(&claims)).expect(403);
         let (_, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), wanted);
         admin.get(&place).expect(404);
+        // An assignment is made on the way, hidden, and a name that is taken changes nothing.
+        let made = "assignment=&suite=&title=Milestone+two";
+        teacher.post_form(&format!("{place}/assignment"), made).expect(200);
+        let two = admin.get("/api/v1/courses/physics/assignments/milestone-two").expect(200).json();
+        assert_eq!((&two["title"], &two["visible"]), (&json!("Milestone two"), &json!(false)));
+        let (teacher, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), wanted);
+        teacher.post_form(&format!("{place}/assignment"), made).expect(409);
         // The answer goes to the platform and nowhere else.
         let elsewhere = |claims: &mut Value| {
             wanted(claims);

@@ -160,7 +160,6 @@ pub(super) const ROUTES: &[(&str, &str, For)] = &[
     ("post", "/c/{course}/a/{assignment}/settings", Staff),
     ("post", "/c/{course}/a/{assignment}/suite", Staff),
     ("get", "/c/{course}/a/{assignment}/class", Staff),
-    ("post", "/c/{course}/judge-errors", Staff),
     ("post", "/c/{course}/a/{assignment}/judge-errors", Staff),
     ("post", "/c/{course}/s/{id}/again", Staff),
     ("post", "/c/{course}/a/{assignment}/regrades", Staff),
@@ -305,7 +304,9 @@ fn every_route_serves_whom_it_should_and_nobody_else() {
                     None => !matches!(answer.status, 403 | 500..),
                 };
                 // Being told that the wrong body is wrong, or that nothing is there, is not being let in.
-                let leaks = refused.is_some() && answer.text().contains("owner");
+                // The head of a page names the person who is signed in.
+                let own = if matches!(role, Role::Owner) { "/account\">owner<" } else { "nobody" };
+                let leaks = refused.is_some() && answer.text().replace(own, "").contains("owner");
                 if !right || leaks {
                     wrong.push(format!("{role:?} {method} {path}: {} {}", answer.status, answer.text()));
                 }

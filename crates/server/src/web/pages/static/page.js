@@ -11,11 +11,14 @@ if (state && state.dataset.follow) {
       location.reload();
       return;
     }
-    let text = submission.state === "running" ? "being graded" : "waiting";
-    if (submission.progress) text += `, ${submission.progress.done} of ${submission.progress.all} scenes done`;
-    if (submission.ahead !== undefined) text += submission.ahead ? `, ${submission.ahead} before it` : ", next";
-    if (submission.expected_seconds !== undefined) text += `, about ${submission.expected_seconds} s`;
-    if (submission.lacks_worker) text += ". No worker is connected now, so it has to wait; staff sees this, too.";
+    const { ahead, progress, expected_seconds: expected } = submission;
+    let text = submission.state === "running" ? "Being graded" : "Waiting";
+    if (progress) text += `, ${progress.done} of ${progress.all} scenes done`;
+    text += ".";
+    if (ahead !== undefined)
+      text = ahead ? `${ahead} submission${ahead === 1 ? "" : "s"} before yours.` : "You are next.";
+    if (expected !== undefined) text += ` About ${expected} s.`;
+    if (submission.lacks_worker) text += " No worker is connected now, so it has to wait; staff sees this, too.";
     state.textContent = text;
   };
   setInterval(look, 2000);
@@ -108,4 +111,35 @@ for (const field of document.querySelectorAll("input[type=datetime-local]")) {
   field.form.addEventListener("submit", () => {
     zone.value = field.value ? offset(new Date(field.value)) : 0;
   });
+}
+// Fill in the addresses of a learning platform from its host.
+const kind = document.getElementById("kind");
+if (kind) {
+  const host = document.getElementById("host");
+  const fill = () => {
+    const place =
+      host.value
+        .trim()
+        .replace(/^https?:\/\//, "")
+        .replace(/\/+$/, "") || "HOST";
+    const cloud = "https://sso.canvaslms.com";
+    const fields = {
+      moodle: {
+        issuer: `https://${place}`,
+        login_url: `https://${place}/mod/lti/auth.php`,
+        token_url: `https://${place}/mod/lti/token.php`,
+        keys_url: `https://${place}/mod/lti/certs.php`,
+      },
+      canvas: {
+        issuer: "https://canvas.instructure.com",
+        login_url: `${cloud}/api/lti/authorize_redirect`,
+        token_url: `${cloud}/login/oauth2/token`,
+        keys_url: `${cloud}/api/lti/security/jwks`,
+        hosts: host.value.trim() && place,
+      },
+    }[kind.value];
+    for (const [name, value] of Object.entries(fields ?? {})) document.getElementById(name).value = value;
+  };
+  kind.addEventListener("change", fill);
+  host.addEventListener("input", fill);
 }
