@@ -74,6 +74,10 @@ pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
 /// Renders the list as one JSON object: `name` is the value for `--suite`, and `default` is the suite that is used by
 /// default.
 pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
+    let group = |group: &PlannedGroup| {
+        let PlannedGroup { name, scenes, marking, .. } = group;
+        json!({ "name": name, "scenes": scenes.len(), "points": marking.points })
+    };
     let entry = |(name, plan): &(String, Plan)| {
         let (suite, version) = name.split_once('@').unwrap_or((name, "1"));
         json!({
@@ -83,6 +87,7 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
             "title": plan.name,
             "scenes": plan.scenes().count(),
             "points": plan.max_points(),
+            "groups": plan.groups.iter().map(group).collect::<Vec<_>>(),
             "default": *name == default_name(),
         })
     };
