@@ -162,6 +162,10 @@ test("a course of a platform, from its registration to a link in it", async () =
   await admin.page.getByRole("button", { name: "Sign in" }).click();
   await admin.page.goto(`${address}/admin/platforms`);
   const form = admin.page.locator("form[action='/admin/platforms']");
+  // Moodle's addresses follow from its host; others are typed.
+  await form.getByLabel("Platform", { exact: true }).selectOption("moodle");
+  await form.getByLabel("Its host").fill("moodle.example.org");
+  assert.equal(await form.getByLabel("Public keyset").inputValue(), "https://moodle.example.org/mod/lti/certs.php");
   for (const [label, value] of [
     ["Name here", "lms"],
     ["Issuer", place],
@@ -191,19 +195,16 @@ test("a course of a platform, from its registration to a link in it", async () =
   await accessible(page);
   assert.equal(await page.getByLabel("Name in addresses").inputValue(), "phys-1");
   await page.getByRole("button", { name: "Make the course" }).click();
-  await page.getByText("There are none yet").waitFor();
-  const choosing = page.url();
-  await page.goto(`${address}/c/phys-1`);
-  await page.getByLabel("Name in addresses").fill("m1");
+  // There is no assignment yet, so it is created on the way.
   await page.getByLabel("Title").fill("Milestone one");
-  await page.getByRole("button", { name: "Make the assignment" }).click();
-  await page.getByLabel("Visible").check();
-  await page.getByRole("button", { name: "Save" }).click();
-  await page.goto(choosing);
   await accessible(page);
-  await page.getByRole("button", { name: "Choose it" }).click();
+  await page.getByRole("button", { name: "Create it, and choose it" }).click();
   await page.getByRole("heading", { name: "Milestone one" }).waitFor();
   await page.getByText("The platform's link now opens this assignment.").waitFor();
+  await page.getByRole("link", { name: "Settings" }).click();
+  await page.getByLabel("Visible").check();
+  await page.getByRole("button", { name: "Save" }).click();
+  await page.getByText("Saved.").waitFor();
 
   // A student comes straight to it, in a window of the platform.
   visit = { subject: "student-1", name: "Stu Dent", role: "Learner" };
@@ -231,7 +232,9 @@ test("a course of a platform, from its registration to a link in it", async () =
     },
   };
   await teacher.page.goto(`${place}/open`);
-  await teacher.page.getByRole("button", { name: "Choose it" }).click();
+  await teacher.page.getByRole("radio", { name: /Milestone one/ }).check();
+  await accessible(teacher.page);
+  await teacher.page.getByRole("button", { name: "Choose it", exact: true }).click();
   await teacher.page.getByRole("heading", { name: "Back to the platform" }).waitFor();
   await accessible(teacher.page);
   await teacher.page.getByRole("button", { name: "Put the link into the course" }).click();
@@ -244,5 +247,5 @@ test("a course of a platform, from its registration to a link in it", async () =
   const said = JSON.parse(Buffer.from(claims, "base64url"));
   assert.equal(said[`${LINKING}/data`], "kept");
   assert.deepEqual(teacher.complaints, []);
-  assert.deepEqual(said[`${LINKING}/content_items`][0].custom, { assignment: "m1" });
+  assert.deepEqual(said[`${LINKING}/content_items`][0].custom, { assignment: "milestone-one" });
 });

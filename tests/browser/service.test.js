@@ -137,7 +137,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByLabel("Name in addresses").fill("m1");
   await page.getByLabel("Title").fill("Milestone one");
   await page.getByRole("button", { name: "Make the assignment" }).click();
-  await page.getByLabel("Archive", { exact: true }).setInputFiles(join(folder, "suite.tar.gz"));
+  await page.getByLabel("Suite file").setInputFiles(join(folder, "suite.tar.gz"));
   await page.getByRole("button", { name: "Upload the suite" }).click();
   assert.match(await page.getByLabel("Suite").locator("option:checked").innerText(), /^One \(yours of .* UTC\)$/);
   await page.getByLabel("Visible").check();
@@ -151,7 +151,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByRole("button", { name: "Read the table" }).click();
   await page.getByText("Columns that are not used: Group.").waitFor();
   await accessible(page);
-  await page.getByRole("button", { name: "Make these members" }).click();
+  await page.getByRole("button", { name: "Import these members" }).click();
   await page.getByRole("link", { name: "All links as a table" }).waitFor();
   await page.goto(`${address}/c/physics/members`);
   await page.getByLabel("Login", { exact: true }).fill("ada");
@@ -219,11 +219,11 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
 
   // The teacher sees the class, and what a regrade would change before it does.
   await page.goto(`${address}/c/physics/a/m1/class`);
-  await page.getByRole("link", { name: "Submission 1 of ada" }).waitFor();
+  await page.getByRole("link", { name: "ada, submission 1" }).waitFor();
   // What is likely wrong, and in which scenes.
   assert.match(
-    await page.getByRole("row", { name: /Submission 1 of ada/ }).innerText(),
-    /Submission 1\s+of ada\s+of 1\s+Particle-particle: \S/,
+    await page.getByRole("row", { name: /ada, submission 1/ }).innerText(),
+    /ada, submission\s+1\s+of 1\s+Particle-particle: \S/,
   );
   // The scenes are a row of colors, too.
   assert.match(await page.locator("td.heat svg").getAttribute("aria-label"), /^0 of \d+ scenes accepted$/);
@@ -232,7 +232,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByLabel("Who").selectOption({ label: "nothing handed in (1)" });
   await page.getByRole("button", { name: "Show", exact: true }).click();
   await page.getByRole("rowheader", { name: "Eve" }).waitFor();
-  assert.equal(await page.getByRole("link", { name: "Submission 1 of ada" }).count(), 0);
+  assert.equal(await page.getByRole("link", { name: "ada, submission 1" }).count(), 0);
   await page.goto(`${address}/c/physics/s/1`);
   await page.getByLabel("Compare with").fill("ada");
   await page.getByRole("button", { name: "Compare" }).click();
