@@ -35,6 +35,14 @@ pub(super) enum Command {
     LookThrough(LookThroughArguments),
     /// Prints the description of the API (OpenAPI).
     Openapi,
+    /// Prints the manual page of the program, or of a command.
+    Man {
+        command: Option<String>,
+    },
+    /// Prints a script that completes commands and options in a shell.
+    Completions {
+        shell: clap_complete::Shell,
+    },
 }
 
 /// The locations of the database and the files.

@@ -12,7 +12,7 @@ mod worker;
 
 use anyhow::Result;
 use arguments::{Arguments, Command};
-use clap::Parser;
+use clap::{CommandFactory, Parser};
 use std::process::ExitCode;
 use tokio_util::sync::CancellationToken;
 
@@ -45,6 +45,15 @@ fn run(arguments: &Arguments) -> Result<u8> {
             Command::Health(arguments) => return Ok(u8::from(!health::run(arguments))),
             Command::LookThrough(_) => {}
             Command::Openapi => print!("{}", crate::web::openapi()),
+            Command::Man { command } => {
+                let mut all = Arguments::command();
+                all.build();
+                let wanted = command.as_ref().and_then(|name| all.find_subcommand(name)).unwrap_or(&all).clone();
+                clap_mangen::Man::new(wanted).render(&mut std::io::stdout())?;
+            }
+            Command::Completions { shell } => {
+                clap_complete::generate(*shell, &mut Arguments::command(), "fosssim-server", &mut std::io::stdout());
+            }
         }
         Ok(0)
     })

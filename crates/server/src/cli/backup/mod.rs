@@ -41,7 +41,8 @@ pub(super) async fn backup(arguments: &BackupArguments) -> Result<()> {
     fs::rename(&partial, output).with_context(|| format!("cannot rename {}", partial.display()))?;
     let Artifacts { count, bytes } = made.artifacts;
     let tables = made.tables;
-    println!("{}: the database (tables of version {tables}) and {count} artifacts of {bytes} bytes", output.display());
+    let (place, size) = (output.display(), crate::problem::format_size(bytes));
+    println!("{place}: the database (tables of version {tables}) and {count} artifacts ({size})");
     Ok(())
 }
 

@@ -87,19 +87,15 @@ impl Staff {
         seen: Option<Option<i64>>,
     ) -> Result<Submission, Problem> {
         check_words("a comment", comment, 0)?;
-        ensure(
-            points.is_none() || !comment.is_empty(),
-            Problem::conflict("different points need a reason", "write it in the comment"),
-        )?;
+        let bare = Problem::conflict("different points need a reason", "write it in the comment");
+        ensure(points.is_none() || !comment.is_empty(), bare)?;
         let is_number = |text: &str| {
             text.len() <= 30
                 && text.bytes().all(|c| c.is_ascii_digit() || c == b'.')
                 && text.parse::<f64>().is_ok_and(|points| (0.0..=1e6).contains(&points))
         };
-        ensure(
-            points.is_none_or(is_number),
-            Problem::invalid("points must be a number between 0 and a million, such as 7.5"),
-        )?;
+        let number = "points must be a number between 0 and a million, such as 7.5";
+        ensure(points.is_none_or(is_number), Problem::invalid(number))?;
         let mut transaction = self.begin().await?;
         transaction.row("SELECT id FROM submission WHERE id = ? {for update}", values![id]).await?;
         let submission = self.find_submission(&mut transaction, id).await?;
@@ -109,10 +105,8 @@ impl Staff {
             let detail = format!("{who} marked it meanwhile: {}", mark.comment);
             return Err(Problem::conflict(detail, "load the page again, and mark it there"));
         }
-        ensure(
-            points.is_none() || submission.grade.is_some(),
-            Problem::conflict("it is not graded yet", "wait for its grade"),
-        )?;
+        let early = Problem::conflict("it is not graded yet", "wait for its grade");
+        ensure(points.is_none() || submission.grade.is_some(), early)?;
         let before = submission.mark.and_then(|mark| mark.points);
         if before.as_deref() != points {
             let what = if points.is_some() { "points by hand" } else { "the grader's points again" };

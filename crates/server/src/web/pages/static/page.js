@@ -23,6 +23,8 @@ if (state && state.dataset.follow) {
   };
   setInterval(look, 2000);
 }
+// Send a form for which a person need not decide anything.
+document.querySelector("form[data-send]")?.submit();
 // Show elements that need a script.
 for (const hidden of document.querySelectorAll("[data-script], [data-copy]")) hidden.hidden = false;
 for (const button of document.querySelectorAll("[data-copy]")) {
