@@ -57,7 +57,7 @@ impl App {
             self.0.throttle.try_acquire(throttle::bucket_id(secrets.address, at), MAX_LOGINS, Instant::now()),
             Problem::too_many("too many people are signing in from your address"),
         )?;
-        // Windows of a browser share one secret.
+        // All windows of a browser share one secret.
         let is_word = |word: &&String| word.len() == 64 && word.bytes().all(|c| c.is_ascii_hexdigit());
         let browser = known.filter(is_word).cloned().unwrap_or_else(|| NewSecret::new("").reveal().to_owned());
         let key = self.signing_key().await?;

@@ -298,7 +298,7 @@ async fn account(transaction: &mut Transaction, platform: &Platform, person: &Lt
     let account = find_or_make(transaction, platform, person).await?;
     let row = transaction.one("SELECT is_admin, disabled_at FROM account WHERE id = ?", values![account]).await?;
     ensure(row.maybe_int("disabled_at")?.is_none(), Problem::refused_launch("your account here is closed"))?;
-    // Otherwise the owner of any platform could do everything here.
+    // Without this check, the owner of any registered platform could act as an administrator here.
     ensure(
         !row.flag("is_admin")?,
         Problem::refused_launch("you are an administrator of this server: sign in on its own pages"),

@@ -107,7 +107,7 @@ impl Person {
     ///
     /// Fails if the person is not an administrator.
     pub fn admin(self) -> Result<Admin, Problem> {
-        ensure(self.account.is_admin, Problem::not_allowed("this is for administrators"))?;
+        ensure(self.account.is_admin, Problem::not_allowed("only administrators can do this"))?;
         Ok(Admin { account: self.account, app: self.app })
     }
 }

@@ -226,7 +226,7 @@ impl Member {
         let before = submission.mark.and_then(|mark| mark.request).unwrap_or_default();
         ensure(
             before.chars().count() + text.chars().count() <= 5 * MAX_TEXT_LENGTH,
-            Problem::conflict("your requests are too long altogether", "talk to the course's staff"),
+            Problem::conflict("your requests exceed the total length limit", "talk to the course's staff"),
         )?;
         let text = if before.is_empty() { text.to_owned() } else { format!("\n\n{text}") };
         let statement = "INSERT INTO mark (submission, comment, request, requested_at) VALUES (?, '', ?, {now})
