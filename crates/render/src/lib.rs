@@ -20,7 +20,7 @@
 //! let (extent, size) = (Extent::for_scene(&scene, &positions), Size::new(320, 240)?);
 //! let mut painter = Painter::new(&scene, &extent, PictureOptions { size, label: false });
 //! let shapes = painter.picture(0, &positions, None);
-//! assert!(svg::document(size, painter.background(), "a ball", &shapes).contains("<circle"));
+//! assert!(svg::render_document(size, painter.background(), "a ball", &shapes).contains("<circle"));
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```
 #![forbid(unsafe_code)]

@@ -23,7 +23,7 @@
 //! ```no_run
 //! use fosssim_sandbox::{Backend, Job, Supervisor};
 //!
-//! let backend = Backend::best(Supervisor::this_program())?;
+//! let backend = Backend::with_all_layers(Supervisor::this_program())?;
 //! let running = backend.start(&Job::new("./FOSSSim", "/tmp/work"))?;
 //! # Ok::<(), Box<dyn std::error::Error>>(())
 //! ```

@@ -22,11 +22,11 @@
 //! let scene = scene::read("two balls", text)?.scene;
 //! let row = student::find("gravity-no-mass").expect("a row");
 //! let run = |scene: &_| {
-//!     let trace = student::trace(scene, Student::new(Some(row.mistake))).expect("a whole trace");
+//!     let trace = student::record_trace(scene, Student::new(Some(row.mistake))).expect("a whole trace");
 //!     Observation { trace, ended: RunEnd::Exited(0) }
 //! };
 //!
-//! let reason = WrongReason::first(&scene, &run(&scene)).expect("it is wrong");
+//! let reason = WrongReason::first_reason(&scene, &run(&scene)).expect("it is wrong");
 //! let begin = step_starts(&scene, &run(&scene).trace, &[1]);
 //! let mut holds = |scene: &_, is_alone| Some(reason.holds(scene, &run(scene), is_alone));
 //! let found = reduce(&begin, Assignment::T1M1, &mut holds).expect("a scene");

@@ -19,7 +19,7 @@ pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
 /// use fosssim_model::trace::{Frame, Layout, Reader};
 ///
 /// // Two records of one particle without lists: 32 bytes each.
-/// let layout = Layout { particles: 1, impulses: false, polynomials: false, steps: 1 };
+/// let layout = Layout { particles: 1, has_impulses: false, has_polynomials: false, steps: 1 };
 /// let mut reader = Reader::from_slice(&[0; 64], layout);
 /// let mut frame = Frame::default();
 /// let mut frames = 0;

@@ -8,7 +8,7 @@ use std::{
 use tokio::sync::OwnedSemaphorePermit;
 
 /// A transaction. Dropping it without [`commit`](Self::commit) rolls it back. Without priority it holds a turn until it
-/// ends ([`Database::first`](super::Database::first)).
+/// ends ([`Database::with_priority`](super::Database::with_priority)).
 #[derive(Debug)]
 pub struct Transaction {
     inner: Inner,
