@@ -8,7 +8,7 @@ use fosssim_oracle::{
     },
     num::polynomial::Polynomial,
     scene::{self, Scene, original},
-    sim::{Pair, PairKind, RootSearch, Simulation, Steer, Steering},
+    sim::{Pair, PairKind, RootSearch, Simulation, Steering, StepController},
     student::{self, CATALOGUE, Row, Student},
     suite::library,
     trace::{Frame, Layout, Reader, Recorder, Writer},
@@ -185,7 +185,7 @@ fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
 #[test]
 fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
     struct Edges(f64);
-    impl Steer for Edges {
+    impl StepController for Edges {
         fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
             for polynomial in polynomials.iter_mut().filter(|_| pair.kind == PairKind::ParticleEdge) {
                 let scaled: Vec<f64> = polynomial.coefficients().iter().map(|c| self.0 * c).collect();

@@ -79,7 +79,7 @@ fn catalogue() -> Vec<Row> {
 
 /// Whether a mistake is one of forces, integrators and what follows from them, which `crates/mistakes` tests on its own
 /// probe scenes.
-fn is_of_states(row: &Row) -> bool {
+fn is_state_mistake(row: &Row) -> bool {
     let areas = ["forces", "jacobians", "integrator", "penalty", "near-pairs", "simple-detection"];
     areas.contains(&row.area.as_str()) || row.id.starts_with("respond-")
 }
@@ -171,7 +171,7 @@ fn the_catalogue_is_large_and_every_id_is_accepted() {
 fn documents_say_how_many_mistakes_and_variants_there_are() {
     let rows = catalogue();
     let count = |kind: &str| rows.iter().filter(|row| row.kind == kind).count();
-    let states = rows.iter().filter(|row| is_of_states(row)).count();
+    let states = rows.iter().filter(|row| is_state_mistake(row)).count();
     let (wrong, variants) = (count("wrong") - states, count("variant"));
     for (document, sentences) in [
         ("README.md", vec![format!("Of {wrong} documented mistakes"), format!("of {variants} correct variants")]),

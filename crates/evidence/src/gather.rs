@@ -7,7 +7,7 @@ use crate::{
 use fosssim_judge::{Finding, Outcome, budget::Budget};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, State, Steer},
+    sim::{Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, State, StepController},
     trace::{Layout, Lenient, LenientFrame, record_memory},
 };
 use std::io::Read;
@@ -342,12 +342,12 @@ impl Observer for PassCount<'_> {
         self.polynomials += detection.polynomials.len();
     }
 
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(self)
     }
 }
 
-impl Steer for PassCount<'_> {
+impl StepController for PassCount<'_> {
     fn synchronize(&mut self, state: &mut State) -> Resume {
         if let Some(mid) = self.mid {
             self.apart = distances(state, mid);

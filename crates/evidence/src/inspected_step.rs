@@ -3,7 +3,7 @@ use crate::matching::{are_different, match_polynomials};
 use fosssim_judge::study::{NoAnswer, Study};
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Impulse, Observer, Pair, PairMotion, Pass, Resume, State, Steer, Zone},
+    sim::{Decision, Detection, Impulse, Observer, Pair, PairMotion, Pass, Resume, State, StepController, Zone},
     trace::{LoggedImpulse, PolynomialLog},
 };
 
@@ -306,7 +306,7 @@ fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
     }
 }
 
-impl Steer for Inspector<'_> {
+impl StepController for Inspector<'_> {
     fn synchronize(&mut self, state: &mut State) -> Resume {
         continue_from(self.mid, state)
     }
@@ -391,7 +391,7 @@ impl Observer for Inspector<'_> {
         self.step.expected_contacts.push(*impulse);
     }
 
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(self)
     }
 

@@ -246,7 +246,7 @@ impl Grade {
 /// An entry of a class's folder that was skipped because it is not a submission, with the reason.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
-pub struct PassedOver {
+pub struct SkippedEntry {
     /// The name that the entry would have as a submission.
     pub name: String,
     /// The reason, as text.

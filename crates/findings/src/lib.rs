@@ -52,7 +52,7 @@ pub use counts::FindingCounts;
 pub use finding::{
     Finding, FindingDetail, FindingKind, FindingPlace, Part, PolynomialPlace, RecordPart, RescaledCoefficient, Role,
 };
-pub use grade::{Build, CourseNote, Grade, GroupGrade, PassedOver, SceneGrade, SubmissionFault, Visibility};
+pub use grade::{Build, CourseNote, Grade, GroupGrade, SceneGrade, SkippedEntry, SubmissionFault, Visibility};
 pub use hints::Hints;
 pub use outcome::{Damage, Outcome, Stop};
 pub use parity::{Overall, Residuals};

@@ -162,7 +162,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanat
 
 /// Returns the size that a complete trace of the scene has if all its lists are empty; `None` if the reference's lists
 /// are empty, too.
-fn bytes_of_nothing(scene: &Scene) -> Option<u64> {
+fn count_empty_trace_bytes(scene: &Scene) -> Option<u64> {
     let layout = Layout::for_scene(scene);
     let has_pairs = scene.particles.len() > 1 || !(scene.particles.is_empty() || scene.half_planes.is_empty());
     // A record ends with the counts of its impulses and of its polynomials (trace-format.md 2).
@@ -203,7 +203,7 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
     // A step without collision handling may have no next state; the trace is still complete.
     let is_complete = !matches!(judged.stop, Some(Stop::Trace { .. }));
-    let is_empty = is_complete && bytes_of_nothing(&run.task.scene) == Some(trace_bytes);
+    let is_empty = is_complete && count_empty_trace_bytes(&run.task.scene) == Some(trace_bytes);
     if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {
         return (Verdict::Unwritten, Reason::Wrong(WrongTrace::Nothing));
     }

@@ -85,7 +85,7 @@ pub use self::{
     temporary::Folders,
 };
 pub use fosssim_findings::{
-    Build, Grade, GroupGrade, PassedOver, Reason, SceneGrade, SceneResult, SubmissionFault, Verdict, disclosure,
+    Build, Grade, GroupGrade, Reason, SceneGrade, SceneResult, SkippedEntry, SubmissionFault, Verdict, disclosure,
     earlier::EarlierGrade, result,
 };
 use fosssim_findings::{grade, verdict};

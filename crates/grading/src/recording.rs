@@ -30,7 +30,7 @@ pub struct Recording {
 
 /// The reason why a scene can't be recorded.
 #[derive(Debug, thiserror::Error)]
-pub enum CannotRecord {
+pub enum RecordError {
     /// The scene has errors.
     #[error("the scene has errors:\n{0}")]
     Scene(#[from] Problems),
@@ -47,7 +47,7 @@ impl Recording {
     ///
     /// # Errors
     /// Fails if the scene has errors, or a step has no result.
-    pub fn for_scene(name: &str, xml: &[u8]) -> Result<Self, CannotRecord> {
+    pub fn for_scene(name: &str, xml: &[u8]) -> Result<Self, RecordError> {
         let scene = scene::read(name, xml)?.scene;
         let trace = simulate_trace(&scene)?;
         let digests = Digests::from_stream(&trace[..], Layout::for_scene(&scene));
@@ -108,7 +108,7 @@ pub fn render_diff(name: &str, recorded: &str, now: &str) -> String {
 }
 
 /// Returns the trace of a scene.
-pub(super) fn simulate_trace(scene: &Scene) -> Result<Vec<u8>, CannotRecord> {
+pub(super) fn simulate_trace(scene: &Scene) -> Result<Vec<u8>, RecordError> {
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
     for _ in 0..scene.steps() {

@@ -9,7 +9,7 @@ use fosssim_model::{
     assignments::Assignment,
     scene::{self, Scene},
 };
-use fosssim_sandbox::{RunEnd, TimeOf, processor_time};
+use fosssim_sandbox::{ProcessorTimeScope, RunEnd, processor_time};
 use fosssim_shrink::{Observation, SmallScene, WrongReason, reduce, step_starts};
 use std::{path::Path, time::Duration};
 
@@ -123,9 +123,9 @@ impl Shrinker<'_> {
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
         let mut spent = Duration::ZERO;
         // Only the time of this thread counts, because other threads may be grading.
-        let begun = processor_time(TimeOf::Thread);
+        let begun = processor_time(ProcessorTimeScope::Thread);
         let is_over = |spent: Duration| {
-            let own = processor_time(TimeOf::Thread).saturating_sub(begun);
+            let own = processor_time(ProcessorTimeScope::Thread).saturating_sub(begun);
             spent + own >= self.limits.time || self.runner.cancellation.is_cancelled()
         };
         for task in tasks.into_iter().take(MAX_SCENES) {

@@ -34,7 +34,7 @@ impl SubmissionGrading<'_> {
                 continue;
             }
             for ((result, cached), scene) in own.iter_mut().zip(&group.scenes) {
-                if result.timing.as_ref().is_some_and(|timing| is_of_here(timing, marking)) {
+                if result.timing.as_ref().is_some_and(|timing| is_from_this_machine(timing, marking)) {
                     continue;
                 }
                 result.timing = self.time_scene(scene, marking, begin + self.grader.plan.patience.total);
@@ -104,7 +104,7 @@ impl SubmissionGrading<'_> {
 }
 
 /// Returns whether the times come from this machine and from enough runs.
-fn is_of_here(timing: &Timing, marking: SpeedMarking) -> bool {
+fn is_from_this_machine(timing: &Timing, marking: SpeedMarking) -> bool {
     timing.machine == machine_name() && (timing.failed.is_some() || timing.runs.len() >= marking.runs as usize)
 }
 

@@ -1,5 +1,5 @@
 //! Measures the processor time of each part of runs, for `grade --timings`.
-use fosssim_sandbox::{TimeOf, processor_time};
+use fosssim_sandbox::{ProcessorTimeScope, processor_time};
 use std::{
     collections::BTreeMap,
     sync::{Mutex, PoisonError},
@@ -62,13 +62,13 @@ pub(super) struct Stopwatch<'a> {
 impl<'a> Stopwatch<'a> {
     /// Starts the measurement of a run.
     pub(super) fn new(timings: Option<&'a Timings>) -> Self {
-        Self { timings, last: timings.map_or(Duration::ZERO, |_| processor_time(TimeOf::Thread)) }
+        Self { timings, last: timings.map_or(Duration::ZERO, |_| processor_time(ProcessorTimeScope::Thread)) }
     }
 
     /// Adds the time since the end of the last part to `part`.
     pub(super) fn end(&mut self, part: RunPart) {
         if let Some(timings) = self.timings {
-            let now = processor_time(TimeOf::Thread);
+            let now = processor_time(ProcessorTimeScope::Thread);
             timings.add(part, now.saturating_sub(self.last));
             self.last = now;
         }

@@ -16,7 +16,7 @@ use super::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, State, Steer, WantedPairs, pairs},
+    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, State, StepController, WantedPairs, pairs},
     trace::{LenientFrame, LoggedImpulse},
 };
 use fosssim_num::{
@@ -330,12 +330,12 @@ impl Observer for Tally<'_> {
     }
 
     /// Uses the mid record's state without comparing it (oracle-behavior.md 4.2).
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(self)
     }
 }
 
-impl Steer for Tally<'_> {
+impl StepController for Tally<'_> {
     fn synchronize(&mut self, state: &mut State) -> Resume {
         if let Some(mid) = self.mid {
             self.identical &= mid.logged == self.polynomials && same_state(state, &mid.state);

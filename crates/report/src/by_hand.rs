@@ -13,7 +13,7 @@ use collisions::CollisionWalk;
 use fosssim_findings::PairWords;
 use fosssim_model::{
     scene::{Collision, CollisionDetection, Force, Integrator, Scene},
-    sim::{Pair, PairKind, Pass, PenaltyTerms, RootSearch, Simulation, State, Steer, Steering, gradients},
+    sim::{Pair, PairKind, Pass, PenaltyTerms, RootSearch, Simulation, State, Steering, StepController, gradients},
 };
 use fosssim_num::{
     linear,
@@ -132,7 +132,7 @@ fn render_system(scene: &Scene, mut matrix: Vec<f64>, gradient: &[f64]) -> Strin
 /// The system matrix of the first solve of a step, column by column.
 struct FirstSystem(Option<Vec<f64>>);
 
-impl Steer for FirstSystem {
+impl StepController for FirstSystem {
     fn observe_system(&mut self, matrix: &mut [f64]) {
         self.0.get_or_insert_with(|| matrix.to_vec());
     }

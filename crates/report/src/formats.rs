@@ -4,7 +4,7 @@ use crate::{
     page::{Audience, GradePage},
     style::Style,
 };
-use fosssim_findings::{Grade, PassedOver};
+use fosssim_findings::{Grade, SkippedEntry};
 use fosssim_mistakes::together::{for_students, told_to_students};
 use std::borrow::Cow;
 
@@ -40,8 +40,8 @@ macro_rules! formats {
 
             /// Renders the document like [`Format::render`], with the entries that are not submissions.
             #[must_use]
-            pub fn render_class(self, grades: &[Grade], passed_over: &[PassedOver]) -> String {
-                let render: fn(&[Grade], &[PassedOver]) -> String = match self { $(Self::$format => $render,)+ };
+            pub fn render_class(self, grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
+                let render: fn(&[Grade], &[SkippedEntry]) -> String = match self { $(Self::$format => $render,)+ };
                 render(grades, passed_over)
             }
         }
@@ -91,7 +91,7 @@ fn render_first(grades: &[Grade], render: impl Fn(&Grade) -> String) -> String {
 
 /// Returns the entries that are not submissions, for a report on several; a report on one submission does not list
 /// them.
-fn class_entries<'e>(grades: &[Grade], passed_over: &'e [PassedOver]) -> &'e [PassedOver] {
+fn class_entries<'e>(grades: &[Grade], passed_over: &'e [SkippedEntry]) -> &'e [SkippedEntry] {
     if grades.len() > 1 { passed_over } else { &[] }
 }
 

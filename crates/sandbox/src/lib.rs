@@ -65,7 +65,7 @@ pub use wire::read_messages;
 
 /// The processes whose processor time is requested.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum TimeOf {
+pub enum ProcessorTimeScope {
     /// The calling thread.
     Thread,
     /// The calling process.
@@ -76,11 +76,11 @@ pub enum TimeOf {
 
 /// Returns a processor time, in user mode and in the kernel together.
 #[must_use]
-pub fn processor_time(of: TimeOf) -> std::time::Duration {
+pub fn processor_time(of: ProcessorTimeScope) -> std::time::Duration {
     match of {
-        TimeOf::Thread => sys::processor_time(true),
-        TimeOf::Process => sys::processor_time(false),
-        TimeOf::Children => sys::children_usage().map_or(std::time::Duration::ZERO, |(time, _)| time),
+        ProcessorTimeScope::Thread => sys::processor_time(true),
+        ProcessorTimeScope::Process => sys::processor_time(false),
+        ProcessorTimeScope::Children => sys::children_usage().map_or(std::time::Duration::ZERO, |(time, _)| time),
     }
 }
 

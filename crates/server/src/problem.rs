@@ -119,7 +119,7 @@ problems! {
     /// The address does not support the method.
     wrong_method(method: &str): 405, "wrong-method", "Not done so",
         format!("this address does not accept {method}"),
-        "see the API's description: /api/openapi.json";
+        "go back, and use the button on the page; programs find the methods in /api/openapi.json";
     /// The disk is nearly full.
     no_room(): 507, "no-room", "No room",
         "the server's disk is nearly full; nothing was stored",

@@ -105,7 +105,7 @@ fn are_connected(scene: &Scene, one: usize, two: usize) -> bool {
 /// Returns all pairs in the order of detection: per particle the later particles, the edges that do not end in it, and
 /// the half-planes.
 fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
-    let (planes_first, of) = (student.makes(Mistake::PairsHalfPlanesFirst), OfParticle { scene, student });
+    let (planes_first, of) = (student.makes(Mistake::PairsHalfPlanesFirst), ParticlePairs { scene, student });
     let particles = 0..scene.particles.len();
     let before = if planes_first { particles.clone() } else { 0..0 };
     before.flat_map(move |particle| of.half_planes(particle)).chain(particles.flat_map(move |particle| {
@@ -116,12 +116,12 @@ fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
 
 /// The pairs of one particle.
 #[derive(Clone, Copy)]
-struct OfParticle<'a> {
+struct ParticlePairs<'a> {
     scene: &'a Scene,
     student: Student,
 }
 
-impl<'a> OfParticle<'a> {
+impl<'a> ParticlePairs<'a> {
     fn particles(self, particle: usize) -> impl Iterator<Item = Pair> + use<'a> {
         let Scene { particles, .. } = self.scene;
         let makes = move |mistake: Mistake| self.student.makes(mistake);

@@ -295,7 +295,7 @@ pub(super) enum TraceCommand {
     Show(TraceShowArguments),
 }
 
-/// Reports the contents of a trace, and its damage.
+/// Reports the contents of a trace, and any damage.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:

@@ -2,7 +2,7 @@
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, exit},
     report::grade::{self, Advice, Text, TextDetail},
-    suite::{Grade, PassedOver},
+    suite::{Grade, SkippedEntry},
 };
 
 /// The maximum number of scenes and mistakes that are shown of a class; class.txt has all.
@@ -59,7 +59,7 @@ pub(super) const fn text_detail(arguments: &Arguments, is_class: bool) -> TextDe
 /// scenes and mistakes, and the entries that are not graded.
 pub(super) fn text(
     grades: &[Grade],
-    passed_over: &[PassedOver],
+    passed_over: &[SkippedEntry],
     shown: TextDetail,
     hardest: usize,
     closer: Option<Advice<'_>>,

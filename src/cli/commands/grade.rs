@@ -35,7 +35,7 @@ use crate::{
     },
     sandbox::Backend,
     suite::{
-        Cancellation, EarlierGrade, Grade, Grader, PassedOver, SceneTask, Submission, Verdict,
+        Cancellation, EarlierGrade, Grade, Grader, SceneTask, SkippedEntry, Submission, Verdict,
         batch::{self, BatchResult},
         cards::JudgedTrace,
         catch_panic,
@@ -158,7 +158,7 @@ struct GradingSession<'a> {
     /// The shard of the submissions, if `--shard` is given.
     sharding: Option<Sharding>,
     /// The entries that are not submissions.
-    passed_over: Vec<PassedOver>,
+    passed_over: Vec<SkippedEntry>,
     /// The sums of the runs' processor times, for `--timings`.
     times: &'a Timings,
 }
@@ -296,7 +296,7 @@ impl GradingSession<'_> {
     }
 
     /// Returns the entries that are not submissions; for shards, `merge` reports them.
-    fn passed_over(&self) -> &[PassedOver] {
+    fn passed_over(&self) -> &[SkippedEntry] {
         if self.sharding.is_some() { &[] } else { &self.passed_over }
     }
 

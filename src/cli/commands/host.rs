@@ -62,7 +62,8 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     for id in mistake.split(',') {
         // A variant is right, so a program with a variant would be a right submission.
         if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
-            let meant = near::suggest(id, student::all_rows().map(|row| row.id));
+            let mistakes = student::all_rows().filter(|row| row.kind != RowKind::Variant);
+            let meant = near::suggest(id, mistakes.map(|row| row.id));
             bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them{meant}");
         }
     }

@@ -10,7 +10,7 @@ use crate::{
         page::{Audience, Card, Case, ClassPage, GradePage, WhatIf},
     },
     suite::{
-        Grade, PassedOver,
+        Grade, SkippedEntry,
         cards::{self, Cards, Draw, JudgedTrace},
         catch_panic,
         config::Hints,
@@ -85,7 +85,7 @@ impl Pages {
     pub(super) fn write(
         &self,
         grades: &[Grade],
-        passed_over: &[PassedOver],
+        passed_over: &[SkippedEntry],
         reader: Audience,
     ) -> Result<Option<PathBuf>> {
         let Some(folder) = &self.folder else { return Ok(None) };

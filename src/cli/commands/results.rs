@@ -4,7 +4,7 @@ use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
     files::{Place, open_for_writing},
     report::{formats::Format, grade, page::Audience, style::Style, wrap},
-    suite::{Grade, PassedOver, catch_panic, near},
+    suite::{Grade, SkippedEntry, catch_panic, near},
 };
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
@@ -109,7 +109,7 @@ pub(super) struct Results<'a> {
     pub(super) is_part: bool,
     pub(super) grades: &'a [Grade],
     /// The entries that are not submissions.
-    pub(super) passed_over: &'a [PassedOver],
+    pub(super) passed_over: &'a [SkippedEntry],
 }
 
 impl Results<'_> {

@@ -6,7 +6,7 @@ use crate::{
         console, output,
     },
     files::{FileError, Place},
-    suite::{Grade, PassedOver, Submission, plan::Plan, score, this_build},
+    suite::{Grade, SkippedEntry, Submission, plan::Plan, score, this_build},
 };
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
@@ -71,7 +71,7 @@ pub(super) struct Part {
     pub(super) grades: Vec<Grade>,
     /// The entries of the class that are not submissions.
     #[serde(default)]
-    pub(super) passed_over: Vec<PassedOver>,
+    pub(super) passed_over: Vec<SkippedEntry>,
 }
 
 impl Part {
@@ -175,7 +175,7 @@ impl Sharding {
     /// # Errors
     ///
     /// Fails if they can't be written.
-    pub(super) fn end(&self, grades: &[Grade], passed_over: &[PassedOver]) -> Result<()> {
+    pub(super) fn end(&self, grades: &[Grade], passed_over: &[SkippedEntry]) -> Result<()> {
         let (common, number, passed_over) = (self.common.clone(), self.shard.number, passed_over.to_vec());
         let part = Part { common, number, grades: grades.to_vec(), passed_over };
         output::write_at(&Place::new(&self.folder, SHARD_FILE), &serde_json::to_vec(&part)?)?;

@@ -2,7 +2,7 @@
 use crate::{
     cli::{arguments::grade::GradeArguments, console, input},
     files::{Folder, Identity},
-    suite::{OneFile, PassedOver, Submission, config::BuildStep, names},
+    suite::{OneFile, SkippedEntry, Submission, config::BuildStep, names},
 };
 use anyhow::{Context, Result, bail};
 use fosssim_intake::FileKind;
@@ -30,7 +30,7 @@ const MAX_ENTRIES: usize = 100_000;
 /// The submissions of a command line, and the entries that are not submissions.
 pub(super) struct FoundSubmissions {
     pub(super) submissions: Vec<Submission>,
-    pub(super) passed_over: Vec<PassedOver>,
+    pub(super) passed_over: Vec<SkippedEntry>,
 }
 
 /// A submission before it gets its name.
@@ -132,7 +132,7 @@ impl<'a> Search<'a> {
 
     /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are reported
     /// and skipped: hidden ones, results of gradings, and links, which could lead to another's submission.
-    fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<PassedOver>) -> Result<()> {
+    fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<SkippedEntry>) -> Result<()> {
         let paths = list_entries(folder, MAX_ENTRIES)?;
         let holds_results = self.is_results(folder);
         let before = found.len();
@@ -236,10 +236,10 @@ fn refuse_scene(path: &Path) -> Result<()> {
     Ok(())
 }
 
-fn skip_entry(passed_over: &mut Vec<PassedOver>, path: &Path, why: &str) {
+fn skip_entry(passed_over: &mut Vec<SkippedEntry>, path: &Path, why: &str) {
     let name = names::printable(path.file_name().unwrap_or(path.as_os_str()));
     console::print_error(format!("passed over {name}: {why}\n"));
-    passed_over.push(PassedOver { name, why: why.to_owned() });
+    passed_over.push(SkippedEntry { name, why: why.to_owned() });
 }
 
 /// Returns the last component of a path.

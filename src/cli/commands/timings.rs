@@ -5,14 +5,14 @@ use crate::{
         style::Style,
         table::{Align, Table},
     },
-    sandbox::{TimeOf, processor_time},
+    sandbox::{ProcessorTimeScope, processor_time},
     suite::timings::{RunPart, Timings},
 };
 
 /// Prints the table. The sandbox's processes must have ended, otherwise their time is missing.
 pub(super) fn print(timings: &Timings) {
-    let own = processor_time(TimeOf::Process);
-    let others = processor_time(TimeOf::Children);
+    let own = processor_time(ProcessorTimeScope::Process);
+    let others = processor_time(ProcessorTimeScope::Children);
     let (programs, runs) = timings.total(RunPart::Program);
     let mut rows = vec![("programs", programs), ("the sandbox's processes", others.saturating_sub(programs))];
     rows.extend(RunPart::OWN_PARTS.map(|(part, name)| (name, timings.total(part).0)));

@@ -7,7 +7,7 @@ use fosssim_oracle::{
         vector::{Vec2, vector_at},
     },
     scene::Scene,
-    sim::{Detection, Observer, Pair, PairKind, Steer},
+    sim::{Detection, Observer, Pair, PairKind, StepController},
 };
 
 /// The motion of a particle and an edge within the step, as three quadratics (numerics.md 1.2), lowest power first: the
@@ -79,12 +79,12 @@ impl<O: Observer> Observer for Mended<'_, O> {
     fn observe_detection(&mut self, detection: &Detection<'_>) {
         self.inner.observe_detection(detection);
     }
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(self)
     }
 }
 
-impl<O: Observer> Steer for Mended<'_, O> {
+impl<O: Observer> StepController for Mended<'_, O> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         if pair.kind == PairKind::ParticleEdge {
             let edge = self.scene.edges[pair.second as usize];

@@ -8,7 +8,9 @@ use super::{
     context::{Context, FollowedDecision, Records},
     formulas::BoundedPairMotion,
 };
-use fosssim_model::sim::{Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, Steer, Time};
+use fosssim_model::sim::{
+    Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, StepController, Time,
+};
 use fosssim_num::{
     bounded::UNIT_ROUNDOFF,
     polynomial::Polynomial,
@@ -176,12 +178,12 @@ impl Observer for PerturbedRun<'_> {
         self.stale |= detection.decision.collides();
     }
 
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(self)
     }
 }
 
-impl Steer for PerturbedRun<'_> {
+impl StepController for PerturbedRun<'_> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
         self.motion = Some(BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end));
     }

@@ -10,7 +10,7 @@ use fosssim_judge::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{Detection, Observer, Pair, PairKind, RootSearch, Simulation, Steer, Steering},
+    sim::{Detection, Observer, Pair, PairKind, RootSearch, Simulation, Steering, StepController},
     trace::{Frame, Layout, Reader, Recorder, Writer},
 };
 use fosssim_num::{bounded::BoundedValue, polynomial::Polynomial};
@@ -79,7 +79,7 @@ impl Observer for Note<'_> {
 /// Multiplies polynomials; the course's library drops what becomes small, and the step goes on with the rest.
 struct Multiply<'a, F>(&'a Scene, F);
 
-impl<F: FnMut(Pair, usize, &[f64]) -> f64> Steer for Multiply<'_, F> {
+impl<F: FnMut(Pair, usize, &[f64]) -> f64> StepController for Multiply<'_, F> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         let whole = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();
         for (number, polynomial) in polynomials.iter_mut().enumerate() {

@@ -225,8 +225,9 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
 
 /// Drops explanations that may be consequences of a mistake that explains one of the traces, if steps log only states.
 fn drop_what_follows(open: &mut Vec<OpenTrace>) {
-    let is_of_states = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
-    let names_one = |symptom: &Symptom| symptom.allowed.iter().any(|(word, is_whole)| *is_whole && is_of_states(word));
+    let is_state_mistake = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
+    let names_one =
+        |symptom: &Symptom| symptom.allowed.iter().any(|(word, is_whole)| *is_whole && is_state_mistake(word));
     if open.iter().flat_map(|trace| &trace.symptoms).any(names_one) {
         open.iter_mut().for_each(|trace| trace.symptoms.retain(|symptom| !symptom.one.is_of_stage()));
         open.retain(|trace| !trace.symptoms.is_empty());

@@ -125,9 +125,8 @@ fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
             let of_contact = end.impulses.iter().find_map(wild_impulse).map(|value| (NanStage::ContactVectors, value));
             of_contact.or_else(|| Some((of_state, state?)))
         }
-        Collision::ContinuousTime { .. } => {
-            in_one_pass(scene, end, polynomial).or_else(|| Some((of_state, wild_value(&mid.state).or(state)?)))
-        }
+        Collision::ContinuousTime { .. } => find_stage_in_single_pass(scene, end, polynomial)
+            .or_else(|| Some((of_state, wild_value(&mid.state).or(state)?))),
         Collision::Hybrid { .. } => {
             let pass: usize = pairs(scene).counts().iter().map(|(kind, count)| count * kind.polynomials()).sum();
             let middle = mid.polynomials.len();
@@ -147,7 +146,11 @@ fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
 
 /// Returns the stage in the single pass of `continuous-time`, where each contact is resolved before the next pair is
 /// checked.
-fn in_one_pass(scene: &Scene, end: &LenientFrame, polynomial: Option<(usize, f64)>) -> Option<(NanStage, f64)> {
+fn find_stage_in_single_pass(
+    scene: &Scene,
+    end: &LenientFrame,
+    polynomial: Option<(usize, f64)>,
+) -> Option<(NanStage, f64)> {
     let all = pairs(scene);
     let place = |contact: &LoggedImpulse| contact.pair().and_then(|pair| all.iter().position(|one| one == pair));
     let contact = end.impulses.iter().find_map(|contact| Some((place(contact), wild_impulse(contact)?)));

@@ -26,7 +26,7 @@ pub use collision::{PairMotion, PointMotion, formulas};
 pub use forces::{PenaltyPairs, PenaltyTerms, SweepOrder, gradients};
 pub use integrators::least_work;
 pub use observer::{
-    Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Steer, Steering, Time, WantedPairs, Zone,
+    Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Steering, StepController, Time, WantedPairs, Zone,
 };
 pub use pair::{ByKind, Pair, PairKind};
 pub use pairs::{Pairs, pairs};

@@ -12,7 +12,7 @@ use serde::{Deserialize, Serialize};
 /// `begin_pass` .. `end_pass`, then per round a `failsafe` per zone and the next pass; `zones` after each merge.
 /// `end_step` is last.
 ///
-/// An observer itself changes nothing. It returns a [`Steer`] to continue the step with other values.
+/// An observer itself changes nothing. It returns a [`StepController`] to continue the step with other values.
 pub trait Observer {
     /// Observes the start of a step; steps count from 1.
     fn begin_step(&mut self, _step: u32) {}
@@ -28,7 +28,7 @@ pub trait Observer {
     }
     /// Returns the steering part of this observer, if it has one.
     #[inline]
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         None
     }
     /// Observes the test of a pair.
@@ -50,7 +50,7 @@ pub trait Observer {
 }
 
 /// Steers a step, which continues with the values that it sets. By default the methods change nothing.
-pub trait Steer {
+pub trait StepController {
     /// Receives the trimmed polynomials of a pair before the search for a time of impact. They may be replaced; search,
     /// decision and [`Observer::observe_detection`] then use the replacements. Not called by `simple`, which has no
     /// polynomials.
@@ -73,8 +73,8 @@ pub trait Steer {
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Steering<S>(pub S);
 
-impl<S: Steer> Observer for Steering<S> {
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+impl<S: StepController> Observer for Steering<S> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(&mut self.0)
     }
 }
@@ -82,7 +82,7 @@ impl<S: Steer> Observer for Steering<S> {
 /// Passes the state of the synchronization point to an observer, and lets it steer.
 pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> Resume {
     observer.observe_synchronization(state);
-    observer.as_steer().map_or(Resume::Own, |steer| steer.synchronize(state))
+    observer.as_controller().map_or(Resume::Own, |steer| steer.synchronize(state))
 }
 
 /// The pairs of a detection pass that an observer needs.
@@ -129,8 +129,8 @@ impl<O: Observer + ?Sized> Observer for &mut O {
         (**self).wanted_pairs()
     }
     #[inline]
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
-        (**self).as_steer()
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
+        (**self).as_controller()
     }
 }
 
@@ -147,24 +147,24 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
             WantedPairs::Calls
         }
     }
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(self)
     }
 }
 
 /// The second observer receives the state as the first one sets it. The geometric part starts from the synchronized
 /// state if one of them requests it.
-impl<A: Observer, B: Observer> Steer for (A, B) {
+impl<A: Observer, B: Observer> StepController for (A, B) {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
-        let both = [self.0.as_steer(), self.1.as_steer()].into_iter().flatten();
+        let both = [self.0.as_controller(), self.1.as_controller()].into_iter().flatten();
         both.for_each(|steer| steer.solve(pair, q_start, q_end, polynomials));
     }
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
-        let both = [self.0.as_steer(), self.1.as_steer()].into_iter().flatten();
+        let both = [self.0.as_controller(), self.1.as_controller()].into_iter().flatten();
         both.fold(decision, |decision, steer| steer.decide(pair, decision))
     }
     fn synchronize(&mut self, state: &mut State) -> Resume {
-        let both = [self.0.as_steer(), self.1.as_steer()].into_iter().flatten();
+        let both = [self.0.as_controller(), self.1.as_controller()].into_iter().flatten();
         both.fold(Resume::Own, |resume, steer| match steer.synchronize(state) {
             Resume::Own => resume,
             Resume::Synchronized => Resume::Synchronized,

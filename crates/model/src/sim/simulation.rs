@@ -87,7 +87,7 @@ impl Simulation {
         }
         self.q_start.clone_from(&self.state.positions);
         self.stepper.limit_work(self.most_work.saturating_sub(self.handler.counts().work()));
-        self.stepper.advance(step, &self.bodies, &mut self.forces, &mut self.state, observer.as_steer())?;
+        self.stepper.advance(step, &self.bodies, &mut self.forces, &mut self.state, observer.as_controller())?;
         self.handler.limit_work(self.most_work.saturating_sub(self.stepper.work()));
         self.handler.handle(&self.bodies, step, &self.q_start, &mut self.state, observer)?;
         self.steps_done = step;
@@ -125,7 +125,7 @@ mod tests {
     use crate::{
         scene::{Collision, CollisionDetection, Force, Integrator, Particle},
         sim::{
-            Decision, Detection, Impulse, Pair, PairKind, Pass, Resume, Steer, Time, Zone,
+            Decision, Detection, Impulse, Pair, PairKind, Pass, Resume, StepController, Time, Zone,
             samples::{edge, fix, half_plane, particle, scene},
         },
     };
@@ -160,7 +160,7 @@ mod tests {
         fn observe_impulse(&mut self, impulse: &Impulse) {
             self.lines.push(format!("impulse {} {}", impulse.normal.x, impulse.normal.y));
         }
-        fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+        fn as_controller(&mut self) -> Option<&mut dyn StepController> {
             Some(self)
         }
         fn observe_synchronization(&mut self, _state: &State) {
@@ -177,7 +177,7 @@ mod tests {
         }
     }
 
-    impl Steer for Log {
+    impl StepController for Log {
         fn synchronize(&mut self, state: &mut State) -> Resume {
             if let Some(replacement) = &self.replacement {
                 state.clone_from(replacement);

@@ -3,7 +3,7 @@ use super::Format;
 use crate::grade::{add_warnings, csv_of_submissions, json_lines, samples};
 use crate::page::{Audience, GradePage};
 use fosssim_grading::{
-    Grade, PassedOver, Reason, Verdict,
+    Grade, Reason, SkippedEntry, Verdict,
     config::Visibility,
     located::{Content, FailureKind, LocatedFailure},
     result::{ProgramProgress, RunEnd, WrongTrace},
@@ -71,7 +71,7 @@ fn json_follows_its_schema() {
 
 #[test]
 fn who_is_passed_over_is_told_of_a_class_in_every_format_and_once() {
-    let entry = |name: &str, why: &str| PassedOver { name: name.to_owned(), why: why.to_owned() };
+    let entry = |name: &str, why: &str| SkippedEntry { name: name.to_owned(), why: why.to_owned() };
     let passed_over = [entry(".hidden", "its name begins with a dot"), entry("=a|b,<c>::d", "it is a link")];
     for format in Format::ALL.iter().filter(|format| format.takes_several()) {
         let document = format.render_class(&all(), &passed_over);

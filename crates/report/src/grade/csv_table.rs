@@ -2,11 +2,11 @@
 use super::{format_points, likely_mistakes, no_points, phrases::NOT_GRADED};
 use crate::foreign::one_line;
 use crate::{view::to_key, words};
-use fosssim_findings::{Grade, PassedOver, speed::SpeedSource};
+use fosssim_findings::{Grade, SkippedEntry, speed::SpeedSource};
 use fosssim_mistakes::together::worth;
 
 /// Returns one row per scene.
-pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,\
                 rules_differ,likely_mistake_key";
     let rows = grades.iter().flat_map(|grade| {
@@ -41,7 +41,7 @@ pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[PassedOver]) -> Str
 /// points that fixing the first likely mistake would give. Entries that are not submissions have rows with only the
 /// reason.
 #[must_use]
-pub fn render_submissions(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let head = "submission,verdict,points,max_points,accepted_scenes,scenes,wall_seconds,rules_differ,likely_mistake,\
                 reason,same_program,worth";
     let mut head: Vec<String> = head.split(',').map(str::to_owned).collect();
@@ -79,8 +79,8 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[PassedOver]) -> Strin
 }
 
 /// Returns rows for entries that are not graded, with the reason in the column for reasons.
-fn empty_rows(passed_over: &[PassedOver], head: &[String], reasons: &str) -> Vec<Vec<String>> {
-    let cell = |entry: &PassedOver, column: &str| match column {
+fn empty_rows(passed_over: &[SkippedEntry], head: &[String], reasons: &str) -> Vec<Vec<String>> {
+    let cell = |entry: &SkippedEntry, column: &str| match column {
         "submission" => escape_formula(&entry.name),
         "verdict" => NOT_GRADED.to_owned(),
         column if column == reasons => escape_formula(&entry.why),

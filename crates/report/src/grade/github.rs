@@ -8,7 +8,7 @@ use super::{
 use crate::annotation::{join_annotation, render_annotation};
 use crate::foreign::{clean_output, one_line};
 use crate::{number::format_count, words};
-use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
+use fosssim_findings::{Grade, SceneGrade, SkippedEntry, Verdict};
 use std::fmt::Write;
 
 /// The maximum number of scenes with the same cause that are named.
@@ -49,18 +49,18 @@ pub(crate) fn render_annotations(grades: &[Grade]) -> String {
 }
 
 /// Returns a warning per entry that is not a submission.
-pub(crate) fn passed_over(entries: &[PassedOver]) -> String {
+pub(crate) fn passed_over(entries: &[SkippedEntry]) -> String {
     let warning =
-        |entry: &PassedOver| render_annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
+        |entry: &SkippedEntry| render_annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
     entries.iter().map(warning).collect()
 }
 
 /// Lists the entries that are not submissions in Markdown.
-pub(crate) fn list_of_passed_over(entries: &[PassedOver]) -> String {
+pub(crate) fn list_of_passed_over(entries: &[SkippedEntry]) -> String {
     if entries.is_empty() {
         return String::new();
     }
-    let item = |entry: &PassedOver| format!("- {}: {}\n", escape_cell(&entry.name), escape_cell(&entry.why));
+    let item = |entry: &SkippedEntry| format!("- {}: {}\n", escape_cell(&entry.name), escape_cell(&entry.why));
     format!("### Not graded\n\n{}\n", entries.iter().map(item).collect::<String>())
 }
 

@@ -9,7 +9,7 @@ use crate::{
 };
 use fosssim_findings::Verdict;
 use fosssim_findings::{
-    Book, Build, CourseNote, Grade, GroupGrade, PassedOver, Rules, SceneGrade, Visibility,
+    Book, Build, CourseNote, Grade, GroupGrade, Rules, SceneGrade, SkippedEntry, Visibility,
     changes::Changes,
     located::LocatedFailure,
     speed::{SpeedGrade, SpeedRatio, SpeedSource},
@@ -35,7 +35,7 @@ pub(crate) struct GradeDocument {
     grades: Vec<GradeView>,
     /// The entries of the class's folder that are not submissions; left out if there are none.
     #[serde(skip_serializing_if = "Vec::is_empty")]
-    passed_over: Vec<PassedOver>,
+    passed_over: Vec<SkippedEntry>,
 }
 
 view! {
@@ -261,22 +261,22 @@ view! {
 }
 
 /// Renders all grades in one document.
-pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let (grades, passed_over) =
         (grades.iter().map(GradeView::from).collect(), passed_over.iter().map(with_plain_words).collect());
     to_document(&GradeDocument { schema: SCHEMA, version: env!("CARGO_PKG_VERSION"), grades, passed_over })
 }
 
-fn with_plain_words(entry: &PassedOver) -> PassedOver {
-    PassedOver { name: strip_control_characters(&entry.name), why: strip_control_characters(&entry.why) }
+fn with_plain_words(entry: &SkippedEntry) -> SkippedEntry {
+    SkippedEntry { name: strip_control_characters(&entry.name), why: strip_control_characters(&entry.why) }
 }
 
 /// Returns a line per grade, and a line per entry that is not a submission.
 #[must_use]
-pub fn lines(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub fn lines(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));
     let passed_over = passed_over.iter().map(|entry| {
-        let PassedOver { name, why } = with_plain_words(entry);
+        let SkippedEntry { name, why } = with_plain_words(entry);
         let line = serde_json::json!({ "submission": name, "verdict": NOT_GRADED, "points": null, "reason": why });
         serde_json::to_string(&line)
     });

@@ -2,11 +2,11 @@
 use super::{super::explain, describe_difference, head_lines, phrases::NOT_GRADED};
 use crate::foreign::{clean_output, strip_control_characters};
 use crate::{style::Style, words};
-use fosssim_findings::{Grade, PassedOver, SceneGrade, Verdict};
+use fosssim_findings::{Grade, SceneGrade, SkippedEntry, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
 /// Renders all grades in one report.
-pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
+pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
         if let Some(unfit) = words::describe_unfit(grade) {
@@ -43,7 +43,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[PassedOver]) -> String {
     }
     if !passed_over.is_empty() {
         let mut suite = TestSuite::new(NOT_GRADED);
-        for PassedOver { name, why } in passed_over {
+        for SkippedEntry { name, why } in passed_over {
             let mut status = TestCaseStatus::skipped();
             status.set_message(strip_control_characters(why));
             suite.add_test_case(TestCase::new(strip_control_characters(name), status));

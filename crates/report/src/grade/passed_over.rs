@@ -5,25 +5,25 @@ use crate::{
     style::{Look, Style},
     table::{Align, Table},
 };
-use fosssim_findings::{Grade, PassedOver};
+use fosssim_findings::{Grade, SkippedEntry};
 
 /// Adds a warning about each skipped entry to the only grade, because a report on one submission has no list of skipped
 /// entries.
-pub fn add_warnings(grades: &mut [Grade], passed_over: &[PassedOver]) {
+pub fn add_warnings(grades: &mut [Grade], passed_over: &[SkippedEntry]) {
     if let [grade] = grades {
-        let words = |entry: &PassedOver| format!("passed over {}: {}", entry.name, entry.why);
+        let words = |entry: &SkippedEntry| format!("passed over {}: {}", entry.name, entry.why);
         grade.warnings.extend(passed_over.iter().map(words));
     }
 }
 
 /// Returns the list of skipped entries below a class, for people.
 #[must_use]
-pub fn not_graded(grades: &[Grade], passed_over: &[PassedOver], style: Style) -> String {
+pub fn not_graded(grades: &[Grade], passed_over: &[SkippedEntry], style: Style) -> String {
     if passed_over.is_empty() || grades.len() < 2 {
         return String::new();
     }
     let mut table = Table::new([Align::Left, Align::Left]);
-    for PassedOver { name, why } in passed_over {
+    for SkippedEntry { name, why } in passed_over {
         table.row([shorten_name(&one_line(name)).into(), one_line(why).into()]);
     }
     format!("{}\n{}", style.paint(Look::Strong, "Not graded"), table.render(style))

@@ -17,7 +17,7 @@ use crate::{
 };
 use askama::Template;
 use fosssim_findings::{
-    CourseNote, Grade, PassedOver, SceneGrade, Verdict, explanation::Explanation, smallest::SmallestScene,
+    CourseNote, Grade, SceneGrade, SkippedEntry, Verdict, explanation::Explanation, smallest::SmallestScene,
 };
 use fosssim_mistakes::diagnose::is_named_in;
 use std::collections::BTreeMap;
@@ -39,7 +39,7 @@ pub struct ClassPage<'a> {
     /// The grades.
     pub grades: &'a [Grade],
     /// The entries that are not submissions.
-    pub passed_over: &'a [PassedOver],
+    pub passed_over: &'a [SkippedEntry],
     /// A function that returns the address of a submission's page, relative to the class's page.
     pub page: &'a dyn Fn(&Grade) -> String,
 }

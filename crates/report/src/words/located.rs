@@ -52,7 +52,7 @@ mod tests {
             failing: FailureKind::Crash,
             contents: vec![
                 content("the failsafe moves a zone", None),
-                content("a step of hybrid", Some(["zones", "one"])),
+                content("a step with hybrid", Some(["zones", "one"])),
             ],
             failed: 24,
             with: 24,

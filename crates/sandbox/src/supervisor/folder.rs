@@ -105,17 +105,19 @@ pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
 
 /// Opens the folders below a folder at `depth`, and records the new names of those that were too deep.
 fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &mut Vec<CString>) {
-    let Ok(entries) = std::fs::read_dir(path_of_open(folder)) else { return };
+    let Ok(entries) = std::fs::read_dir(read_descriptor_path(folder)) else { return };
     for entry in entries.flatten().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())) {
         let Ok(name) = CString::new(entry.file_name().as_bytes()) else { continue };
         let Ok(opened) = sys::open_beneath(folder, &name, OFlags::PATH | OFlags::DIRECTORY) else { continue };
-        let Ok(mode) = std::fs::metadata(path_of_open(opened.as_fd())).map(|metadata| metadata.permissions().mode())
+        let Ok(mode) =
+            std::fs::metadata(read_descriptor_path(opened.as_fd())).map(|metadata| metadata.permissions().mode())
         else {
             continue;
         };
         if mode & 0o700 != 0o700 {
             // The next measurement reports a folder that stays closed as over the limit.
-            let _ = std::fs::set_permissions(path_of_open(opened.as_fd()), Permissions::from_mode(mode | 0o700));
+            let _ =
+                std::fs::set_permissions(read_descriptor_path(opened.as_fd()), Permissions::from_mode(mode | 0o700));
         }
         drop(opened);
         if depth < MAX_DEPTH {
@@ -123,7 +125,7 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
                 open_level(root, inner.as_fd(), depth + 1, moved);
             }
         } else if let Some(name) = free_name(root, moved.len())
-            && std::fs::rename(entry.path(), path_of_open(root).join(&name)).is_ok()
+            && std::fs::rename(entry.path(), read_descriptor_path(root).join(&name)).is_ok()
         {
             moved.extend(CString::new(name));
         }
@@ -134,11 +136,11 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
 fn free_name(folder: BorrowedFd<'_>, from: usize) -> Option<String> {
     const MAX_TRIES: usize = 100_000;
     let names = (from..from + MAX_TRIES).map(|number| format!(".too-deep-{number}"));
-    { names }.find(|name| path_of_open(folder).join(name).symlink_metadata().is_err())
+    { names }.find(|name| read_descriptor_path(folder).join(name).symlink_metadata().is_err())
 }
 
 /// Returns the path of an open folder.
-fn path_of_open(folder: BorrowedFd<'_>) -> PathBuf {
+fn read_descriptor_path(folder: BorrowedFd<'_>) -> PathBuf {
     PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()))
 }
 

@@ -153,7 +153,7 @@ async fn print_greeting(
             let place = program.to_str().context("the data folder's name is not UTF-8")?;
             run_grader(grader, &["demo", "--program", place])
                 .await
-                .context("the program with a mistake could not be written")?;
+                .context("the example program could not be written")?;
         }
         writeln!(output, "A program with a mistake, to submit: {}", program.display())?;
     }

@@ -25,7 +25,7 @@ pub use platforms::launch::{LaunchTarget, LoginAnswer, LoginRequest};
 pub use platforms::platform::{RosterRead, RosterWish, ScoreInfo};
 pub use roles::admin::{Admin, CourseSize};
 pub use roles::member::Member;
-pub use roles::person::{CourseOf, Person};
+pub use roles::person::{CourseMembership, Person};
 pub use roles::remote::Remote;
 pub use roles::staff::{AssignmentChange, NewSuite, Staff, UploadedSuite};
 pub use roles::visitor::{Secrets, Visitor};

@@ -41,9 +41,9 @@ const FORM_OVERHEAD: u64 = 1024 * 1024;
 /// Counts the bytes of a form that have arrived but are not processed yet. They are in memory, so their number is
 /// limited.
 #[derive(Clone, Default)]
-struct UntakenBytes(Arc<AtomicU64>);
+struct BufferedBytes(Arc<AtomicU64>);
 
-impl UntakenBytes {
+impl BufferedBytes {
     fn add(&self, bytes: usize) -> Result<(), &'static str> {
         let untaken = self.0.fetch_add(bytes as u64, Ordering::Relaxed) + bytes as u64;
         if untaken > FORM_OVERHEAD { Err("the form has too many fields") } else { Ok(()) }
@@ -141,7 +141,7 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
         let file = write_file(place, body.into_data_stream(), most, deadline, None).await?;
         return Ok(ReceivedFile { file, name: None, form: None, key: None });
     }
-    let untaken = UntakenBytes::default();
+    let untaken = BufferedBytes::default();
     let (parts, body) = request.into_parts();
     let counting = untaken.clone();
     let counted = body.into_data_stream().map(move |chunk| {
@@ -193,7 +193,7 @@ async fn write_file<E: Display>(
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
     most: u64,
     deadline: Instant,
-    untaken: Option<&UntakenBytes>,
+    untaken: Option<&BufferedBytes>,
 ) -> Result<TempPath, Problem> {
     let (file, path) = tempfile::NamedTempFile::new_in(place.incoming)?.into_parts();
     let mut file = tokio::fs::File::from_std(file);

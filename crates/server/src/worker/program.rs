@@ -162,12 +162,13 @@ pub(super) fn isolate(command: &mut Command, folder: &Path) {
 }
 
 impl Grader for Program {
-    /// Checks that the grader works: there is space to work in, the reference's own trace of a scene is accepted, and a
-    /// program that does nothing runs in the sandbox and is not accepted. A grader that records no traces, as in tests,
-    /// is only started.
+    /// Checks that the grader works: there is enough free space, the reference's own trace of a scene is accepted, and
+    /// a program that does nothing runs in the sandbox and is not accepted. A grader that records no traces, as in
+    /// tests, is only started.
     async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
         let room = folder.join("room");
-        fs::write(&room, vec![1; REQUIRED_BYTES]).map_err(|error| format!("there is no space to work in: {error}"))?;
+        fs::write(&room, vec![1; REQUIRED_BYTES])
+            .map_err(|error| format!("the disk has too little free space for grading: {error}"))?;
         fs::remove_file(&room).map_err(|error| error.to_string())?;
         let trace = folder.join("right").join(CHECK_SCENE).with_extension("bin");
         let idle = folder.join("idle");

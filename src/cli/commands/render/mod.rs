@@ -21,7 +21,7 @@ use crate::{
 };
 use anyhow::{Context, Result, bail};
 use ffmpeg::Ffmpeg;
-use motion::{Motion, Picks};
+use motion::{Motion, StepRange};
 use std::{
     io::{BufWriter, Write},
     path::Path,
@@ -111,7 +111,7 @@ const fn is_film(form: RenderFormat) -> bool {
 }
 
 /// Returns the steps that are drawn.
-fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<Picks> {
+fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<StepRange> {
     let last = scene.steps();
     if let Some(step) = arguments.step {
         if step > last {
@@ -119,7 +119,7 @@ fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) 
         }
         // A particle's path consists of its earlier positions.
         let first = if scene.display.paths.is_empty() { step } else { 0 };
-        return Ok(Picks { first, every: 1, last: step });
+        return Ok(StepRange { first, every: 1, last: step });
     }
     let every = match arguments.every {
         Some(every) => every.get(),
@@ -128,7 +128,7 @@ fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) 
     };
     // The original's first picture is that after the first step.
     let first = if is_film(form) { 0 } else { every };
-    let picks = Picks { first, every, last };
+    let picks = StepRange { first, every, last };
     let pictures = picks.count();
     if pictures > MAX_PICTURES {
         let least = last.div_ceil(MAX_PICTURES - 1);
@@ -146,12 +146,12 @@ struct Reel {
     painter: Painter,
     main: Motion,
     overlay: Option<Motion>,
-    picks: Picks,
+    picks: StepRange,
     single: bool,
 }
 
 impl Reel {
-    fn new(scene: &Scene, main: Motion, overlay: Option<Motion>, options: PictureOptions, picks: Picks) -> Self {
+    fn new(scene: &Scene, main: Motion, overlay: Option<Motion>, options: PictureOptions, picks: StepRange) -> Self {
         let mut extent = main.extent;
         if let Some(overlay) = &overlay {
             extent.join(&overlay.extent);

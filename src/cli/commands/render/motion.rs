@@ -22,14 +22,14 @@ const MAX_MEMORY_BYTES: usize = 32 << 20;
 
 /// The steps that are drawn: `first`, `first + every` and so on up to `last`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct Picks {
+pub(super) struct StepRange {
     pub(super) first: u32,
     /// The distance between drawn steps, at least 1.
     pub(super) every: u32,
     pub(super) last: u32,
 }
 
-impl Picks {
+impl StepRange {
     /// Returns the number of drawn steps.
     pub(super) fn count(self) -> u32 {
         if self.first > self.last { 0 } else { (self.last - self.first) / self.every + 1 }
@@ -82,14 +82,14 @@ impl Motion {
 /// A motion while it is being stored.
 struct FilmKeeper<'a> {
     scene: &'a Scene,
-    picks: Picks,
+    picks: StepRange,
     file: BufWriter<SpooledTempFile>,
     pictures: u32,
     extent: Extent,
 }
 
 impl<'a> FilmKeeper<'a> {
-    fn new(scene: &'a Scene, picks: Picks) -> Self {
+    fn new(scene: &'a Scene, picks: StepRange) -> Self {
         let file = BufWriter::new(tempfile::spooled_tempfile(MAX_MEMORY_BYTES));
         Self { scene, picks, file, pictures: 0, extent: Extent::default() }
     }
@@ -119,7 +119,7 @@ impl<'a> FilmKeeper<'a> {
 /// # Errors
 ///
 /// Fails if it can't be stored.
-pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
+pub(super) fn reference(scene: &Scene, picks: StepRange) -> Result<Motion> {
     let mut keeper = FilmKeeper::new(scene, picks);
     let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
     keeper.step(0, &simulation.state().positions)?;
@@ -143,7 +143,7 @@ pub(super) fn reference(scene: &Scene, picks: Picks) -> Result<Motion> {
 ///
 /// Fails if the trace can't be opened or stored, or the operating system fails while it is read. Damage ends the
 /// motion.
-pub(super) fn read_motion(scene: &Scene, name: &Path, picks: Picks) -> Result<Motion> {
+pub(super) fn read_motion(scene: &Scene, name: &Path, picks: StepRange) -> Result<Motion> {
     let mut trace = input::trace(name)?;
     let layout = Layout::for_scene(scene);
     let mut reader = trace.records(scene);
@@ -174,15 +174,15 @@ pub(super) fn read_motion(scene: &Scene, name: &Path, picks: Picks) -> Result<Mo
 
 #[cfg(test)]
 mod tests {
-    use super::Picks;
+    use super::StepRange;
 
     #[test]
     fn picks_are_counted_without_overflow() {
-        let picks = Picks { first: 0, every: 3, last: 10 };
+        let picks = StepRange { first: 0, every: 3, last: 10 };
         assert_eq!((picks.count(), picks.step(4)), (4, 9));
         assert_eq!((0..=10).filter(|&step| picks.contains(step)).collect::<Vec<_>>(), [0, 3, 6, 9]);
-        assert_eq!(Picks { first: 5, every: 5, last: 4 }.count(), 0);
-        let all = Picks { first: 1, every: 1, last: i32::MAX as u32 };
+        assert_eq!(StepRange { first: 5, every: 5, last: 4 }.count(), 0);
+        let all = StepRange { first: 1, every: 1, last: i32::MAX as u32 };
         assert_eq!((all.count(), all.step(all.count())), (i32::MAX as u32, i32::MAX as u32));
     }
 }

@@ -20,10 +20,10 @@ use fosssim_num::{
 };
 
 /// The comparisons of a call's polynomials that are clearly right.
-pub(super) type AtOnce = [Option<Match>; PairKind::MAX_POLYNOMIALS];
+pub(super) type QuickMatches = [Option<Match>; PairKind::MAX_POLYNOMIALS];
 
 /// For each polynomial of a kind of pair, the sum of moduli above which the polynomial exceeds round-off.
-pub(super) type Floors = ByKind<[f64; PairKind::MAX_POLYNOMIALS]>;
+pub(super) type RoundOffFloors = ByKind<[f64; PairKind::MAX_POLYNOMIALS]>;
 
 impl Follower<'_> {
     /// Returns the logged polynomials of a call that are clearly right. [`compare`](crate::fair::compare::compare)
@@ -35,7 +35,7 @@ impl Follower<'_> {
         [q_start, q_end]: [&[f64]; 2],
         index: usize,
         own: &[Polynomial],
-    ) -> AtOnce {
+    ) -> QuickMatches {
         let mut found = [None; PairKind::MAX_POLYNOMIALS];
         // With wider bounds, more coefficients count as round-off, so the floors do not apply.
         if self.sensitivity.is_some() || self.context.looks_closely {
@@ -62,7 +62,7 @@ impl Follower<'_> {
 }
 
 /// Returns an upper bound of the round-off for the largest positions and displacements, or infinity if it is unknown.
-fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> Floors {
+fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFloors {
     let (mut size, mut shift) = (0.0_f64, 0.0_f64);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let mut widen = |place: Vec2| {

@@ -19,11 +19,11 @@ use crate::{
     contacts::Contacts,
     finding::{Finding, FindingDetail, Part},
 };
-use clearly_right::Floors;
+use clearly_right::RoundOffFloors;
 use decisions::OwnImpact;
 use fosssim_model::{
     scene::Collision,
-    sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, Steer, Zone},
+    sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, StepController, Zone},
 };
 use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial, vector::same_bits};
 
@@ -70,7 +70,7 @@ pub(super) struct Follower<'a> {
     /// Whether disputed calls are decided like the reference.
     prefers_own: bool,
     /// The floors of round-off for polynomials at the positions of the pass, computed on demand.
-    floors: Option<Floors>,
+    floors: Option<RoundOffFloors>,
 }
 
 /// The data of a call between its polynomials and its decision.
@@ -230,12 +230,12 @@ impl Observer for Follower<'_> {
         }
     }
 
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(self)
     }
 }
 
-impl Steer for Follower<'_> {
+impl StepController for Follower<'_> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         self.call = CurrentCall::default();
         let Some(index) = self.next else { return };

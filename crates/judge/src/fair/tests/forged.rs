@@ -6,7 +6,7 @@ use crate::{
 };
 use fosssim_model::{
     scene::{Collision, Scene, original},
-    sim::{Decision, Detection, Observer, Pair, PairKind, Steer, Steering, Time},
+    sim::{Decision, Detection, Observer, Pair, PairKind, Steering, StepController, Time},
     trace::{Frame, PolynomialLog},
 };
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
@@ -36,7 +36,7 @@ fn fair(scene: &Scene, trace: &[u8]) -> Judgement {
 /// step goes on with the rest.
 struct Factors<F>(F, usize);
 
-impl<F: FnMut(usize, usize) -> i32> Steer for Factors<F> {
+impl<F: FnMut(usize, usize) -> i32> StepController for Factors<F> {
     fn solve(&mut self, _: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
         for (number, polynomial) in polynomials.iter_mut().enumerate() {
             let divisor = (0..(self.0)(number, self.1)).fold(1.0, |power, _| 2.0 * power);
@@ -108,7 +108,7 @@ const TOUCH: &str = r#"<scene><duration time="1"/><integrator type="explicit-eul
 /// Answers the first decision that it is asked about as it likes.
 struct Answer(Option<Decision>);
 
-impl Steer for Answer {
+impl StepController for Answer {
     fn decide(&mut self, _: Pair, decision: Decision) -> Decision {
         self.0.take().unwrap_or(decision)
     }
@@ -327,7 +327,7 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
         <collision type="continuous-time" COR="1"/>{balls}</scene>"#
     ));
     struct Push;
-    impl Steer for Push {
+    impl StepController for Push {
         fn solve(&mut self, _: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
             polynomials[1] = Polynomial::trimmed(&[1.0]);
         }
@@ -409,7 +409,7 @@ const STRETCHED: &str = r#"<scene><duration time="0.4"/><integrator type="explic
 #[test]
 fn what_is_gone_is_no_mixture_of_forms() {
     struct Edges(f64);
-    impl Steer for Edges {
+    impl StepController for Edges {
         fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
             for polynomial in polynomials.iter_mut().filter(|_| pair.kind == PairKind::ParticleEdge) {
                 let scaled: Vec<f64> = polynomial.coefficients().iter().map(|c| self.0 * c).collect();
@@ -485,7 +485,7 @@ fn fixed_particles_are_not_moved_by_a_response() {
 /// Decides about the pair with the edge as the reference does not.
 struct OtherWay;
 
-impl Steer for OtherWay {
+impl StepController for OtherWay {
     fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
         match decision {
             _ if pair.kind != PairKind::ParticleEdge => decision,

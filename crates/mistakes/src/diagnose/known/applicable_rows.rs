@@ -33,7 +33,7 @@ fn reaches_apart(row: &Row) -> bool {
 }
 
 /// Returns whether the mistake is in forces, integrators, penalties or simple responses.
-pub(super) const fn is_of_states(row: &Row) -> bool {
+pub(super) const fn is_state_mistake(row: &Row) -> bool {
     matches!(row.mistake, Mistake::Step(_))
 }
 
@@ -45,7 +45,7 @@ pub fn can_show(scene: &Scene, row: &Row) -> bool {
 }
 
 fn is_applicable(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
-    if is_of_states(row) {
+    if is_state_mistake(row) {
         return shows_in_states(scene, counts, row);
     }
     let has_stage = match (&scene.collision, row.area) {

@@ -72,7 +72,7 @@ pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     let (hopeless, open): (Vec<Suspect>, Vec<Suspect>) =
         open.into_iter().partition(|suspect| suspect.candidates.is_empty());
     explanations.extend(open.iter().map(Suspect::explanation));
-    explanations.extend(explain_none(&hopeless));
+    explanations.extend(summarize_unexplained(&hopeless));
     explanations.extend(explain_missing(samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
     explanations
@@ -211,7 +211,7 @@ fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     all.extend(slips::collect_candidates(study));
     all.extend(terms::collect_candidates(study));
     // A guess that reproduces no more than the right formula is not an explanation.
-    let plain = study.plainly_right();
+    let plain = study.count_reproduced();
     all.retain(|guess| guess.reproduced > plain);
     all.sort_by(|one, two| two.reproduced.cmp(&one.reproduced).then(one.cost.total_cmp(&two.cost)));
     all
@@ -251,7 +251,7 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
 }
 
 /// Returns one explanation with all unexplained polynomials.
-fn explain_none(hopeless: &[Suspect]) -> Option<Explanation> {
+fn summarize_unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
     let first = hopeless.first()?;
     let lines = |suspect: &Suspect| {
         let subject = (hopeless.len() > 1).then_some(suspect.study.subject);

@@ -78,7 +78,7 @@ impl DesignMatrix {
         let of_triples = if all > MAX_FOR_TRIPLES { self.likely.min(MAX_FOR_TRIPLES) } else { all };
         for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely.min(MAX_FOR_QUADRUPLES))] {
             let mut accepted = Vec::new();
-            problem.search(&mut Partial::default(), 0, among, size, &mut |chosen| {
+            problem.search(&mut PartialSelection::default(), 0, among, size, &mut |chosen| {
                 if let Some(support) = self.solve(chosen, &fits)
                     && accept(&support)
                 {
@@ -151,7 +151,7 @@ struct Problem<'a> {
 /// An incomplete choice of columns: their indices, the Cholesky factor row by row, the forward-substituted target, and
 /// the explained part of its squared length.
 #[derive(Default)]
-struct Partial {
+struct PartialSelection {
     chosen: Vec<usize>,
     rows: Vec<[f64; 4]>,
     forward: Vec<f64>,
@@ -160,7 +160,14 @@ struct Partial {
 
 impl Problem<'_> {
     /// Reports all choices of `size` columns among the first `among` that leave no residual.
-    fn search(&self, partial: &mut Partial, from: usize, among: usize, size: usize, found: &mut impl FnMut(&[usize])) {
+    fn search(
+        &self,
+        partial: &mut PartialSelection,
+        from: usize,
+        among: usize,
+        size: usize,
+        found: &mut impl FnMut(&[usize]),
+    ) {
         let count = self.columns.indices.len();
         let depth = partial.chosen.len();
         for column in from..among {

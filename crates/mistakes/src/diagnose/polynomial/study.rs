@@ -150,7 +150,7 @@ impl<'a> PolynomialStudy<'a> {
     }
 
     /// Returns the number of samples that the right formula reproduces within the tolerance of a guess.
-    pub fn plainly_right(&self) -> usize {
+    pub fn count_reproduced(&self) -> usize {
         let holds =
             |case: &&Case| matches(&case.expected, case.logged, case.scale) || fits_at_any_scale(&case.expected, case);
         self.cases.iter().filter(holds).count()

@@ -7,7 +7,7 @@ use super::{reference::Reference, source::StepFrames};
 use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{ByKind, Decision, Observer, Pair, PairKind, PairMotion, Pass, Resume, Stage, State, Steer, pairs},
+    sim::{ByKind, Decision, Observer, Pair, PairKind, PairMotion, Pass, Resume, Stage, State, StepController, pairs},
     trace::{Layout, LenientFrame, PolynomialLog},
 };
 use fosssim_num::polynomial::Polynomial;
@@ -49,11 +49,11 @@ const MAX_RIGHT: usize = 200;
 /// The samples of a trace, collected step by step; scenes without polynomials have none.
 pub struct Detections<'a> {
     scene: &'a Scene,
-    kinds: ByKind<OfKind>,
+    kinds: ByKind<KindSamples>,
 }
 
 #[derive(Default)]
-struct OfKind {
+struct KindSamples {
     samples: Vec<Sample>,
     wrong: usize,
     right: usize,
@@ -90,7 +90,7 @@ struct Gatherer<'a> {
     step: u32,
     mid: &'a LenientFrame,
     log: &'a PolynomialLog,
-    kinds: &'a mut ByKind<OfKind>,
+    kinds: &'a mut ByKind<KindSamples>,
     /// The number of logged polynomials of each detection, usually all.
     sizes: Option<ByKind<usize>>,
     /// The number of the pass, and the index of its next polynomial in the list; `None` in passes that are not
@@ -149,12 +149,12 @@ impl Observer for Gatherer<'_> {
         };
     }
 
-    fn as_steer(&mut self) -> Option<&mut dyn Steer> {
+    fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(self)
     }
 }
 
-impl Steer for Gatherer<'_> {
+impl StepController for Gatherer<'_> {
     fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
         let (Some((pass, index)), Some(sizes)) = (self.next, self.sizes) else { return };
         let size = sizes[pair.kind];

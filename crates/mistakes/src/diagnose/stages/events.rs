@@ -6,7 +6,7 @@ use crate::diagnose::sampling::{
 use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, Stage, State, Steer, Steering, Time, Zone},
+    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, Stage, State, Steering, StepController, Time, Zone},
     trace::PolynomialLog,
 };
 use fosssim_num::{bounded::BoundedValue, vector::Vec2};
@@ -111,7 +111,7 @@ const APPROACH_INDEX: usize = 3;
 /// Steers a step so that nothing collides.
 struct NoCollisions;
 
-impl Steer for NoCollisions {
+impl StepController for NoCollisions {
     fn decide(&mut self, _pair: Pair, _decision: Decision) -> Decision {
         Decision::Miss { time: Time::Found(f64::INFINITY) }
     }

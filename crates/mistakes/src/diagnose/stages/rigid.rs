@@ -39,7 +39,10 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     for facts in facts {
         moved.compare(scene, facts);
     }
-    moved.explain().or_else(|| before_failsafe(scene, &wrong)).or_else(|| explain_rounds(scene, &wrong))
+    moved
+        .explain()
+        .or_else(|| explain_positions_before_failsafe(scene, &wrong))
+        .or_else(|| explain_rounds(scene, &wrong))
 }
 
 /// Returns whether the first geometric pass differs only by round-off. It is right for the positions after the rounds,
@@ -74,7 +77,7 @@ fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
 
 /// Returns the explanation of a second geometric pass that uses the positions before the failsafe, although the
 /// failsafe moves a zone.
-fn before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
+fn explain_positions_before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_so = |facts: &&&StepFacts| {
         let Some((_, middle)) = facts.middles() else { return false };
         let (middle, end) = (&middle.state.positions, &facts.actual.end.state.positions);

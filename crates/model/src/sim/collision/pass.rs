@@ -178,7 +178,7 @@ impl Detector {
         let mut polynomials = motion.list();
         let polynomials = &mut polynomials[..pair.kind.polynomials()];
         polynomials.iter_mut().for_each(Polynomial::trim);
-        if let Some(steer) = context.observer.as_steer() {
+        if let Some(steer) = context.observer.as_controller() {
             steer.solve(pair, context.q_start, context.q_end, polynomials);
         }
         let time = time_of_impact(self.search, &mut self.counts, self.step, pair, polynomials)?;
@@ -192,7 +192,7 @@ impl Detector {
         let PassContext { pass, bodies, q_start, ref q_end, ref mut observer, .. } = *context;
         let decision = match observer.wanted_pairs() {
             WantedPairs::Calls => {
-                let decision = observer.as_steer().map_or(decision, |steer| steer.decide(pair, decision));
+                let decision = observer.as_controller().map_or(decision, |steer| steer.decide(pair, decision));
                 observer.observe_detection(&Detection {
                     pass,
                     pair,

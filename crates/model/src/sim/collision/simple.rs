@@ -95,7 +95,7 @@ impl<O: Observer> RunningPass<'_, O> {
     ) {
         let pair = pair(kind, first, second);
         let decision = normal.map_or(Decision::Miss { time: Time::None }, |normal| Decision::Hit { time: 0.0, normal });
-        let decision = self.observer.as_steer().map_or(decision, |steer| steer.decide(pair, decision));
+        let decision = self.observer.as_controller().map_or(decision, |steer| steer.decide(pair, decision));
         let (pass, q_start, q_end, velocities) = (self.pass, self.q_start, self.x, &*self.v);
         self.observer.observe_detection(&Detection {
             pass,

@@ -9,7 +9,7 @@ mod implicit;
 mod linearized;
 mod system;
 
-use super::{bodies::Bodies, forces::Forces, observer::Steer, state::State, step_error::StepError};
+use super::{bodies::Bodies, forces::Forces, observer::StepController, state::State, step_error::StepError};
 use crate::scene::{Integrator, Scene};
 use fosssim_num::linear::Workspace;
 use nalgebra::DMatrix;
@@ -116,7 +116,7 @@ impl Stepper {
         bodies: &'a Bodies,
         forces: &'a mut Forces,
         state: &mut State,
-        steer: Option<&'a mut dyn Steer>,
+        steer: Option<&'a mut dyn StepController>,
     ) -> Result<(), StepError> {
         let h = self.time_step;
         match (self.kind, self.implicit.as_deref_mut()) {

@@ -1,6 +1,6 @@
 //! The system matrix of the implicit integrators (simulation.md 4, system matrix).
 use super::ImplicitScratch;
-use crate::sim::{bodies::Bodies, forces::Forces, observer::Steer};
+use crate::sim::{bodies::Bodies, forces::Forces, observer::StepController};
 use fosssim_num::linear;
 use nalgebra::DMatrix;
 
@@ -13,7 +13,7 @@ pub(super) struct System<'a> {
     /// The time step.
     pub h: f64,
     /// Receives each matrix before it is solved, and may replace it.
-    pub steer: Option<&'a mut dyn Steer>,
+    pub steer: Option<&'a mut dyn StepController>,
 }
 
 impl System<'_> {

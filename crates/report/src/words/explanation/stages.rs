@@ -50,7 +50,7 @@ fn describe_fault(fault: &StageFault) -> String {
         }
         StageFault::FirstRound => "the polynomials of the first round are right, but not the state after it",
         StageFault::LaterRounds => {
-            "isolated contacts of the first round are resolved rightly, but the state after the whole round is wrong"
+            "isolated contacts of the first round are resolved correctly, but the state after the whole round is wrong"
         }
         StageFault::RoundsOfPrediction => {
             "rounds after the first one detect on the predicted positions again, not on those after the preceding \
@@ -86,9 +86,9 @@ fn describe_change(wrong: &WrongChange) -> String {
     let (quantity, other) = match wrong.quantity {
         Quantity::Position => ("positions", "velocities are right, but "),
         Quantity::Velocity if wrong.cause == ChangeCause::Response => {
-            ("velocities", "collisions are found rightly, but ")
+            ("velocities", "collisions are detected correctly, but ")
         }
-        Quantity::Velocity => ("velocities", "positions follow rightly from velocities, but "),
+        Quantity::Velocity => ("velocities", "positions are updated correctly from velocities, but "),
     };
     let axis = match wrong.axis {
         None => "",

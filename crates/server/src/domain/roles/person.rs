@@ -14,7 +14,7 @@ use utoipa::ToSchema;
 
 /// A course, with the role of a person in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
-pub struct CourseOf {
+pub struct CourseMembership {
     /// The course.
     #[serde(flatten)]
     pub course: Course,
@@ -56,7 +56,7 @@ impl Person {
     /// # Errors
     ///
     /// Fails if the database does not answer.
-    pub async fn courses(&self) -> Result<Vec<CourseOf>, Problem> {
+    pub async fn courses(&self) -> Result<Vec<CourseMembership>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let all: i64 = self.account.is_admin.into();
         let statement = "SELECT course.slug, course.title, coalesce(member.role, 'admin') AS role FROM course
@@ -64,7 +64,7 @@ impl Person {
             WHERE member.role IS NOT NULL OR ? = 1
             ORDER BY course.slug";
         let rows = transaction.rows(statement, values![self.account.id, all]).await?;
-        let read = |row: &Row| Ok(CourseOf { course: Course::from_row(row)?, role: row.text("role")? });
+        let read = |row: &Row| Ok(CourseMembership { course: Course::from_row(row)?, role: row.text("role")? });
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }
 

@@ -127,7 +127,7 @@ impl Staff {
         let campaign = transaction.one(statement, values).await?.int("id")?;
         let of_regrade = Assignment { settings, ..assignment };
         let count = campaign::enqueue_missing(&mut transaction, campaign, &of_regrade).await?;
-        let text = format!("regrade {campaign} of {count} submissions: {reason}");
+        let text = format!("regrade {campaign}, submissions: {count}; {reason}");
         self.note(&mut transaction, "regrade", Some(of_regrade.id), &text).await?;
         self.app.0.notifier.commit(transaction).await?;
         self.show_regrade(slug, campaign, None).await

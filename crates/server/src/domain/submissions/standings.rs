@@ -143,13 +143,13 @@ impl Staff {
 
 /// The best attempt of a student so far.
 #[derive(Clone)]
-struct Best {
+struct BestAttempt {
     id: i64,
     points: Option<String>,
     is_late: bool,
 }
 
-impl Best {
+impl BestAttempt {
     /// Returns the best of several attempts, which are given oldest first as `ID TIME POINTS`, separated by commas.
     fn from_list(
         list: &str,
@@ -212,9 +212,9 @@ async fn read(
         WHERE submission.assignment = ? GROUP BY submission.account";
     let policy = assignment.settings.late_policy();
     let rows = transaction.rows(statement, values![id]).await?;
-    let attempts: HashMap<i64, (usize, Option<Best>)> = collect_by_id(&rows, |row| {
+    let attempts: HashMap<i64, (usize, Option<BestAttempt>)> = collect_by_id(&rows, |row| {
         let account = row.int("account")?;
-        let best = Best::from_list(&row.text("attempts")?, &by_hand, &policy, own_due.get(&account).copied());
+        let best = BestAttempt::from_list(&row.text("attempts")?, &by_hand, &policy, own_due.get(&account).copied());
         Ok((account, (usize::try_from(row.int("n")?).unwrap_or(0), best)))
     })?;
     let counted: Vec<i64> = attempts.values().filter_map(|(_, best)| Some(best.as_ref()?.id)).collect();
@@ -226,7 +226,7 @@ async fn read(
     let mut standings = BTreeMap::new();
     for row in people.iter().filter(|row| row.int("id").is_ok_and(|id| !staff.contains(&id))) {
         let (submissions, best) = attempts.get(&row.int("id")?).cloned().unwrap_or_default();
-        let counts = best.map(|Best { id, points, is_late }| {
+        let counts = best.map(|BestAttempt { id, points, is_late }| {
             let grade = grades.get(&id);
             Ok::<_, DbError>(CountedSubmission {
                 id,
@@ -259,7 +259,8 @@ mod tests {
     fn the_best_attempt_counts_and_the_later_of_equals() {
         let by_hand = HashMap::from([(4, "9".to_owned())]);
         let policy = LatePolicy { due_at: Some(100), late_days: 1, late_percent: 50, ..LatePolicy::default() };
-        let best = |list: &str| Best::from_list(list, &by_hand, &policy, None).map(|best| (best.id, best.points));
+        let best =
+            |list: &str| BestAttempt::from_list(list, &by_hand, &policy, None).map(|best| (best.id, best.points));
         let points = |text: &str| Some(text.to_owned());
         assert_eq!(best("2 50 7.5,1 50 7.5"), Some((2, points("7.5"))), "in whatever order they come");
         assert_eq!(best("1 50 8,2 50 7,3 50 -"), Some((1, points("8"))), "one that waits counts for nothing yet");

@@ -124,7 +124,7 @@ impl Member {
         artifact: &Artifact,
     ) -> Result<Option<Submission>, Problem> {
         if let Some(key) = upload.key
-            && let Some(submission) = self.by_key(transaction, key, assignment, artifact).await?
+            && let Some(submission) = self.find_upload_by_key(transaction, key, assignment, artifact).await?
         {
             return Ok(Some(submission));
         }
@@ -135,7 +135,7 @@ impl Member {
         Ok(None)
     }
 
-    async fn by_key(
+    async fn find_upload_by_key(
         &self,
         transaction: &mut Transaction,
         key: &str,

@@ -1,7 +1,7 @@
 //! The API of courses and their members.
 use super::super::input::{AddressParts, Body, PlainBody, QueryInput, SeenEvent};
 use crate::{
-    domain::{Admin, Course, CourseOf, Event, EventQuery, Link, MemberInfo, MemberLine, Person, Staff},
+    domain::{Admin, Course, CourseMembership, Event, EventQuery, Link, MemberInfo, MemberLine, Person, Staff},
     problem::{Problem, ensure},
     schema::{Slug, Title},
 };
@@ -81,7 +81,7 @@ answers! { OK:
     post "/api/v1/courses/{course}/members/{login}/link" "courses"
         member_link(staff: Staff, { login }) -> Link: staff.new_link(&login);
     /// Lists the courses of the person who is signed in.
-    get "/api/v1/courses" "courses" courses(person: Person) -> Vec<CourseOf>: person.courses();
+    get "/api/v1/courses" "courses" courses(person: Person) -> Vec<CourseMembership>: person.courses();
     /// Lists the members of a course.
     get "/api/v1/courses/{course}/members" "courses" members(staff: Staff) -> Vec<MemberInfo>: staff.members();
     /// Returns the events of the course, latest first, 200 at a time.

@@ -9,7 +9,7 @@ use super::{
     redirect_to, show, text,
 };
 use crate::{
-    domain::{Course, CourseOf, Member, Person, TokenInfo},
+    domain::{Course, CourseMembership, Member, Person, TokenInfo},
     problem::Problem,
 };
 use askama::Template;
@@ -45,7 +45,7 @@ struct AccountPage<'a> {
     frame: PageFrame,
     person: &'a Person,
     is_connected: bool,
-    courses: Vec<CourseOf>,
+    courses: Vec<CourseMembership>,
     tokens: Vec<TokenInfo>,
     new: Option<String>,
 }

@@ -26,13 +26,13 @@ pub(super) fn describe_change(change: &AttemptChange) -> String {
         let named = scenes[..scenes.len() - more].join(", ");
         if more > 0 { format!("{named} and {more} more") } else { named }
     };
-    let since = format!("Since submission {}", change.since);
+    let since = format!("Since submission {},", change.since);
     match (&change.right[..], &change.wrong[..]) {
         ([], []) => format!("{since} no scene became right, and none wrong."),
         (right, []) if right.len() > MAX_NAMED => format!("{since} {} scenes became right.", right.len()),
-        (right, []) => format!("{since} became right: {}.", list(right)),
+        (right, []) => format!("{since} these became right: {}.", list(right)),
         ([], wrong) => format!("{since} no longer right: {}.", list(wrong)),
-        (right, wrong) => format!("{since} became right: {}. No longer right: {}.", list(right), list(wrong)),
+        (right, wrong) => format!("{since} these became right: {}. No longer right: {}.", list(right), list(wrong)),
     }
 }
 
@@ -44,9 +44,9 @@ mod tests {
     fn a_change_names_few_scenes() {
         let names = |count: usize| (0..count).map(|number| format!("s{number}")).collect::<Vec<_>>();
         let of = |right, wrong| describe_change(&AttemptChange { since: 2, right: names(right), wrong: names(wrong) });
-        assert_eq!(of(0, 0), "Since submission 2 no scene became right, and none wrong.");
-        assert_eq!(of(1, 1), "Since submission 2 became right: s0. No longer right: s0.");
-        assert_eq!(of(110, 0), "Since submission 2 110 scenes became right.");
-        assert_eq!(of(0, 8), "Since submission 2 no longer right: s0, s1, s2 and 5 more.");
+        assert_eq!(of(0, 0), "Since submission 2, no scene became right, and none wrong.");
+        assert_eq!(of(1, 1), "Since submission 2, these became right: s0. No longer right: s0.");
+        assert_eq!(of(110, 0), "Since submission 2, 110 scenes became right.");
+        assert_eq!(of(0, 8), "Since submission 2, no longer right: s0, s1, s2 and 5 more.");
     }
 }

@@ -31,7 +31,7 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     // Which scenes an attempt has changed is told where nothing of both attempts is hidden.
     let page = |by: &Client| by.get(&format!("/c/physics/s/{open}")).expect(200).text();
     assert!(!page(&ada).contains("Since submission") && !page(&ada).contains("Secret"), "{}", page(&ada));
-    let words = "Since submission 1 became right: Secret/scene. No longer right: Group/scene.";
+    let words = "Since submission 1, these became right: Secret/scene. No longer right: Group/scene.";
     assert!(page(&teacher).contains(words), "{}", page(&teacher));
     // Nothing that a student is told changes with what is hidden: not points, counts, verdicts, digests or sizes.
     let other = ada.submit("physics", b"#!grade RTE 7 Secret/scene 1\n");

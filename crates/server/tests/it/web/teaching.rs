@@ -113,7 +113,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     // All attempts on one page, and what each has changed.
     let mended = eve.submit("physics", &program("AC", 90));
     eve.wait_for_grade("physics", mended);
-    let words = "Since submission 1 became right: Group/hard.";
+    let words = "Since submission 1, these became right: Group/hard.";
     assert!(eve.get(&format!("/c/physics/s/{mended}")).expect(200).text().contains(words));
     assert!(teacher.get("/c/physics/a/m1/students/eve").expect(200).text().contains(words));
     check_beside(&teacher, [eve_handed_in, ids[0], mended]);

@@ -3,7 +3,7 @@
 use crate::diagnose::{
     Explanation, explain,
     known::{
-        applicable_rows::{applicable_rows, is_of_states},
+        applicable_rows::{applicable_rows, is_state_mistake},
         find_known,
     },
 };
@@ -76,7 +76,7 @@ fn every_mistake_of_states_is_named_and_taken_for_no_other() {
     for (name, scene) in scenes() {
         let correct = trace(&scene, &[]);
         // A mistake that shows only with the step before is none that one step makes.
-        let is_of_step = |row: &&Row| is_of_states(row) && !row.id.ends_with("not-cleared");
+        let is_of_step = |row: &&Row| is_state_mistake(row) && !row.id.ends_with("not-cleared");
         let rows: Vec<&Row> =
             applicable_rows(&scene).filter(is_of_step).filter(|row| !named.contains(row.id)).collect();
         for row in rows {

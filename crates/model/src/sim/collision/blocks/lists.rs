@@ -40,7 +40,7 @@ pub(super) enum RefreshedBody {
 }
 
 /// Two vectors and a number per lane.
-type Five<S> = (Plane<Lanes<S>>, Plane<Lanes<S>>, Lanes<S>);
+type MotionLanes<S> = (Plane<Lanes<S>>, Plane<Lanes<S>>, Lanes<S>);
 
 impl Lists {
     /// Fills all lists. Returns false if an input is too large or NaN.
@@ -127,7 +127,7 @@ impl Lists {
 
     /// Returns the position, displacement and radius of one particle, in all lanes.
     #[inline(always)]
-    pub fn particle<S: Simd>(&self, simd: S, index: usize) -> Five<S> {
+    pub fn particle<S: Simd>(&self, simd: S, index: usize) -> MotionLanes<S> {
         let [x, y, dx, dy, radius] = &self.particles;
         let position = Plane { x: Lanes::splat(simd, x[index]), y: Lanes::splat(simd, y[index]) };
         let displacement = Plane { x: Lanes::splat(simd, dx[index]), y: Lanes::splat(simd, dy[index]) };
@@ -136,7 +136,7 @@ impl Lists {
 
     /// Returns the motions of the particles from `first` on.
     #[inline(always)]
-    pub fn particles<S: Simd>(&self, simd: S, first: usize) -> Five<S> {
+    pub fn particles<S: Simd>(&self, simd: S, first: usize) -> MotionLanes<S> {
         let [x, y, dx, dy, radius] = &self.particles;
         (plane(simd, x, y, first), plane(simd, dx, dy, first), Lanes::load(simd, &radius[first..]))
     }

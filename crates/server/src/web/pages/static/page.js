@@ -85,7 +85,7 @@ if (form) {
       // A rejection is a page with the reason and the remedy.
       const page = new DOMParser().parseFromString(request.responseText, "text/html");
       const [title, ...words] = [...page.querySelectorAll("main h1, main p")].map((part) => part.textContent.trim());
-      stop(title ? `${title}: ${words.join(". ")}` : `The server answered ${request.status}.`);
+      stop(title ? `${title}: ${words.join(" ")}` : `The server answered ${request.status}.`);
     });
     request.addEventListener("error", () =>
       stop("The connection was interrupted. Submit again; the same upload counts only once."),

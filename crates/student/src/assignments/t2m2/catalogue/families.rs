@@ -168,7 +168,7 @@ const QUANTITY_FAMILY: MistakeFamily = MistakeFamily {
         ("restored by the loop", &[Is("loop-positions-restored"), Is("loop-velocity-restored")]),
         ("of the prediction in each round", &[Is("loop-from-prediction"), Is("loop-predicted-velocities")]),
         ("kept where zones stop", &[Is("failsafe-stop-keeps-position"), Is("failsafe-stop-keeps-velocity")]),
-        ("kept where zones move", &[No("that is the same as an empty failsafe"), Is("failsafe-velocity-kept")]),
+        ("kept where zones move", &[No("identical to an empty failsafe"), Is("failsafe-velocity-kept")]),
     ],
 };
 
@@ -207,7 +207,7 @@ const SUM_FAMILY: MistakeFamily = MistakeFamily {
         (
             "of velocities",
             &[
-                No("positions are at hand"),
+                No("positions are already available"),
                 Is("failsafe-momentum-velocity"),
                 Is("failsafe-angular-velocity"),
                 No("it has no motion"),
@@ -216,7 +216,7 @@ const SUM_FAMILY: MistakeFamily = MistakeFamily {
         (
             "about the origin",
             &[
-                No("it is the center"),
+                No("the point is the center itself"),
                 No("it is about no point"),
                 Is("failsafe-about-origin"),
                 Is("failsafe-inertia-about-origin"),
