@@ -118,14 +118,14 @@ family!(MovedZone, 4, "the failsafe moves a zone" {
     Size::More with Links::{One},
 ]);
 
-family!(ContinuousStep, 5, "a step with continuous-time" {
+family!(ContinuousStep, 5, "a continuous-time step" {
     hits: Hits,
     restitution: Restitution,
     forces: Forces,
     integrator: Integrator,
 } never never![]);
 
-family!(HybridStep, 6, "a step with hybrid" {
+family!(HybridStep, 6, "a hybrid step" {
     end: LoopEnd,
     zones: ZoneCount,
     rounds: Rounds,

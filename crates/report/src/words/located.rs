@@ -52,7 +52,7 @@ mod tests {
             failing: FailureKind::Crash,
             contents: vec![
                 content("the failsafe moves a zone", None),
-                content("a step with hybrid", Some(["zones", "one"])),
+                content("a hybrid step", Some(["zones", "one"])),
             ],
             failed: 24,
             with: 24,
@@ -63,8 +63,8 @@ mod tests {
         assert_eq!(
             describe_located(&found),
             "All 24 scenes in which the failsafe moves a zone crash, and none of the 61 others. In the first of them, \
-             GeometricTests/chain, the last complete record is that of step 14. Equally likely: those with a step of \
-             hybrid (zones: one)."
+             GeometricTests/chain, the last complete record is that of step 14. Equally likely: those with a hybrid \
+             step (zones: one)."
         );
         let some = LocatedFailure {
             failing: FailureKind::Several,
