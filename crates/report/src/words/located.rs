@@ -33,7 +33,7 @@ pub fn describe_located(found: &LocatedFailure) -> String {
 fn describe_place(content: &Content) -> String {
     let Content { family, value } = content;
     let value = value.as_ref().map(|[axis, value]| format!(" ({axis}: {value})"));
-    let is_step = family.starts_with("a step ");
+    let is_step = family.ends_with(" step");
     format!("{} {family}{}", if is_step { "with" } else { "in which" }, value.unwrap_or_default())
 }
 
