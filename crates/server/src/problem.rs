@@ -25,8 +25,8 @@ pub struct Problem {
 /// Declares the reasons for rejections: the status, a name for programs, a title, the detail, and the remedy. A detail
 /// or a remedy that the caller gives is an argument.
 macro_rules! problems {
-    ($($(#[doc = $doc:literal])* $name:ident($($argument:ident: $type:ty),*): $status:literal, $kind:literal, $title:literal,
-        $detail:expr, $remedy:expr;)*) => {
+    ($($(#[doc = $doc:literal])* $name:ident($($argument:ident: $type:ty),*):
+        $status:literal, $kind:literal, $title:literal, $detail:expr, $remedy:expr;)*) => {
         impl Problem {
             $($(#[doc = $doc])*
             pub fn $name($($argument: $type),*) -> Self {

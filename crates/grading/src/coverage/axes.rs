@@ -63,5 +63,6 @@ axis!(Rounds, "rounds of zones": None = "none", One = "1", Two = "2", More = "3 
 axis!(Why, "why not": Parting = "they part", BesideFirst = "beside the first end", BesideSecond = "beside the second \
     end",
     Late = "too late", Never = "they never meet");
-axis!(Kind, "pair": Particles = "two particles", Edge = "a particle and an edge", HalfPlane = "a particle and a half-plane");
+axis!(Kind, "pair": Particles = "two particles", Edge = "a particle and an edge",
+    HalfPlane = "a particle and a half-plane");
 axis!(SomeFixed, "fixed": None = "none", Some = "some", All = "all");

@@ -53,7 +53,8 @@ mod tests {
     fn each_call_labels_its_polynomials() {
         let xml = br#"<scene><duration time="0.1"/><integrator type="explicit-euler" dt="0.1"/>
             <collision type="continuous-time"/><particle m="1" px="0" py="0" vx="0" vy="0" fixed="0"/>
-            <particle m="1" px="5" py="0" vx="0" vy="0" fixed="0"/><particle m="1" px="9" py="0" vx="0" vy="0" fixed="0"/>
+            <particle m="1" px="5" py="0" vx="0" vy="0" fixed="0"/>
+            <particle m="1" px="9" py="0" vx="0" vy="0" fixed="0"/>
             <edge i="0" j="1"/></scene>"#;
         let scene = original::read(xml).unwrap().scene;
         let before = Simulation::new(&scene, RootSearch::WhereNeeded).state().clone();

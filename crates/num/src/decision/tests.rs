@@ -330,7 +330,10 @@ proptest! {
     /// Sizes from the subnormal numbers to the largest: overflow and underflow never make a wrong decision.
     #[test]
     fn extreme_sizes_are_decided_alike(
-        lists in prop::collection::vec(prop::collection::vec(number(1070).prop_filter("finite", |value| value.is_finite()), 1..=6), 1..=3),
+        lists in prop::collection::vec(
+            prop::collection::vec(number(1070).prop_filter("finite", |value| value.is_finite()), 1..=6),
+            1..=3,
+        ),
         scale in 0..1000_i32,
     ) {
         let power = f64::from_bits(u64::try_from(1023 - scale).unwrap_or(0) << 52);

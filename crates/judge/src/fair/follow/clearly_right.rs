@@ -131,7 +131,8 @@ mod tests {
         <particle m="2" px="11" py="0.1" vx="0.1" vy="13" fixed="0" radius="0.2"/>
         <particle m="1" px="10.4" py="0.5" vx="0.2" vy="-2" fixed="0" radius="0.1"/>
         <particle m="1" px="13" py="7" vx="-0.3" vy="-2" fixed="1" radius="0.1"/>
-        <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-3" nx="1" ny="2"/><halfplane px="2" py="0" nx="1" ny="0"/>
+        <edge i="0" j="1" radius="0.1"/>
+        <halfplane px="0" py="-3" nx="1" ny="2"/><halfplane px="2" py="0" nx="1" ny="0"/>
     </scene>"#;
 
     /// The minimum ratio of the floors to the round-off.
