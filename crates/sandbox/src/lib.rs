@@ -18,7 +18,7 @@
 //! something behind, its keeper serves no other run.
 //!
 //! The sandbox never trusts a path that the program could change, never reads a result while the program runs, and
-//! never continues silently if a required layer is missing ([`Backend::best`] fails).
+//! never continues silently if a required layer is missing ([`Backend::with_all_layers`] fails).
 //!
 //! ```no_run
 //! use fosssim_sandbox::{Backend, Job, Supervisor};

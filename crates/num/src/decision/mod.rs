@@ -18,7 +18,7 @@
 //! It remains to decide two lists without errors. `range` rejects them by signs and by Bernstein coefficients, `pieces`
 //! by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, section
 //! 3.3; Farouki, *The Bernstein polynomial basis: a centennial retrospective*, CAGD 29, 2012), and the rest is decided
-//! by integer arithmetic ([`decide_exactly`]), which always has a result.
+//! by integer arithmetic (`exact`), which always has a result.
 //!
 //! The rules, and their differences from the original, are as follows. Zeros at which a polynomial only touches zero
 //! from above do not interrupt its positive set (root-finder.md 15.4); sets that meet in one time only do meet (17.11);
