@@ -2,6 +2,8 @@
 //! developers.
 #![forbid(unsafe_code)]
 
+use fosssim_oracle::sample;
+
 fn main() -> std::process::ExitCode {
-    fosssim_oracle::sample::main(std::env::args_os(), None)
+    sample::main(std::env::args_os(), sample::pin::pinned_mistake())
 }

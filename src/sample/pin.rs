@@ -4,14 +4,13 @@
 //! The program has a reserved place for the mistake's id, which is filled in the copy. The copy therefore need not read
 //! any file, which the sandbox might not allow.
 
+use crate::sandbox::MARK_BACKWARDS;
+
 /// The id in a copy that makes no mistake. Only the demo creates such a copy, and removes it.
 pub const RIGHT_ID: &str = "right";
 
 /// The number of bytes for the id, or for several ids separated by commas; the rest is zero.
 const ID_BYTES: usize = 256;
-/// The bytes before the id, by which the place is found. They are stored backwards, so that they are in the right order
-/// only in the place itself.
-const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
 /// The number of bytes of the place.
 const PLACE_BYTES: usize = MARK_BACKWARDS.len() + ID_BYTES;
 
@@ -48,7 +47,7 @@ fn read(place: &Place) -> Option<&str> {
 /// Writes a mistake's id into a copy of this program; `None` if the program has no place, or the id is too long.
 #[must_use]
 pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
-    let mut mark = MARK_BACKWARDS;
+    let mut mark = std::hint::black_box(MARK_BACKWARDS);
     mark.reverse();
     let mut found = program.windows(mark.len()).enumerate().filter(|(_, window)| *window == mark).map(|(at, _)| at);
     let (Some(at), None) = (found.next(), found.next()) else { return None };

@@ -1,6 +1,6 @@
 // What the browser tests share: the browser, a page that is opened with everything that it complains of, and axe-core.
 import { strict as assert } from "node:assert";
-import { readFileSync } from "node:fs";
+import { readFileSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 import { pathToFileURL } from "node:url";
@@ -23,6 +23,13 @@ export const launch = () =>
       "--disable-sync",
     ],
   });
+
+// Writes a program like a student's: the sample without the mark by which the grader knows its own programs.
+export function writeSample(path, folder = programs) {
+  const bytes = readFileSync(join(folder, "fosssim-sample"));
+  bytes.write("FOSSSIM", bytes.indexOf("fosssim-sample, with mistake id \0"));
+  writeFileSync(path, bytes, { mode: 0o755 });
+}
 
 // A page, and what it complains of: errors, warnings, and every request that leaves the disk.
 export async function opened(browser, html, { scheme = "light", script = true, hash = "" } = {}) {

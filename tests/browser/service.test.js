@@ -2,12 +2,13 @@
 // FOSSSIM_BIN names the folder with fosssim-oracle, fosssim-server and fosssim-sample; CHROMIUM the browser.
 import { strict as assert } from "node:assert";
 import { spawn, spawnSync } from "node:child_process";
-import { copyFileSync, linkSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
+import { linkSync, mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { createRequire } from "node:module";
 import { join, resolve } from "node:path";
 import { createInterface } from "node:readline";
 import { after, before, test } from "node:test";
 import { chromium } from "playwright-core";
+import { writeSample } from "./browser.js";
 
 const root = resolve(import.meta.dirname ?? new URL(".", import.meta.url).pathname, "../..");
 const programs = process.env.FOSSSIM_BIN ?? join(root, "target/debug");
@@ -17,11 +18,11 @@ const sandbox = spawnSync(join(programs, "fosssim-oracle"), ["doctor"]).status =
 let browser, folder, server, address, link;
 
 before(async () => {
-  // Beside the programs, so that links will do. The sample is not beside this grader, which would refuse a copy of it.
+  // Beside the programs, so that links will do.
   folder = mkdtempSync(join(programs, "service-"));
   for (const name of ["fosssim-oracle", "fosssim-server"]) linkSync(join(programs, name), join(folder, name));
   for (const name of ["upload", "suite"]) mkdirSync(join(folder, name));
-  copyFileSync(join(programs, "fosssim-sample"), join(folder, "upload/fosssim-sample.pp-contact-reversed"));
+  writeSample(join(folder, "upload/fosssim-sample.pp-contact-reversed"));
   const suite =
     'schema = 1\nname = "One"\nhints = "full"\n[[group]]\nname = "Contacts"\nscenes = ["asset:ContinuousTimeTests/head-on-equal*"]\npoints = 10\n';
   writeFileSync(join(folder, "suite/suite.toml"), suite);

@@ -1,5 +1,5 @@
 //! The programs in `examples`, each with the input that its first line asks for.
-use crate::workspace::{Workspace, root};
+use crate::workspace::{Workspace, root, submission};
 use fosssim_oracle::{sandbox::Supervisor, suite::library};
 use fosssim_testing::{Need, skip};
 
@@ -50,9 +50,7 @@ fn a_folder_of_programs_is_graded() {
         skip(Need::Sandbox, "programs can't be run safely");
         return;
     }
-    let sample = env!("CARGO_BIN_EXE_fosssim-sample");
-    std::fs::create_dir(workspace.path("class")).expect("a folder");
-    std::fs::copy(sample, workspace.path("class/right")).expect("a copy");
+    workspace.write("class/right", submission("right"));
     workspace.write("class/wrong", "no program");
     workspace.write(
         "suite.toml",

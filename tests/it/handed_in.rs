@@ -66,6 +66,11 @@ fn the_program_itself_earns_no_points() {
     symlink(oracle, workspace.path("fosssim-sample")).expect("a link");
     let linked = workspace.run(["grade", "fosssim-sample", "--suite", "suite.toml"]);
     assert!(linked.out().contains("the grader's own program"), "{}", linked.shown());
+    // Another build of the sample has other bytes.
+    let sample = fs::read(env!("CARGO_BIN_EXE_fosssim-sample")).expect("the sample");
+    workspace.write("class/ada/FOSSSim", [&sample[..], b"x"].concat());
+    let other = workspace.run(["grade", "class/ada/FOSSSim", "--suite", "suite.toml"]);
+    assert!(other.out().contains("the grader's own program"), "{}", other.shown());
 }
 
 #[test]

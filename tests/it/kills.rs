@@ -1,6 +1,6 @@
 //! Graders that are killed at any moment, and graders that cannot see each other: nothing is lost, done twice,
 //! different or left behind. `scripts/kill-test` does the same many times more.
-use crate::workspace::{Run, Workspace, finish};
+use crate::workspace::{Run, Workspace, finish, submission};
 use fosssim_testing::{Need, skip};
 use std::{
     collections::BTreeSet,
@@ -26,10 +26,9 @@ fn class() -> Option<Workspace> {
     }
     fs::create_dir(workspace.path("tmp")).expect("a folder");
     workspace.write("suite.toml", SUITE);
-    let sample = fs::read(env!("CARGO_BIN_EXE_fosssim-sample")).expect("the sample");
+    let sample = submission("right");
     for number in 0..SUBMISSIONS {
         let folder = format!("class/student{number}");
-        // Not the sample's very bytes, which are refused.
         workspace.write(format!("{folder}/ready"), [&sample[..], format!("{}", number / 2).as_bytes()].concat());
         let build = "(setsid sleep 987654 &)\ncp ready FOSSSim && chmod 755 FOSSSim\n";
         workspace.write(format!("{folder}/build.sh"), build);

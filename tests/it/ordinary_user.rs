@@ -1,5 +1,5 @@
 //! Graders of ordinary users and on kernels that lack something, tried by root with the program alone.
-use crate::workspace::{Run, Workspace, finish};
+use crate::workspace::{Run, Workspace, finish, submission};
 use fosssim_testing::{Need, skip};
 use std::{
     fs::{self, Permissions},
@@ -52,9 +52,7 @@ fn open_to_all() -> Option<Workspace> {
     }
     workspace.write("suite.toml", SUITE);
     fs::copy(env!("CARGO_BIN_EXE_fosssim-oracle"), workspace.path("oracle")).expect("a copy");
-    let mut sample = fs::read(env!("CARGO_BIN_EXE_fosssim-sample")).expect("the sample");
-    sample.push(b'\n');
-    workspace.write("class/right", sample);
+    workspace.write("class/right", submission("right"));
     set_mode(&workspace, "class/right", 0o755);
     for open in ["", "class"] {
         set_mode(&workspace, open, 0o777);

@@ -1,5 +1,8 @@
 //! A grading that is shared out among machines: put together, its results are those of a grading in one go.
-use crate::{grading::workspace, workspace::Workspace};
+use crate::{
+    grading::workspace,
+    workspace::{Workspace, submission},
+};
 use std::fs;
 
 const MISTAKES: [(&str, &str); 4] = [
@@ -11,18 +14,13 @@ const MISTAKES: [(&str, &str); 4] = [
 
 /// Six submissions: four with a mistake, a right one, and one that does nothing.
 fn class(workspace: &Workspace) {
-    let sample = env!("CARGO_BIN_EXE_fosssim-sample");
     fs::create_dir_all(workspace.path("class")).expect("a folder");
     for (name, mistake) in MISTAKES {
         let program = format!("class/{name}");
         let made = workspace.run(["demo", "--mistake", mistake, "--program", &program]);
         assert_eq!(made.code, Some(0), "{}", made.shown());
     }
-    fs::copy(sample, workspace.path("class/eve")).expect("a copy");
-    // Not the sample's very bytes, which are refused.
-    let mut bytes = workspace.read("class/eve");
-    bytes.push(b'\n');
-    fs::write(workspace.path("class/eve"), bytes).expect("written");
+    workspace.write("class/eve", submission("right"));
     fs::copy("/bin/true", workspace.path("class/frank")).expect("a copy");
 }
 

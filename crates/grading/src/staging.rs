@@ -145,20 +145,18 @@ impl StagedProgram {
 /// Copies an open program, unless it is the grader or cannot be started.
 pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result<StagedProgram, String> {
     let metadata = file.metadata().map_err(describe_error_at(path))?;
-    let mut room = MAX_FOLDER_BYTES;
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
     // A modified copy of the grader with this name would also write right traces.
     let is_oracle = name.as_encoded_bytes().starts_with(b"FOSSSimOracle");
-    let why = match copy_as(name, file, path, &mut room) {
-        Ok(staged)
-            if !is_oracle && !is_own(MAX_FOLDER_BYTES - room, &staged.digest, (metadata.dev(), metadata.ino())) =>
-        {
-            match backend.start_problem(&staged.program) {
+    let why = match copy_as(name, file, path, &mut { MAX_FOLDER_BYTES }) {
+        Ok(staged) => {
+            let is_own = is_own(&staged.program, (metadata.dev(), metadata.ino())).map_err(describe_error_at(path))?;
+            let own = (is_oracle || is_own).then_some(StartProblem::GradersOwn);
+            match own.or_else(|| backend.start_problem(&staged.program)) {
                 None => return Ok(staged),
                 Some(problem) => UnusableReason::CouldNotStart(problem),
             }
         }
-        Ok(_) => UnusableReason::CouldNotStart(StartProblem::GradersOwn),
         Err(CopyError::Submission(why)) => UnusableReason::Unreadable(why),
         Err(CopyError::Ours(why)) => return Err(why),
     };

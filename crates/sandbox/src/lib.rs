@@ -57,7 +57,7 @@ pub use fault::SandboxError;
 pub use job::{Job, Limits, Policy, ProgramIdentity};
 pub use layers::{Layer, LayerReport};
 pub use outcome::{CapturedOutput, RunEnd, RunOutcome, StartProblem};
-pub use own_files::is_own;
+pub use own_files::{MARK_BACKWARDS, is_own};
 pub use running_program::{Canceller, LeftFolder, RunningProgram};
 pub use supervisor::supervisor_main;
 #[doc(hidden)]

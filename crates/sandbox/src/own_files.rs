@@ -6,7 +6,8 @@
 use std::{
     collections::{BTreeMap, BTreeSet},
     ffi::OsStr,
-    fs::DirEntry,
+    fs::{DirEntry, File},
+    io::{self, Read},
     os::unix::{ffi::OsStrExt, fs::MetadataExt},
     path::{Path, PathBuf},
     sync::{Arc, Mutex, PoisonError},
@@ -20,6 +21,11 @@ const SAMPLE_PREFIX: &str = "fosssim-sample";
 const PROGRAM_PREFIXES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
 /// The folders in which the programs are usually installed.
 const PROGRAM_FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
+/// The bytes before the place for the id of a mistake in the grader and in its sample, of every build. They are stored
+/// backwards, so that they are in the right order only in the place itself. An empty place makes no mistake.
+pub const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
+/// The number of bytes that are searched for the mark at a time.
+const MARK_WINDOW: u64 = 1 << 20;
 /// The prefix of the names of the Python module and of the folder that `pip` creates next to it.
 const MODULE_PREFIX: &str = "fosssim";
 /// The folders that contain Python installations.
@@ -84,24 +90,35 @@ fn list_files(programs: &[&Path]) -> Vec<PathBuf> {
     files
 }
 
-/// Returns whether a file with this length and digest is one of the grader's own programs. The sample may be graded at
-/// its own path (`itself`), to demonstrate grading; a copy of it, or the grader in any form, is not accepted as a
-/// submission.
-#[must_use]
-pub fn is_own(length: u64, digest: &blake3::Hash, itself: (u64, u64)) -> bool {
-    list_files(&[Path::new(CURRENT_PROGRAM)]).into_iter().any(|path| {
-        let Ok(metadata) = path.metadata() else { return false };
-        let sample = path.file_name().is_some_and(|name| name.to_string_lossy().starts_with(SAMPLE_PREFIX));
-        // The content is compared, because the grader's file may have any name.
-        let shown = sample && (metadata.dev(), metadata.ino()) == itself;
-        metadata.len() == length && !shown && digest_of(&path).is_some_and(|own| own == *digest)
-    })
+/// Returns whether a file is the grader or its sample, of this build or any other, without a pinned mistake. The sample
+/// may be graded at its own path (`itself`), to demonstrate grading; a copy of it is not a submission.
+///
+/// # Errors
+///
+/// Fails if the file cannot be read.
+pub fn is_own(program: &Path, itself: (u64, u64)) -> io::Result<bool> {
+    let is_shown = |path: &PathBuf| {
+        path.file_name().is_some_and(|name| begins_with(name, SAMPLE_PREFIX))
+            && path.metadata().is_ok_and(|metadata| (metadata.dev(), metadata.ino()) == itself)
+    };
+    Ok(has_mark(File::open(program)?)? && !list_files(&[Path::new(CURRENT_PROGRAM)]).iter().any(is_shown))
 }
 
-fn digest_of(path: &Path) -> Option<blake3::Hash> {
-    let mut hasher = blake3::Hasher::new();
-    hasher.update_reader(std::fs::File::open(path).ok()?).ok()?;
-    Some(hasher.finalize())
+/// Returns whether bytes contain the mark of a place without a mistake.
+fn has_mark(mut bytes: impl Read) -> io::Result<bool> {
+    // The program that searches must not contain what it searches for.
+    let mut mark = std::hint::black_box(MARK_BACKWARDS).to_vec();
+    mark.reverse();
+    mark.push(0);
+    let mut window = Vec::new();
+    while bytes.by_ref().take(MARK_WINDOW).read_to_end(&mut window)? > 0 {
+        if window.windows(mark.len()).any(|bytes| bytes == mark) {
+            return Ok(true);
+        }
+        // The mark may begin in one window and end in the next.
+        window.drain(..window.len().saturating_sub(mark.len()));
+    }
+    Ok(false)
 }
 
 /// A path that may be allowed.
@@ -178,6 +195,19 @@ mod tests {
         let names: Vec<_> = found.iter().map(|path| path.strip_prefix(folder.path()).unwrap()).collect();
         assert_eq!(names.len(), 2, "{names:?}");
         assert!(names[0].ends_with("dist-packages/fosssim") && names[1].ends_with("FOSSSim_oracle-1.2.dist-info"));
+    }
+
+    #[test]
+    fn the_mark_is_found_wherever_it_is_unless_a_mistake_follows() {
+        let mark: Vec<u8> = MARK_BACKWARDS.into_iter().rev().collect();
+        let window = usize::try_from(MARK_WINDOW).unwrap();
+        for before in [0, 1, window - 40, window - 32, window - 1, window, 2 * window - 5] {
+            for (after, expected) in [(&b"\0"[..], true), (b"pe-linear\0", false), (b"", false)] {
+                let program = [&vec![b'f'; before][..], &mark, after].concat();
+                assert_eq!(has_mark(&program[..]).unwrap(), expected, "{before} bytes before");
+            }
+        }
+        assert!(!has_mark(&[&MARK_BACKWARDS[..], b"\0"].concat()[..]).unwrap());
     }
 
     #[test]

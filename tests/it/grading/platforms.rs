@@ -1,6 +1,6 @@
 //! Autograders of platforms, each in the layout that its platform gives it.
 use super::{SUITE, submit, workspace};
-use crate::workspace::{Run, Workspace, finish};
+use crate::workspace::{Run, Workspace, finish, submission};
 use fosssim_testing::{Need, skip};
 use std::{
     fs,
@@ -61,7 +61,7 @@ fn the_gradescope_zip_works_in_its_layout() {
     assert_eq!(run.code, Some(0), "{}", run.shown());
     assert_eq!(results["score"], 0.0, "no program was submitted: {results}");
     assert_eq!(results.to_string().matches("the upload has no program called FOSSSim").count(), 1, "{results}");
-    fs::copy(env!("CARGO_BIN_EXE_fosssim-sample"), layout.join("submission/FOSSSim")).expect("a submission");
+    fs::write(layout.join("submission/FOSSSim"), submission("right")).expect("a submission");
     let (run, results) = run_autograder();
     assert_eq!(run.code, Some(0), "{}", run.shown());
     assert_eq!(results["score"], 20.0, "{results}");
@@ -112,8 +112,7 @@ fn the_question_for_prairielearn_works_in_its_layout() {
     assert!(copied.expect("cp").success());
     let (run, results) = grade_for_prairielearn(&root);
     assert_eq!((run.code, &results["gradable"]), (Some(0), &false.into()), "no program was uploaded: {results}");
-    fs::copy(env!("CARGO_BIN_EXE_fosssim-sample"), root.join("student/FOSSSim")).expect("an upload");
-    fs::set_permissions(root.join("student/FOSSSim"), fs::Permissions::from_mode(0o644)).expect("a mode");
+    fs::write(root.join("student/FOSSSim"), submission("right")).expect("an upload");
     let (run, results) = grade_for_prairielearn(&root);
     assert_eq!((run.code, &results["score"]), (Some(0), &1.0.into()), "{results}");
     fs::write(root.join("serverFilesCourse/fosssim/suite/suite.toml"), "nonsense").expect("a broken suite");
@@ -178,11 +177,9 @@ fn the_element_for_prairielearn_shows_groups_scenes_and_the_mistake_and_nothing_
 #[test]
 fn the_action_for_github_writes_summary_report_and_points() {
     let Some(workspace) = with_python() else { return };
-    for (name, code, points) in [("FOSSSim", 0, "points=20"), ("fosssim-sample.pe-square-no-eh", 1, "points=")] {
-        let program = workspace.path(name);
-        // The sample itself is nobody's submission.
-        let sample = fs::read(env!("CARGO_BIN_EXE_fosssim-sample")).expect("the sample");
-        fs::write(&program, [&sample[..], b"\0"].concat()).expect("a program");
+    for (mistake, code, points) in [("right", 0, "points=20"), ("pe-square-no-eh", 1, "points=")] {
+        let program = workspace.path("FOSSSim");
+        fs::write(&program, submission(mistake)).expect("a program");
         executable(&program);
         let mut action = script("github/grade");
         let here = Path::new(env!("CARGO_BIN_EXE_fosssim-oracle")).parent().expect("a folder");

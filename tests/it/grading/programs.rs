@@ -1,5 +1,6 @@
 //! Submissions that are no program, not yet a program, or somebody else's.
 use super::{SUITE, rows, workspace};
+use crate::workspace::submission;
 use fosssim_testing::{Need, skip};
 use std::{os::unix::fs::symlink, path::Path};
 
@@ -93,8 +94,7 @@ fn links_that_leave_a_submission_are_not_followed() {
         // A build that leaves a link to somebody else's program has made none.
         let build = "[build]\ncommand = [\"sh\", \"build.sh\"]\nprogram = \"out/FOSSSim\"\n[[group]]";
         workspace.write("build.toml", SUITE.replacen("[[group]]", build, 1));
-        std::fs::create_dir(workspace.path("secret")).expect("a folder");
-        std::fs::copy(env!("CARGO_BIN_EXE_fosssim-sample"), workspace.path("secret/FOSSSim")).expect("a copy");
+        workspace.write("secret/FOSSSim", submission("right"));
         let script = format!("ln -s {} out\n", workspace.path("secret").display());
         workspace.write("sources/thief/build.sh", script);
         let run = workspace.run(["grade", "sources", "--suite", "build.toml", "--output", "built"]);
