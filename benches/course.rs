@@ -108,12 +108,12 @@ fn parts() {
         .map(|name| {
             let xml = library::scene(name).expect("a scene");
             let scene = scene::read(name, xml).expect("a sound scene").scene;
-            let trace = simulate(&scene, RootSearch::WhereNeeded);
+            let trace = simulate(&scene, RootSearch::OnDemand);
             (scene, trace)
         })
         .collect();
     let simulated = |search| time(|| scenes.iter().for_each(|(scene, _)| drop(simulate(scene, search))));
-    let (with, without) = (simulated(RootSearch::WhereNeeded), simulated(RootSearch::Always));
+    let (with, without) = (simulated(RootSearch::OnDemand), simulated(RootSearch::Always));
     println!("- Recording with certificates: {:.1} times faster than without.", ratio(without, with));
     let judged = |threads| {
         let options = Options { threads, ..Options::default() };
@@ -153,7 +153,7 @@ fn rescaled(scene: &Scene, trace: &[u8]) -> Vec<u8> {
 fn simulate(scene: &Scene, search: RootSearch) -> Vec<u8> {
     let mut simulation = Simulation::new(scene, search);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         simulation.step(&mut recorder).expect("a step");
     }
     recorder.finish().expect("memory").0

@@ -10,15 +10,15 @@ use std::{env, error::Error, fs};
 /// Returns the reference's last state as a picture.
 pub fn run(scene: &[u8]) -> Result<String, Box<dyn Error>> {
     let scene = scene::read("scene", scene)?.scene;
-    let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
     let mut extent = Extent::for_scene(&scene, &simulation.state().positions);
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         simulation.step(&mut ())?;
         extent.add(&scene, &simulation.state().positions);
     }
     let size = Size::new(640, 480)?;
     let mut painter = Painter::new(&scene, &extent, PictureOptions { size, label: true });
-    let shapes = painter.picture(scene.steps(), &simulation.state().positions, None);
+    let shapes = painter.picture(scene.step_count(), &simulation.state().positions, None);
     Ok(svg::render_document(size, painter.background(), "the last step", &shapes))
 }
 

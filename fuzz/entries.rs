@@ -6,7 +6,7 @@ use fosssim_oracle::{
     scene::{Collision, Scene, original},
     sim::{RootSearch, Simulation},
     suite::{config, results},
-    trace::{Digests, Frame, Layout, Lenient, LenientFrame, Reader, Recorder, Summary, TraceError, Writer},
+    trace::{Digests, Frame, Layout, LenientFrame, LenientReader, Reader, Recorder, Summary, TraceError, Writer},
 };
 
 /// The scenes of the `trace` target, one per collision type.
@@ -53,13 +53,13 @@ pub fn scene(bytes: &[u8]) {
         while reader.next(&mut frame).expect("our own recording is sound") {
             assert!(reader.notes().is_empty(), "our own recording has nothing odd: {:?}", reader.notes());
         }
-        assert_eq!(reader.trailing(), Ok(0));
+        assert_eq!(reader.count_trailing_bytes(), Ok(0));
     }
 }
 
 /// The recording of at most `steps` steps with its layout, and whether no step failed.
 pub fn record(scene: &Scene, steps: usize) -> std::io::Result<(Layout, Vec<u8>, bool)> {
-    let steps = scene.steps().min(u32::try_from(steps).unwrap_or(u32::MAX));
+    let steps = scene.step_count().min(u32::try_from(steps).unwrap_or(u32::MAX));
     let layout = Layout { steps, ..Layout::for_scene(scene) };
     let mut simulation = Simulation::new(scene, RootSearch::default());
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
@@ -77,7 +77,7 @@ pub fn trace(bytes: &[u8]) {
     let strict = frames(Reader::from_slice(trace, layout));
     assert_eq!(strict, frames(Reader::new(trace, layout)), "knowing the length makes no difference");
 
-    let mut lenient = Lenient::new(trace, layout);
+    let mut lenient = LenientReader::new(trace, layout);
     let mut frame = LenientFrame::default();
     let stop = (0..layout.records()).find_map(|_| lenient.next(&mut frame).err());
     assert!(stop.is_none() || strict.is_err(), "what the strict reader accepts, the lenient one does: {stop:?}");
@@ -103,7 +103,7 @@ pub fn extreme(choice: usize, value: f64) -> Vec<u8> {
     let (mut reader, mut writer) = (Reader::from_slice(&trace, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("our own recording is sound") {
-        if reader.records() > 1 {
+        if reader.record_count() > 1 {
             frame.state.positions.fill(value);
             frame.state.velocities.fill(value);
         }
@@ -185,5 +185,5 @@ pub fn wire(bytes: &[u8]) -> usize {
 fn frames(mut reader: Reader<&[u8]>) -> Result<(u64, u64), TraceError> {
     let mut frame = Frame::default();
     while reader.next(&mut frame)? {}
-    Ok((reader.records(), reader.trailing()?))
+    Ok((reader.record_count(), reader.count_trailing_bytes()?))
 }

@@ -3,7 +3,7 @@
 use fosssim_browser::{PageHost, PageSession, parts};
 use fosssim_model::{
     scene::{self, LoadedScene, Scene},
-    trace::{Frame, Label, Layout, Reader, collect_labels},
+    trace::{Frame, Layout, PolynomialLabel, Reader, collect_labels},
 };
 use fosssim_num::vector::Vec2;
 use fosssim_report::problems;
@@ -113,9 +113,9 @@ mod _native {
             let (mut frame, mut record, mut before) = (Frame::default(), 0_u64, None);
             let (mut impulses, mut polynomials, mut coefficients) = (Vec::new(), Vec::new(), Vec::new());
             // The labels of the record's step.
-            let mut of_step: Vec<Label> = Vec::new();
+            let mut of_step: Vec<PolynomialLabel> = Vec::new();
             while let Ok(true) = reader.next(&mut frame) {
-                let place = [record.to_ne_bytes(), u64::from(layout.step_of(record)).to_ne_bytes()].concat();
+                let place = [record.to_ne_bytes(), u64::from(layout.step_of_record(record)).to_ne_bytes()].concat();
                 for impulse in &frame.impulses {
                     impulses.extend_from_slice(&place);
                     impulses.extend([impulse.kind, impulse.first, impulse.second].map(i32::to_ne_bytes).as_flattened());
@@ -128,7 +128,7 @@ mod _native {
                 let is_known = of_step.len() >= frame.polynomials.len();
                 for (number, numbers) in frame.polynomials.iter().enumerate() {
                     let label = of_step.get(number).filter(|_| is_known);
-                    let label = label.map_or([-1; 4], |Label { pair, number, .. }| {
+                    let label = label.map_or([-1; 4], |PolynomialLabel { pair, number, .. }| {
                         [pair.kind.code(), pair.first as i32, pair.second as i32, *number as i32]
                     });
                     polynomials.extend_from_slice(&place);
@@ -137,7 +137,7 @@ mod _native {
                     polynomials.extend(ends.as_flattened());
                     coefficients.extend(numbers.iter().flat_map(|number| number.to_ne_bytes()));
                 }
-                if layout.has_polynomials && !layout.is_mid(record) {
+                if layout.has_polynomials && !layout.is_mid_record(record) {
                     before = Some(frame.state.clone());
                 }
                 record += 1;
@@ -169,7 +169,7 @@ mod _native {
         let fixed: Vec<u8> = particles.iter().map(|particle| u8::from(particle.fixed)).collect();
         let edges = scene.edges.iter().map(|edge| (edge.first, edge.second)).collect();
         let per_step = Layout::for_scene(&scene).records_per_step();
-        let times = (scene.duration, scene.time_step, scene.steps(), per_step);
+        let times = (scene.duration, scene.time_step, scene.step_count(), per_step);
         Ok((times, numbers, PyBytes::new(py, &fixed), edges))
     }
 }

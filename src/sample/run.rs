@@ -40,7 +40,10 @@ pub fn run(options: &Options, student: Student) -> anyhow::Result<u8> {
     let code = simulate(&world, &mut trace)?;
     if code == 0 {
         trace.finish().context("the trace can't be written")?;
-        println!("Simulation complete at time {}. Exiting.", f64::from(world.scene.steps()) * world.scene.time_step);
+        println!(
+            "Simulation complete at time {}. Exiting.",
+            f64::from(world.scene.step_count()) * world.scene.time_step
+        );
         return Ok(hostile::exit_status(student));
     }
     trace.flush().context("the trace can't be written")?;
@@ -51,7 +54,7 @@ fn simulate(world: &World, trace: &mut Output) -> anyhow::Result<u8> {
     let mut state = world.initial_state();
     let mut log = StepLog::default();
     trace.record(&state, &log)?;
-    let steps = world.scene.steps();
+    let steps = world.scene.step_count();
     for step in 1..=steps {
         if step == steps / 2 + 1 {
             match hostile::act_midway(world.student)? {

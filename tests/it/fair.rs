@@ -8,7 +8,7 @@ use fosssim_oracle::{
     },
     num::polynomial::Polynomial,
     scene::{self, Scene, original},
-    sim::{Pair, PairKind, RootSearch, Simulation, Steering, StepController},
+    sim::{Pair, PairKind, RootSearch, Simulation, SteeringObserver, StepController},
     student::{self, CATALOGUE, Row, Student},
     suite::library,
     trace::{Frame, Layout, Reader, Recorder, Writer},
@@ -186,7 +186,7 @@ fn the_right_form_of_one_polynomial_among_the_courses_is_charged() {
 fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
     struct Edges(f64);
     impl StepController for Edges {
-        fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+        fn adjust_polynomials(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
             for polynomial in polynomials.iter_mut().filter(|_| pair.kind == PairKind::ParticleEdge) {
                 let scaled: Vec<f64> = polynomial.coefficients().iter().map(|c| self.0 * c).collect();
                 *polynomial = Polynomial::trimmed(&scaled);
@@ -201,10 +201,10 @@ fn a_small_factor_of_edges_is_no_mistake_on_the_courses_scenes() {
     files.par_iter().for_each(|file| {
         let scene = original::read(&std::fs::read(file).unwrap()).unwrap().scene;
         for factor in [1e-2, 1e-4] {
-            let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+            let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
             let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
-            for _ in 0..scene.steps() {
-                simulation.step(&mut (Steering(Edges(factor)), &mut recorder)).unwrap();
+            for _ in 0..scene.step_count() {
+                simulation.step(&mut (SteeringObserver(Edges(factor)), &mut recorder)).unwrap();
             }
             let fair = judged(&scene, &recorder.finish().unwrap().0, 1).1;
             let lost = fair.findings.counts.get(FindingKind::TrimmedDecision);

@@ -44,7 +44,7 @@ fn every_scene_of_a_suite_can_be_run_by_programs_of_its_milestone() {
         let (scenes, probes) = (scenes(assignment), probe_scenes(assignment));
         assert!(scenes.len() > 4, "{assignment:?}");
         for (name, scene) in scenes.into_iter().chain(probes) {
-            let unknown: Vec<String> = scene.unknown_to(assignment).map(|unknown| unknown.to_string()).collect();
+            let unknown: Vec<String> = scene.unknown_features(assignment).map(|unknown| unknown.to_string()).collect();
             assert!(unknown.is_empty(), "{name}: {unknown:?}");
         }
     }
@@ -148,11 +148,11 @@ fn the_drop_in_speaks_as_the_contests_original() {
     let text = run.out();
     assert!(text.contains("\nHybrid Collisions Passed: Yes.\nOverall success: Passed.\n"), "{text}");
     let steps = "Preparation: 0s\nCollision detection: 0s\nCollision handling: 0s\nT: ";
-    assert_eq!(text.matches(steps).count(), scene.steps() as usize);
+    assert_eq!(text.matches(steps).count(), scene.step_count() as usize);
     assert!(text.contains("T: 0\nFrame run time: 0s. Total run time: 0s. \n"), "{text}");
-    assert_eq!(text.matches("s. Total run time: ").count(), scene.steps() as usize + 1);
+    assert_eq!(text.matches("s. Total run time: ").count(), scene.step_count() as usize + 1);
     let recorded = workspace.original(["-s", "scene.xml", "-d", "0", "-o", "new.bin"]);
-    assert_eq!(recorded.out().matches(steps).count(), scene.steps() as usize);
+    assert_eq!(recorded.out().matches(steps).count(), scene.step_count() as usize);
 }
 
 /// A teacher sees what a suite does not ask for, by what the sample program writes with each known mistake.

@@ -66,7 +66,7 @@ fn verdicts_and_counts_are_those_of_the_original_on_any_number_of_threads() {
         let xml = std::fs::read(folder.join("scenes").join(format!("{}.xml", row["scene"].as_str().expect("scene"))));
         let scene = scene::original::read(&xml.expect("a scene")).expect("a scene").scene;
         let trace = corpus::unpack(&folder.join(file));
-        let (outcome, heard) = judge(&scene, &trace, 1, RootSearch::WhereNeeded);
+        let (outcome, heard) = judge(&scene, &trace, 1, RootSearch::OnDemand);
         let expected = match row["overall"].as_str().expect("overall") {
             "passed" => Overall::Passed,
             "failed" => Overall::Failed,
@@ -81,7 +81,7 @@ fn verdicts_and_counts_are_those_of_the_original_on_any_number_of_threads() {
             }
             assert_eq!(outcome.parity.collisions_passed, Some(row["collisions_passed"] == "Yes"), "{name}");
         }
-        for (threads, root_search) in [(4, RootSearch::WhereNeeded), (2, RootSearch::Audit)] {
+        for (threads, root_search) in [(4, RootSearch::OnDemand), (2, RootSearch::Audit)] {
             let (other, other_heard) = judge(&scene, &trace, threads, root_search);
             assert_eq!(told(&outcome), told(&other), "{name}: {threads} threads");
             assert_eq!(heard, other_heard, "{name}: {threads} threads");

@@ -43,8 +43,7 @@ fn a_run_can_be_cut_short_at_its_first_wrong_step() {
     let scene = embedded(library::names().find(|name| name.starts_with("SimpleTests/")).expect("a scene"));
     let mut trace = simulate(&scene);
     trace[..8].copy_from_slice(&1e3_f64.to_le_bytes());
-    let options =
-        Options { threads: 1, root_search: RootSearch::WhereNeeded, stop_at_first: true, ..Options::default() };
+    let options = Options { threads: 1, root_search: RootSearch::OnDemand, stop_at_first: true, ..Options::default() };
     let outcome = replay::judge(&scene, &trace[..], &options, &mut ());
     assert_eq!(
         (outcome.steps_judged, outcome.parity.findings.wrong_steps, outcome.parity.overall),
@@ -85,7 +84,7 @@ proptest! {
         if let Some(cut) = cut {
             trace.truncate(cut.index(trace.len()));
         }
-        let one = judge(&scene, &trace, 1, RootSearch::WhereNeeded);
+        let one = judge(&scene, &trace, 1, RootSearch::OnDemand);
         let many = judge(&scene, &trace, 3, RootSearch::Always);
         prop_assert_eq!(told(&one), told(&many));
         if let Some(Stop::Trace { frame, .. }) = one.stop {

@@ -14,7 +14,7 @@ fn the_recording_itself_passes_for_every_embedded_scene() {
         let recording = zstd::decode_all(library::recording(name).expect("a recording")).expect("zstd");
         let outcome = recorded::judge(&scene, &simulate(&scene)[..], &recording[..], &mut ()).expect("a recording");
         assert_eq!(outcome.parity.overall, Overall::Passed, "{name}: {:?}", outcome.parity.findings.first_divergence);
-        assert_eq!(outcome.steps_judged, scene.steps());
+        assert_eq!(outcome.steps_judged, scene.step_count());
     }
 }
 
@@ -47,7 +47,7 @@ fn another_start_is_a_difference_of_step_0() {
     wrong[..8].copy_from_slice(&77.0_f64.to_le_bytes());
     let outcome = recorded::judge(&scene, &wrong[..], &right[..], &mut ()).expect("a recording");
     assert_eq!(outcome.parity.findings.first_divergence.expect("a divergence").step, 0);
-    assert_eq!((outcome.parity.findings.wrong_steps, outcome.right_steps(Book::Parity)), (0, scene.steps() - 1));
+    assert_eq!((outcome.parity.findings.wrong_steps, outcome.right_steps(Book::Parity)), (0, scene.step_count() - 1));
 }
 
 #[test]
@@ -57,7 +57,10 @@ fn the_first_record_is_no_step() {
     let mut other = scene.clone();
     other.particles.iter_mut().for_each(|particle| particle.velocity.x += 0.125);
     let outcome = recorded::judge(&scene, &simulate(&other)[..], &right[..], &mut ()).expect("a recording");
-    assert_eq!((outcome.parity.findings.wrong_steps, outcome.right_steps(Book::Parity)), (u64::from(scene.steps()), 0));
+    assert_eq!(
+        (outcome.parity.findings.wrong_steps, outcome.right_steps(Book::Parity)),
+        (u64::from(scene.step_count()), 0)
+    );
 }
 
 #[test]

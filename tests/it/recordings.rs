@@ -41,7 +41,7 @@ fn scene(folder: &Path, entry: &Entry) -> Scene {
 fn record(scene: &Scene, search: RootSearch) -> (Vec<u8>, SearchCounts) {
     let mut simulation = Simulation::new(scene, search);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         simulation.step(&mut recorder).unwrap_or_else(|error| panic!("{error}"));
     }
     let (trace, _) = recorder.finish().expect("writing to memory");
@@ -70,7 +70,7 @@ fn all_are_byte_identical(test: &str, manifest_name: &str) {
     let wrong: Vec<String> = entries
         .iter()
         .filter_map(|entry| {
-            let (trace, _) = record(&scene(&folder, entry), RootSearch::WhereNeeded);
+            let (trace, _) = record(&scene(&folder, entry), RootSearch::OnDemand);
             difference(&folder, entry, &trace)
         })
         .collect();
@@ -101,7 +101,7 @@ fn scenes_of_the_contest_are_recorded_byte_for_byte() {
         for path in names {
             let bytes = std::fs::read(&path).expect("a readable scene");
             let scene = original::read(&bytes).expect("a scene").scene;
-            let (trace, _) = record(&scene, RootSearch::WhereNeeded);
+            let (trace, _) = record(&scene, RootSearch::OnDemand);
             assert!(trace == corpus::unpack(&path.with_extension("bin.zst")), "{} differs", path.display());
             cases += 1;
         }

@@ -101,9 +101,9 @@ fn asset(name: &str) -> PathBuf {
 fn reference(path: &Path) -> Vec<u8> {
     let bytes = std::fs::read(path).expect("a readable scene");
     let scene = original::read(&bytes).unwrap_or_else(|refusal| panic!("{}: {refusal}", path.display())).scene;
-    let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         simulation.step(&mut recorder).unwrap_or_else(|error| panic!("{}: {error}", path.display()));
     }
     recorder.finish().expect("writing to memory").0

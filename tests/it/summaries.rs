@@ -2,7 +2,7 @@
 //! shows as a diff that `cargo insta review` accepts or rejects.
 use fosssim_oracle::{
     scene,
-    sim::{ByKind, RootSearch, Simulation},
+    sim::{PairKindMap, RootSearch, Simulation},
     suite::library,
     trace::{EventCounts, Layout, Recorder, Summary},
 };
@@ -16,10 +16,10 @@ fn summaries_of_all_embedded_scenes() {
     let mut scenes = 0;
     for name in library::names() {
         let scene = scene::read(name, library::scene(name).expect("an embedded scene")).expect("a sound scene").scene;
-        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
         let mut observers =
             (Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state()), EventCounts::new(&scene));
-        for _ in 0..scene.steps() {
+        for _ in 0..scene.step_count() {
             simulation.step(&mut observers).expect("a step");
         }
         let (recorder, counts) = observers;
@@ -32,7 +32,7 @@ fn summaries_of_all_embedded_scenes() {
 }
 
 fn described(counts: &EventCounts) -> String {
-    let of_kinds = |numbers: ByKind<u64>| {
+    let of_kinds = |numbers: PairKindMap<u64>| {
         let words: Vec<String> = numbers.iter().map(|(kind, number)| format!("{number} {}", kind.name())).collect();
         words.join(", ")
     };

@@ -5,8 +5,8 @@ use fosssim_oracle::{
     scene::original,
     sim::{RootSearch, Simulation, State},
     trace::{
-        EventCounts, Frame, Layout, Lenient, LenientFrame, List, LoggedImpulse, Malformation, Reader, Recorder,
-        Summary, TraceError, Unreadable, Writer,
+        EventCounts, Frame, Layout, LenientFrame, LenientReader, LoggedImpulse, Malformation, ReadFailure, Reader,
+        RecordList, Recorder, Summary, TraceError, Writer,
     },
 };
 use proptest::test_runner::RngSeed;
@@ -74,12 +74,12 @@ fn read_anything(layout: Layout, bytes: &[u8]) -> Result<(), TestCaseError> {
     let known = rewrite(Reader::from_slice(bytes, layout));
     let unknown = rewrite(Reader::new(bytes, layout));
     prop_assert_eq!(&known, &unknown, "the known length makes no difference");
-    let mut lenient = Lenient::from_slice(bytes, layout);
+    let mut lenient = LenientReader::from_slice(bytes, layout);
     let mut frame = LenientFrame::default();
     for record in 0..layout.records() {
         let Err(stop) = lenient.next(&mut frame) else { continue };
         prop_assert!(known.is_err(), "the strict reader accepts what the lenient one does not: {}", stop);
-        prop_assert_eq!(stop.at.frame, record);
+        prop_assert_eq!(stop.error.frame, record);
         return Ok(());
     }
     Ok(())
@@ -99,19 +99,19 @@ proptest! {
         let sound = bytes.len();
         bytes.extend_from_slice(&trailing);
         prop_assert_eq!(&rewrite(Reader::from_slice(&bytes, layout)).unwrap(), &bytes[..sound]);
-        let mut reader = Reader::new(&bytes[..], layout).keeping_raw();
+        let mut reader = Reader::new(&bytes[..], layout).with_raw_bytes();
         let (mut frame, mut raw) = (Frame::default(), Vec::new());
         while reader.next(&mut frame).unwrap() {
-            raw.extend_from_slice(reader.raw());
+            raw.extend_from_slice(reader.raw_bytes());
         }
         prop_assert_eq!(&raw, &bytes[..sound]);
-        prop_assert_eq!(reader.trailing().unwrap(), trailing.len() as u64);
+        prop_assert_eq!(reader.count_trailing_bytes().unwrap(), trailing.len() as u64);
     }
 
     #[test]
     fn both_readers_agree_on_sound_traces((layout, frames) in trace()) {
         let bytes = write(layout, &frames);
-        let mut lenient = Lenient::new(&bytes[..], layout);
+        let mut lenient = LenientReader::new(&bytes[..], layout);
         let mut read = LenientFrame::default();
         for frame in &frames {
             lenient.next(&mut read).unwrap();
@@ -125,7 +125,7 @@ proptest! {
                 read.polynomials.iter().map(|p| p.iter().map(|c| c.to_bits()).collect()).collect();
             prop_assert_eq!(&trimmed, &actual);
             let kept = frame.polynomials.iter().zip(&trimmed).all(|(a, b)| a.len() == b.len());
-            prop_assert_eq!(read.plain, kept);
+            prop_assert_eq!(read.is_unchanged, kept);
             let (state, impulses) = (read.state.clone(), read.impulses.clone());
             let again = Frame { state, impulses, polynomials: frame.polynomials.clone() };
             prop_assert_eq!(write(layout, &[again]), write(layout, std::slice::from_ref(frame)));
@@ -185,14 +185,14 @@ fn every_cut_of_a_small_trace_is_named() {
             (0, 0) => (0, Malformation::Empty),
             (records, 0) => (0, Malformation::TooFewRecords { records, expected: 3 }),
             (_, 1..32) => (0, Malformation::State { needs: 32, left: inside }),
-            (_, 32..36) => (32, Malformation::CountCut { list: List::Impulses, left: inside - 32 }),
-            (0, _) => (36, Malformation::CountCut { list: List::Polynomials, left: inside - 36 }),
+            (_, 32..36) => (32, Malformation::CountCut { list: RecordList::Impulses, left: inside - 32 }),
+            (0, _) => (36, Malformation::CountCut { list: RecordList::Polynomials, left: inside - 36 }),
             (_, 36..72) => {
                 let what =
-                    Malformation::CountBeyondEnd { list: List::Impulses, count: 1, needs: 36, left: inside - 36 };
+                    Malformation::CountBeyondEnd { list: RecordList::Impulses, count: 1, needs: 36, left: inside - 36 };
                 (32, what)
             }
-            (_, 72..76) => (72, Malformation::CountCut { list: List::Polynomials, left: inside - 72 }),
+            (_, 72..76) => (72, Malformation::CountCut { list: RecordList::Polynomials, left: inside - 72 }),
             (_, 76..80) => (76, Malformation::PolynomialCut { polynomial: 0, count: 2 }),
             (_, 80..104) => (76, Malformation::SizeBeyondEnd { polynomial: 0, size: 3, left: inside - 80 }),
             (_, 104..108) => (104, Malformation::PolynomialCut { polynomial: 1, count: 2 }),
@@ -225,7 +225,7 @@ fn negative_counts_are_refused() {
     bytes[40 + 35] = 0xff;
     let error = rewrite(Reader::from_slice(&bytes, layout)).unwrap_err();
     let count = i32::from_le_bytes([1, 0, 0, 0xff]);
-    assert_eq!((error.offset, error.what), (72, Malformation::NegativeCount { list: List::Impulses, count }));
+    assert_eq!((error.offset, error.what), (72, Malformation::NegativeCount { list: RecordList::Impulses, count }));
 }
 
 /// The example of trace-format.md 3 with one of the collision types.
@@ -238,7 +238,7 @@ fn example(collision: &str) -> Vec<u8> {
     let scene = original::read(xml.as_bytes()).expect("a scene").scene;
     let mut simulation = Simulation::new(&scene, RootSearch::default());
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         simulation.step(&mut recorder).unwrap();
     }
     recorder.finish().unwrap().0
@@ -285,7 +285,7 @@ fn a_summary_says_what_happened_and_where_reading_ended() {
     let mut simulation = Simulation::new(&scene, RootSearch::default());
     let recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
     let mut both = (recorder, EventCounts::new(&scene));
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         simulation.step(&mut both).unwrap();
     }
     let (recorder, counts) = both;
@@ -321,15 +321,15 @@ fn lenient_reading_stops_where_the_original_stopped() {
         let end = row["oracle_end"].as_str().unwrap();
         let bytes = corpus::unpack(&folder.join(file));
         let layout = layout(row["scene"].as_str().unwrap());
-        let mut reader = Lenient::from_slice(&bytes, layout);
+        let mut reader = LenientReader::from_slice(&bytes, layout);
         let mut frame = LenientFrame::default();
         let stop = (0..layout.records()).find_map(|_| reader.next(&mut frame).err());
         let said = |text: &str| row["stdout"].as_str().unwrap().contains(text);
         let cause = stop.as_ref().map(|stop| stop.cause);
         match end {
             "exit 0" => assert_eq!(cause, None, "{file}"),
-            "exit 1" if said("Failed to load timestep") => assert_eq!(cause, Some(Unreadable::State), "{file}"),
-            "exit 1" if said("deserialize") => assert_eq!(cause, Some(Unreadable::Impulses), "{file}"),
+            "exit 1" if said("Failed to load timestep") => assert_eq!(cause, Some(ReadFailure::State), "{file}"),
+            "exit 1" if said("deserialize") => assert_eq!(cause, Some(ReadFailure::Impulses), "{file}"),
             "signal 6" => assert!(cause.is_some(), "{file}"),
             // The original hung in the computation; the trace may be as it likes.
             "timeout" => {}

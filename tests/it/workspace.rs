@@ -188,9 +188,9 @@ pub fn embedded(name: &str) -> Scene {
 
 /// The reference trace of a scene that was read already.
 pub fn simulate(scene: &Scene) -> Vec<u8> {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         simulation.step(&mut recorder).expect("a step");
     }
     recorder.finish().expect("memory").0

@@ -45,12 +45,12 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let _ = trace.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = looks_like(&start);
     let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
-    let (mut told, mut wrong) = (PageProgress { host, all: scene.steps() }, WrongSteps::new(StepChoice::None));
+    let (mut told, mut wrong) = (PageProgress { host, all: scene.step_count() }, WrongSteps::new(StepChoice::None));
     let heard = &mut BothObservers(&mut told, &mut wrong);
     let examined = examine(&scene, Cursor::new(start).chain(trace), KeptPart::All, &options, heard);
     let outcome = &examined.outcome;
     // Report judging as complete, because the search for the mistake, which follows, may take as long.
-    host.progress(scene.steps(), scene.steps());
+    host.progress(scene.step_count(), scene.step_count());
     if let Some(why) = describe_no_verdict(outcome, &request.scene) {
         return Err(why);
     }

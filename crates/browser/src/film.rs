@@ -83,7 +83,7 @@ pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, O
         "problems": problems,
         "more": more,
         "steps": steps,
-        "of": scene.steps(),
+        "of": scene.step_count(),
         "dt": scene.time_step,
         "particles": scene.particles.len(),
         "edges": scene.edges.len(),
@@ -104,11 +104,11 @@ fn view(problem: &Problem) -> Value {
 impl Film {
     /// Returns the motion, and the reason if it ends before the scene does.
     fn for_scene(scene: Scene, host: &dyn PageHost) -> (Self, Option<String>) {
-        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
         let mut positions = simulation.state().positions.clone();
         let start = Extent::for_scene(&scene, &positions);
         let (mut extent, mut steps, mut stopped) = (start, 0, None);
-        for step in 1..=scene.steps() {
+        for step in 1..=scene.step_count() {
             if positions.len() + 2 * scene.particles.len() > MAX_NUMBERS {
                 stopped = Some(format!("it is too long to be shown from step {step} on"));
                 break;
@@ -121,7 +121,7 @@ impl Film {
             positions.extend(&simulation.state().positions);
             steps = step;
             if step % STEPS_PER_REPORT == 0 {
-                host.progress(step, scene.steps());
+                host.progress(step, scene.step_count());
             }
         }
         let extent = extent.limited_to(&start);
@@ -200,10 +200,10 @@ impl Film {
 
     /// Returns the reference's trace, byte for byte the output of `simulate`.
     pub(crate) fn trace(&self, host: &dyn PageHost) -> Result<Vec<u8>, String> {
-        let mut simulation = Simulation::new(&self.scene, RootSearch::WhereNeeded);
+        let mut simulation = Simulation::new(&self.scene, RootSearch::OnDemand);
         let kept = TraceRoom(Vec::new());
         let mut recorder = Recorder::start(kept, Layout::for_scene(&self.scene), simulation.state());
-        for step in 1..=self.scene.steps() {
+        for step in 1..=self.scene.step_count() {
             if let Err(error) = simulation.step(&mut recorder) {
                 return Err(format!("the trace cannot be written: {}", no_result(&error)));
             }
@@ -211,7 +211,7 @@ impl Film {
                 break;
             }
             if step % STEPS_PER_REPORT == 0 {
-                host.progress(step, self.scene.steps());
+                host.progress(step, self.scene.step_count());
             }
         }
         let (kept, _) = recorder.finish().map_err(|_| {

@@ -28,7 +28,7 @@ pub(crate) fn list() -> Value {
         let groups = groups.into_iter().map(|(group, names)| json!({ "group": group, "names": names }));
         json!({ "title": assignment.definition().title, "groups": groups.collect::<Vec<_>>() })
     };
-    Assignment::default_first().into_iter().map(of).collect()
+    Assignment::list_default_first().into_iter().map(of).collect()
 }
 
 /// Returns the XML of the scene named `Group/name`.
@@ -57,7 +57,7 @@ pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
 /// Returns whether a trace with the given beginning may belong to the scene.
 fn is_beginning(xml: &[u8], start: &[u8]) -> bool {
     let Ok(loaded) = scene::read("", xml) else { return false };
-    let simulation = Simulation::new(&loaded.scene, RootSearch::WhereNeeded);
+    let simulation = Simulation::new(&loaded.scene, RootSearch::OnDemand);
     let recorder = Recorder::start(Vec::new(), Layout::for_scene(&loaded.scene), simulation.state());
     recorder.finish().is_ok_and(|(record, _)| start.starts_with(&record))
 }

@@ -85,7 +85,7 @@ impl DroppedSubmission {
             true => Box::new(open(host, 0, &fault).take(self.plan.limits.trace)),
             false => Box::new(empty()),
         };
-        let mut heard = PageProgress { host, all: task.scene.steps() };
+        let mut heard = PageProgress { host, all: task.scene.step_count() };
         let (mut result, _) = traces::judge_trace(&self.plan, task, trace, &mut heard);
         if let Some(why) = fault.get() {
             return Err(format!("cannot read the trace of {}: {why}", task.name));

@@ -7,8 +7,8 @@ use crate::{
 use fosssim_judge::{Finding, Outcome, budget::Budget};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Detection, Observer, Pair, Pass, Resume, RootSearch, Simulation, State, StepController},
-    trace::{Layout, Lenient, LenientFrame, record_memory},
+    sim::{Detection, Observer, Pair, Pass, ResumeState, RootSearch, Simulation, State, StepController},
+    trace::{Layout, LenientFrame, LenientReader, record_memory},
 };
 use std::io::Read;
 
@@ -124,7 +124,7 @@ pub fn gather(
     let center = first_wrong.or(focus.first().map(|focus| focus.step)).unwrap_or(0);
     let close = close_steps(focus, first_wrong, layout);
     let mut gathering = Gathering::new(scene, Window::for_focus(center, layout, budget));
-    let mut reader = Lenient::new(trace, layout).with_limit(record_memory(scene));
+    let mut reader = LenientReader::new(trace, layout).with_limit(record_memory(scene));
     let (mut mid, mut end) = (LenientFrame::default(), LenientFrame::default());
     if reader.next(&mut end).is_err() {
         return gathering.evidence;
@@ -175,7 +175,7 @@ struct Gathering<'a> {
 
 impl<'a> Gathering<'a> {
     fn new(scene: &'a Scene, window: Window) -> Self {
-        let simulation = || Simulation::new(scene, RootSearch::WhereNeeded);
+        let simulation = || Simulation::new(scene, RootSearch::OnDemand);
         let evidence = Evidence {
             layout: Layout::for_scene(scene),
             window,
@@ -240,7 +240,8 @@ impl<'a> Gathering<'a> {
         let Some(wanted) = wanted else {
             return self.work.step(&mut self.own, &mut count).is_ok().then_some(count);
         };
-        let mut inspector = Inspector::new(self.scene, step, mid_state, (&end.polynomials, end.logged), wanted);
+        let mut inspector =
+            Inspector::new(self.scene, step, mid_state, (&end.polynomials, end.logged_polynomials), wanted);
         let done = self.work.step(&mut self.own, &mut (&mut inspector, &mut count)).is_ok();
         let impulses = if end.impulses.is_empty() { &mid.impulses } else { &end.impulses };
         inspector.step.actual_contacts.clone_from(impulses);
@@ -265,7 +266,7 @@ impl<'a> Gathering<'a> {
             position: max_with_nan(count.apart[0], position),
             velocity: max_with_nan(count.apart[1], velocity),
             expected_passes: count.passes,
-            actual_passes: count.passes_of(end.logged),
+            actual_passes: count.passes_of(end.logged_polynomials),
         });
     }
 }
@@ -348,7 +349,7 @@ impl Observer for PassCount<'_> {
 }
 
 impl StepController for PassCount<'_> {
-    fn synchronize(&mut self, state: &mut State) -> Resume {
+    fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         if let Some(mid) = self.mid {
             self.apart = distances(state, mid);
         }

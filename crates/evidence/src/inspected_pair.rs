@@ -33,7 +33,7 @@ pub fn inspect(
     let log = records.map_or(&none, |(_, polynomials)| polynomials);
     let wanted = [(WantedCalls::Every, pair)];
     let mut watch = Inspector::new(scene, step, mid, (log, log.len()), &wanted);
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     simulation.state_mut().clone_from(before);
     simulation.set_steps_done(step - 1);
     let failed = simulation.step(&mut watch).err();

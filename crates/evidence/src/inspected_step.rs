@@ -3,7 +3,7 @@ use crate::matching::{are_different, match_polynomials};
 use fosssim_judge::study::{NoAnswer, Study};
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Impulse, Observer, Pair, PairMotion, Pass, Resume, State, StepController, Zone},
+    sim::{Decision, Detection, Impulse, Observer, Pair, PairMotion, Pass, ResumeState, State, StepController, Zone},
     trace::{LoggedImpulse, PolynomialLog},
 };
 
@@ -307,19 +307,19 @@ fn keep(pairs: &mut Vec<Pair>, pair: Pair) {
 }
 
 impl StepController for Inspector<'_> {
-    fn synchronize(&mut self, state: &mut State) -> Resume {
+    fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         continue_from(self.mid, state)
     }
 }
 
 /// Continues a step from the trace's mid record, if the record has the scene's size.
-pub(crate) fn continue_from(mid: Option<&State>, state: &mut State) -> Resume {
+pub(crate) fn continue_from(mid: Option<&State>, state: &mut State) -> ResumeState {
     match mid {
         Some(mid) if mid.positions.len() == state.positions.len() => {
             state.clone_from(mid);
-            Resume::Synchronized
+            ResumeState::Synchronized
         }
-        _ => Resume::Own,
+        _ => ResumeState::Own,
     }
 }
 
@@ -347,7 +347,7 @@ impl Observer for Inspector<'_> {
         self.step.expected_polynomials += count;
         self.calls += 1;
         let Detection { pair, q_start, q_end, decision, .. } = *detection;
-        let motion = || PairMotion::between(self.scene, pair, q_start, q_end);
+        let motion = || PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let is_hit = matches!(decision, Decision::Hit { .. });
         let wanted = self.wanted.iter().any(|(which, one)| {
             *one == pair

@@ -14,7 +14,7 @@
 //! #   <particle m="1" px="0" py="0" vx="2" vy="0" fixed="0"/>
 //! # </scene>"#;
 //! # let scene = scene::read("a ball", text)?.scene;
-//! # let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+//! # let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
 //! # let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
 //! # for _ in 0..scene.steps() {
 //! #     simulation.step(&mut recorder)?;

@@ -1,7 +1,7 @@
 //! A motion, as the exact positions and velocities of consecutive records.
 use fosssim_model::{
     sim::State,
-    trace::{Layout, Lenient, LenientFrame},
+    trace::{Layout, LenientFrame, LenientReader},
 };
 use std::io::Read;
 
@@ -59,13 +59,13 @@ impl Track {
     /// Reads the records of a trace in a window, up to the first unreadable place.
     #[must_use]
     pub fn read(trace: &mut dyn Read, layout: Layout, window: Window) -> Self {
-        let mut reader = Lenient::new(trace, layout);
+        let mut reader = LenientReader::new(trace, layout);
         let (mut frame, mut track) = (LenientFrame::default(), Self::default());
         for record in 0..layout.records() {
-            if layout.step_of(record) > window.last || reader.next(&mut frame).is_err() {
+            if layout.step_of_record(record) > window.last || reader.next(&mut frame).is_err() {
                 break;
             }
-            if window.holds(layout.step_of(record), layout.is_mid(record)) {
+            if window.holds(layout.step_of_record(record), layout.is_mid_record(record)) {
                 track.push(&frame.state);
             }
         }

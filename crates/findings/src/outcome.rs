@@ -3,7 +3,7 @@ use super::{fair, parity};
 use fosssim_model::{
     assignments::CollisionType,
     sim::{SearchCounts, StepError},
-    trace::{Malformation, Unreadable},
+    trace::{Malformation, ReadFailure},
 };
 
 /// The reason why grading stopped before its end.
@@ -16,7 +16,7 @@ pub enum Stop {
         /// The step of that frame; 0 for the initial record.
         step: u32,
         /// The reason why it could not be read.
-        cause: Unreadable,
+        cause: ReadFailure,
         /// The byte offset of the damage.
         offset: u64,
         /// The kind of damage.

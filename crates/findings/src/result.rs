@@ -9,7 +9,7 @@ use super::{
 };
 use fosssim_model::{
     sim::StepError,
-    trace::{Malformation, Unreadable},
+    trace::{Malformation, ReadFailure},
 };
 use serde::{Deserialize, Serialize};
 use std::{path::PathBuf, time::Duration};
@@ -176,7 +176,7 @@ pub enum BadTrace {
         /// The step to which it belongs; 0 for the first record.
         step: u32,
         /// The part of the record that cannot be read, or the reason.
-        cause: Unreadable,
+        cause: ReadFailure,
         /// The byte offset of the damage.
         offset: u64,
         /// The damage that the reader reported.

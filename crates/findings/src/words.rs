@@ -274,7 +274,7 @@ impl Display for PairWords {
 fn write_pair(f: &mut Formatter<'_>, kind: PairKind, first: &dyn Display, second: &dyn Display) -> fmt::Result {
     match kind {
         PairKind::ParticleParticle => write!(f, "particles {first} and {second}"),
-        kind => write!(f, "particle {first} and {} {second}", kind.second()),
+        kind => write!(f, "particle {first} and {} {second}", kind.second_name()),
     }
 }
 

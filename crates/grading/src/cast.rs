@@ -39,7 +39,7 @@ fn scene(job: &Job) -> Scene {
 
 /// Returns the first steps of a scene's right trace.
 fn trace(scene: &Scene, steps: u32) -> Vec<u8> {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
     for _ in 0..steps {
         simulation.step(&mut recorder).expect("a step");
@@ -50,7 +50,7 @@ fn trace(scene: &Scene, steps: u32) -> Vec<u8> {
 /// Returns the right trace of the scene in a job's working folder.
 pub(super) fn right_trace(job: &Job) -> Vec<u8> {
     let scene = scene(job);
-    trace(&scene, scene.steps())
+    trace(&scene, scene.step_count())
 }
 
 /// Records whether the failsafe moves a zone.
@@ -90,9 +90,9 @@ fn run_fake(job: &Job) -> FakeRun {
         }
         Some("crashes-in-the-failsafe") => {
             let scene = scene(job);
-            let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+            let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
             let mut moved = ZonesMoved(false);
-            let step = (1..=scene.steps()).find(|_| {
+            let step = (1..=scene.step_count()).find(|_| {
                 simulation.step(&mut moved).expect("a step");
                 moved.0
             });

@@ -3,7 +3,7 @@
 //! Reading reports all problems together, each with line and column. The file's grammar is documented by the template
 //! that `suite init` writes ([`template`]).
 use super::{
-    near::closest,
+    near::find_closest,
     shape::{self, Problem, RawBuild, RawGroup, RawLimits, RawMistake, RawSpeed, RawSuite},
 };
 use fosssim_findings::explanation::Explanation;
@@ -369,7 +369,7 @@ fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String,
     let word = key.get_ref().as_str();
     let is_known = find(word).is_some() || find_edit(word).is_some() || Explanation::is_general_key(word);
     if !is_known {
-        let remedy = closest(word, all_rows().map(|row| row.id)).map_or_else(
+        let remedy = find_closest(word, all_rows().map(|row| row.id)).map_or_else(
             || "; `fosssim-oracle sample --list` shows all".to_owned(),
             |meant| format!("; did you mean \"{meant}\"?"),
         );

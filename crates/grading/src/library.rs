@@ -113,7 +113,7 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
 /// Returns a file of an assignment, by its path within the assignment's folder or by its whole path.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     let of = |assignment: Assignment| find_below(subfolder(root, assignment.key())?, path);
-    Assignment::default_first().into_iter().find_map(of).or_else(|| find_below(root, path))
+    Assignment::list_default_first().into_iter().find_map(of).or_else(|| find_below(root, path))
 }
 
 /// Returns the file at a path below a folder. [`Dir::get_file`] is slower: it compares the path with that of every

@@ -37,10 +37,10 @@ pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Ass
     let fits = |assignment: &Assignment| {
         let library = &assignment.definition().library;
         let knows = |integrator: &Integrator| library.integrators.contains(integrator);
-        library.refuses_collisions != takes_collisions
+        library.rejects_collisions != takes_collisions
             && Integrator::ALL.iter().all(|one| knows(one) == integrators.contains(one))
     };
-    Ok(Assignment::default_first().into_iter().find(|assignment| is_traced && fits(assignment)))
+    Ok(Assignment::list_default_first().into_iter().find(|assignment| is_traced && fits(assignment)))
 }
 
 /// Returns whether a milestone's library lacks integrators or collision types of another milestone's scenes.

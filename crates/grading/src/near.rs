@@ -1,6 +1,6 @@
 //! The search for known words that are similar to a typed word.
 
-pub use fosssim_model::scene::closest;
+pub use fosssim_model::scene::find_closest;
 use strsim::jaro_winkler;
 
 /// The number of letters and digits that are compared.
@@ -9,7 +9,7 @@ const MAX_COMPARED_LETTERS: usize = 60;
 /// Returns the end of a message about an unknown word: a known word that was probably meant, if one is similar.
 #[must_use]
 pub fn suggest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> String {
-    closest(word, candidates).map(|name| format!("; did you mean {name}?")).unwrap_or_default()
+    find_closest(word, candidates).map(|name| format!("; did you mean {name}?")).unwrap_or_default()
 }
 
 /// Returns the names most similar to a typed word, at most `most`, the most similar first. A name is compared as a

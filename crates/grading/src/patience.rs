@@ -19,7 +19,7 @@ pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
         NotRunReason::Total(_) => Verdict::TimeLimit,
         NotRunReason::FailFast => Verdict::NotRun,
     };
-    SceneResult::without_run(&task.name, task.scene.steps(), verdict, Reason::LeftOut(why))
+    SceneResult::without_run(&task.name, task.scene.step_count(), verdict, Reason::LeftOut(why))
 }
 
 /// Returns the first scene that is skipped, with the reason. `known` has the verdict and the duration of every finished

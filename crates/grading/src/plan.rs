@@ -72,7 +72,7 @@ impl Plan {
     #[must_use]
     pub fn assignment(&self) -> Assignment {
         let can_run = |assignment: &Assignment| {
-            self.scenes().filter(|task| task.scene.unknown_to(*assignment).next().is_none()).count()
+            self.scenes().filter(|task| task.scene.unknown_features(*assignment).next().is_none()).count()
         };
         // `max_by_key` returns the last of several maxima.
         let by_scenes = || Assignment::ALL.into_iter().rev().max_by_key(can_run);
@@ -142,7 +142,7 @@ fn resolve(
                         let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
                         let recording = known.then(|| library::recording(&name)).flatten();
                         let beyond = milestone.filter(|_| !known).into_iter();
-                        for unknown in beyond.flat_map(|milestone| loaded.scene.unknown_to(milestone)) {
+                        for unknown in beyond.flat_map(|milestone| loaded.scene.unknown_features(milestone)) {
                             problems.push((at, format!("scene {name}: {unknown}")));
                         }
                         scenes.push(SceneTask { name, xml, scene: loaded.scene, recording });

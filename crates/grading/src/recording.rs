@@ -53,7 +53,7 @@ impl Recording {
         let digests = Digests::from_stream(&trace[..], Layout::for_scene(&scene));
         Ok(Self {
             name: name.to_owned(),
-            steps: scene.steps(),
+            steps: scene.step_count(),
             trace,
             sha256: digests.sha256.to_string(),
             digests: digests.to_string(),
@@ -109,9 +109,9 @@ pub fn render_diff(name: &str, recorded: &str, now: &str) -> String {
 
 /// Returns the trace of a scene.
 pub(super) fn simulate_trace(scene: &Scene) -> Result<Vec<u8>, RecordError> {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         simulation.step(&mut recorder)?;
     }
     Ok(recorder.finish()?.0)

@@ -181,7 +181,7 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .filter(|(graded, _)| graded.verdict == Verdict::Accepted && graded.differs.is_none())
         .map(|(_, task)| &task.scene)
         .collect();
-    right.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() * scene.particles.len()) as u64);
+    right.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() * scene.particles.len()) as u64);
     right.truncate(MAX_WITNESSES);
     // The folder of a built-in scene names its milestone; for other scenes the milestone follows from the contents.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();

@@ -1,7 +1,7 @@
 //! The shape of a suite file: its keys, and the type of each value.
 //!
 //! The check reports all errors together, and removes wrong parts, so that the rest can still be checked.
-use super::near::closest;
+use super::near::find_closest;
 use fosssim_findings::{Hints, Visibility};
 use fosssim_judge::Rules;
 use fosssim_model::assignments::Assignment;
@@ -162,7 +162,7 @@ fn remove_unknown(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<
     for Key(name, _, required) in keys {
         // A missing key may be misspelled, which is already reported.
         let meant = |key: &Spanned<Cow<'_, str>>| {
-            key.get_ref() == name || closest(key.get_ref(), keys.iter().map(|Key(name, ..)| *name)) == Some(name)
+            key.get_ref() == name || find_closest(key.get_ref(), keys.iter().map(|Key(name, ..)| *name)) == Some(name)
         };
         if *required && !table.keys().any(meant) {
             problems.push((at.clone(), format!("{place} has no `{name}`")));
@@ -257,7 +257,7 @@ fn with_article(kind: &str) -> String {
 
 /// Returns the message for a word that is not in a list.
 fn describe_choices(name: &str, word: &str, words: &[&str]) -> String {
-    let hint = closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
+    let hint = find_closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
     format!("{name} \"{word}\" is unknown; choose {}{}", list_words(words, "or"), hint.unwrap_or_default())
 }
 
@@ -274,7 +274,7 @@ fn list_words(words: &[&str], last: &str) -> String {
 fn describe_unknown(key: &str, keys: &[Key], place: &str) -> String {
     let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
     let here = keys.iter().map(|Key(name, ..)| *name);
-    let hint = match closest(key, here.clone()) {
+    let hint = match find_closest(key, here.clone()) {
         Some(name) => format!("did you mean `{name}`?"),
         None => match TABLE_KEYS.iter().find(|(_, other)| names(other).any(|name| name == key)) {
             Some((other, _)) => format!("it belongs in {other}"),

@@ -120,7 +120,7 @@ impl Shrinker<'_> {
     /// Fails if the grader or the machine fails, with the reason as text.
     pub fn shrink_cause(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
         tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
-        tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.steps()));
+        tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.step_count()));
         let mut spent = Duration::ZERO;
         // Only the time of this thread counts, because other threads may be grading.
         let begun = processor_time(ProcessorTimeScope::Thread);
@@ -171,7 +171,8 @@ fn wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
     let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());
     let is_unreadable = matches!(examined.outcome.stop, Some(Stop::Trace { .. }));
     let ended = FailureKind::from_end(&seen.ended).is_some() || is_unreadable;
-    let behind = (ended && examined.outcome.steps_judged < scene.steps()).then_some(examined.outcome.steps_judged + 1);
+    let behind =
+        (ended && examined.outcome.steps_judged < scene.step_count()).then_some(examined.outcome.steps_judged + 1);
     let wrong = examined.rulings.iter().zip(1..).filter(|(ruling, _)| ruling.wrong_by_fair && !ended);
     behind.into_iter().chain(wrong.map(|(_, step)| step)).collect()
 }

@@ -30,7 +30,7 @@ impl SceneTask {
     /// Creates the result of a scene that has no judged run.
     #[must_use]
     pub fn without_run(&self, verdict: Verdict, why: Reason) -> SceneResult {
-        SceneResult::without_run(&self.name, self.scene.steps(), verdict, why)
+        SceneResult::without_run(&self.name, self.scene.step_count(), verdict, why)
     }
 
     /// Returns the result of a scene on which the grader or the machine failed.

@@ -105,17 +105,17 @@ fn least(rounds: u32, mut work: impl FnMut()) -> f64 {
 }
 
 fn step(scene: &Scene) {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    for _ in 0..scene.steps() {
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
+    for _ in 0..scene.step_count() {
         simulation.step(&mut ()).expect("a step");
     }
     black_box(simulation.state());
 }
 
 fn record<W: std::io::Write>(scene: &Scene, target: W) -> W {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(target, Layout::for_scene(scene), simulation.state());
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         simulation.step(&mut recorder).expect("a step");
     }
     recorder.finish().expect("written").0
@@ -239,7 +239,7 @@ fn hits() {
             impulses += frame.impulses.len();
         }
         std::fs::write(&file, xml).expect("a file");
-        let (steps, size) = (scene.steps(), trace.len() as f64 / 1e6);
+        let (steps, size) = (scene.step_count(), trace.len() as f64 / 1e6);
         let counted = counted("record", file.to_str().expect("a name in UTF-8")) / 1e6;
         // Both records of a step have its impulses.
         println!("| {name} | {steps} | {} | {size:.1} | {counted:.1} |", impulses / 2);
@@ -299,7 +299,7 @@ fn growth() {
         let edges = scene.edges.len();
         let pairs = particles * (particles - 1) / 2 + (particles - 2) * edges + particles * scene.half_planes.len();
         // The trace is judged while it is recorded, so it is never completely in memory.
-        let per_pair = |time: f64| time * 1e6 / pairs as f64 / f64::from(scene.steps());
+        let per_pair = |time: f64| time * 1e6 / pairs as f64 / f64::from(scene.step_count());
         let rounds = if particles < 1000 { 5 } else { 2 };
         let recorded = least(rounds, || _ = record(&scene, std::io::sink()));
         let trace = std::env::temp_dir().join(format!("fosssim-growth-{particles}.bin"));

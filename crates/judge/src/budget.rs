@@ -8,7 +8,7 @@
 //! machine.
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{Observer, RootSearch, Simulation, StepError, least_work, pairs},
+    sim::{Observer, RootSearch, Simulation, StepError, min_work, pairs},
 };
 
 /// The work that is allowed for every trace, even if its scene is simple. It takes about a tenth of a second.
@@ -96,13 +96,13 @@ fn least_of_scene(scene: &Scene) -> u64 {
         Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => pairs(scene).count() as u64,
         Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0,
     };
-    u64::from(scene.steps()).saturating_mul(pass.saturating_add(least_work(scene)))
+    u64::from(scene.step_count()).saturating_mul(pass.saturating_add(min_work(scene)))
 }
 
 /// Returns the work of the scene's own run.
 fn work_for_scene(scene: &Scene) -> u64 {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    for _ in 0..scene.steps() {
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
+    for _ in 0..scene.step_count() {
         if simulation.step(&mut ()).is_err() {
             break;
         }
@@ -197,13 +197,13 @@ mod tests {
         assert_eq!((given_up(&alone), alone.parity.overall), (None, Overall::Failed));
         let mut ends = [1, 2, 5].map(|threads| {
             let outcome = judged(1_500_000, &scene, &trace, true, threads);
-            assert_eq!(outcome.steps_judged, scene.steps());
+            assert_eq!(outcome.steps_judged, scene.step_count());
             assert_eq!(format!("{:?}", outcome.parity), format!("{:?}", alone.parity));
             assert_eq!(outcome.ruling(Book::Fair), Ruling::WrongAnswer, "by what it has seen");
             let fair = outcome.fair.expect("asked");
             (fair.given_up.expect("given up"), format!("{fair:?}"))
         });
-        assert!((3..scene.steps()).contains(&ends[0].0), "step {}", ends[0].0);
+        assert!((3..scene.step_count()).contains(&ends[0].0), "step {}", ends[0].0);
         ends.sort();
         assert_eq!(ends[0], ends[2]);
     }

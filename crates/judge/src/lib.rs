@@ -12,7 +12,7 @@
 //! #   <particle m="1" px="0" py="0" vx="2" vy="0" fixed="0"/>
 //! # </scene>"#;
 //! # let scene = scene::read("a ball", text)?.scene;
-//! # let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+//! # let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
 //! # let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
 //! # for _ in 0..scene.steps() {
 //! #     simulation.step(&mut recorder)?;
@@ -47,5 +47,5 @@ pub use fosssim_findings::{
     WithoutResult, parity, passes,
 };
 use fosssim_findings::{counts, finding, outcome, rules};
-pub use fosssim_model::trace::Unreadable;
+pub use fosssim_model::trace::ReadFailure;
 pub use wrong_coefficients::{differing_powers, find_factor};

@@ -35,7 +35,7 @@ impl OverlapStudy {
     /// # Errors
     /// Fails with a [`StepError`] if the step has no result.
     pub fn for_pair(scene: &Scene, step: u32, before: &State, pair: Pair) -> Result<Option<Self>, StepError> {
-        let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+        let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
         let mut run = |seed| {
             let mut watch = PairWatch { scene, pair, found: None };
             simulation.state_mut().clone_from(before);
@@ -77,7 +77,7 @@ impl Observer for PairWatch<'_> {
         if pair != self.pair {
             return;
         }
-        let motion = PairMotion::between(self.scene, pair, q_start, q_end);
+        let motion = PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let (first, second) = (pair.first as usize, pair.second as usize);
         let end = |point: PointMotion| point.start + point.shift;
         let (alpha, normal, reach, other) = match motion {

@@ -13,7 +13,7 @@ use super::{
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Impulse, Observer, Pair, PairKind, Pairs, Pass, Stage, pairs},
-    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, record_memory},
+    trace::{Layout, LenientFrame, LenientReader, LoggedImpulse, record_memory},
 };
 use std::io::Read;
 
@@ -53,24 +53,24 @@ fn compare(
     let layout = Layout::for_scene(scene);
     let places = RecordPlaces::for_scene(scene);
     let (mut trace, mut recording) =
-        (Lenient::new(trace, layout).with_limit(record_memory(scene)), Lenient::new(recording, layout));
+        (LenientReader::new(trace, layout).with_limit(record_memory(scene)), LenientReader::new(recording, layout));
     let (mut actual, mut expected) = (LenientFrame::default(), LenientFrame::default());
     let (mut buffers, mut result) = (Buffers::new(scene), StepResult::default());
     let mut outcome = Outcome::empty(layout.steps);
     let mut wrong_step = None;
     for frame in 0..layout.records() {
         recording.next(&mut expected).map_err(|stop| RecordingError {
-            frame: stop.at.frame,
-            offset: stop.at.offset,
-            message: stop.at.what.to_string(),
+            frame: stop.error.frame,
+            offset: stop.error.offset,
+            message: stop.error.what.to_string(),
         })?;
-        let step = layout.step_of(frame);
-        let is_end = step > 0 && !layout.is_mid(frame);
+        let step = layout.step_of_record(frame);
+        let is_end = step > 0 && !layout.is_mid_record(frame);
         if is_end {
             progress.step_begins(step);
         }
         if let Err(stop) = trace.next(&mut actual) {
-            let (offset, what) = (stop.at.offset, stop.at.what);
+            let (offset, what) = (stop.error.offset, stop.error.what);
             outcome.stop = Some(Stop::Trace { frame, step, cause: stop.cause, offset, what });
             break;
         }
@@ -126,7 +126,7 @@ impl RecordPlaces {
     fn place_at(&self, index: usize) -> PolynomialPlace {
         // A scene without pairs has no recording with polynomials, so this place is never shown.
         let nobody = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);
-        let (number, pair, which) = self.pairs.polynomial(index).unwrap_or(nobody);
+        let (number, pair, which) = self.pairs.locate_polynomial(index).unwrap_or(nobody);
         let round = u32::try_from(number).unwrap_or(u32::MAX);
         let stage = if self.continuous { Stage::ContinuousTime } else { Stage::Impulses { round } };
         let pass = Pass { stage, index: round };

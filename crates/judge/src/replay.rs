@@ -24,7 +24,7 @@ use fosssim_model::{
     assignments::ImpulseList,
     scene::Scene,
     sim::{RootSearch, Simulation, State, StepError, SweepOrder},
-    trace::{Layout, Lenient, LenientFrame, LoggedImpulse, Malformation, TraceError, Unreadable, record_memory},
+    trace::{Layout, LenientFrame, LenientReader, LoggedImpulse, Malformation, ReadFailure, TraceError, record_memory},
 };
 use std::{io::Read, sync::Mutex};
 use workers::Workers;
@@ -98,7 +98,7 @@ pub(super) fn judge_within(
     options: &Options,
     progress: &mut dyn Progress,
 ) -> Outcome {
-    let reader = Lenient::new(trace, Layout::for_scene(scene)).with_limit(memory);
+    let reader = LenientReader::new(trace, Layout::for_scene(scene)).with_limit(memory);
     let mut replay = Replay::new(scene, reader, options.fair);
     if let Some(floor) = floor {
         replay.budgets = replay.budgets.map(|budget| budget.with_floor(floor));
@@ -121,7 +121,7 @@ struct StepRules<'a> {
 /// The sequential part: the reader, the start state of the next step, and the outcome so far.
 struct Replay<'a, R> {
     scene: &'a Scene,
-    reader: Lenient<R>,
+    reader: LenientReader<R>,
     shape: StepRules<'a>,
     /// The end state of the last step that was read.
     state: State,
@@ -199,7 +199,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 
     /// Tries a step with unreadable records. The original computes the step before it reads them, and may never finish.
     fn try_step(&mut self, step: u32) {
-        let mut simulation = Simulation::new(self.scene, RootSearch::WhereNeeded);
+        let mut simulation = Simulation::new(self.scene, RootSearch::OnDemand);
         simulation.state_mut().clone_from(&self.state);
         simulation.set_steps_done(step - 1);
         let error = self.budgets[0].step(&mut simulation, &mut ()).err();
@@ -213,7 +213,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.outcome
     }
 
-    fn new(scene: &'a Scene, reader: Lenient<R>, fair: bool) -> Self {
+    fn new(scene: &'a Scene, reader: LenientReader<R>, fair: bool) -> Self {
         let layout = Layout::for_scene(scene);
         let logs_impulses = scene.collision.handling().records.impulses == ImpulseList::Responses;
         Self {
@@ -262,7 +262,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 Ok(())
             }
             Err(stop) => {
-                let TraceError { frame, step, offset, what } = stop.at;
+                let TraceError { frame, step, offset, what } = stop.error;
                 Err(Stop::Trace { frame, step, cause: stop.cause, offset, what })
             }
         }
@@ -416,11 +416,11 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 
 /// Returns the stop at an end record that is as long as the reference's, and longer than the kept part.
 fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
-    let (logged, kept) = (slot.end.logged, slot.end.polynomials.len());
+    let (logged, kept) = (slot.end.logged_polynomials, slot.end.polynomials.len());
     Stop::Trace {
         frame: layout.end_record(slot.step),
         step: slot.step,
-        cause: Unreadable::Limit,
+        cause: ReadFailure::Limit,
         offset: slot.last,
         what: Malformation::BeyondKept { logged, kept },
     }
@@ -442,7 +442,9 @@ impl Batch {
 /// Returns the memory of a record's lists, in bytes.
 fn memory(frame: &LenientFrame) -> usize {
     let LenientFrame { impulses, polynomials, .. } = frame;
-    8 * polynomials.coefficients.len() + 8 * polynomials.ends.len() + size_of::<LoggedImpulse>() * impulses.len()
+    8 * polynomials.coefficients.len()
+        + 8 * polynomials.coefficient_ends.len()
+        + size_of::<LoggedImpulse>() * impulses.len()
 }
 
 fn lock(slot: &mut Mutex<StepSlot>) -> &mut StepSlot {

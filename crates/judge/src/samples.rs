@@ -31,7 +31,7 @@ pub(crate) fn scene(text: &str) -> Scene {
 /// Returns the frames of a run that `steer` may change as it goes.
 pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
     let layout = Layout::for_scene(scene);
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
     for _ in 0..layout.steps {
         simulation.step(&mut (&mut steer, &mut recorder)).expect("a step");

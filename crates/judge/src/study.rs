@@ -8,7 +8,7 @@ use crate::{
     fair::{compare::compare, decides, formulas},
     finding::Role,
 };
-use fosssim_model::sim::{Decision, PairMotion, PointMotion, Time};
+use fosssim_model::sim::{Decision, ImpactTime, PairMotion, PointMotion};
 use fosssim_num::{
     bounded::{BoundedValue, BoundedVector},
     first_time::{first_time, positive_set},
@@ -86,7 +86,7 @@ impl Answer {
         let normal = if time <= 1.0 { motion.normal(time) } else { None };
         let decision = match normal {
             Some(normal) => Decision::Hit { time, normal },
-            None => Decision::Miss { time: Time::Found(time) },
+            None => Decision::Miss { time: ImpactTime::Found(time) },
         };
         let mut both = Intervals::<MAX_SETS>::EMPTY;
         both.push(Interval::EVERYTHING);

@@ -16,7 +16,7 @@ use super::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, Resume, State, StepController, WantedPairs, pairs},
+    sim::{Impulse, Observer, Pairs, Pass, PolynomialBytes, ResumeState, State, StepController, WantedPairs, pairs},
     trace::{LenientFrame, LoggedImpulse},
 };
 use fosssim_num::{
@@ -161,7 +161,7 @@ impl<'a> Tally<'a> {
 
     /// Returns whether the lists have the same length, and only a part of the trace's list was kept.
     pub(super) fn needs_more(&self) -> bool {
-        self.frame.is_cut() && self.frame.logged == self.polynomials
+        self.frame.is_cut() && self.frame.logged_polynomials == self.polynomials
     }
 
     /// Ends the step: compares impulses, the number of polynomials, and the states, in the original's order.
@@ -170,7 +170,7 @@ impl<'a> Tally<'a> {
             self.compare_impulses();
         }
         if has_polynomials {
-            self.identical &= self.frame.logged == self.polynomials;
+            self.identical &= self.frame.logged_polynomials == self.polynomials;
             self.settle_polynomials();
         }
         let is_same = same_state(reference, &self.frame.state);
@@ -220,7 +220,7 @@ impl<'a> Tally<'a> {
 
     /// Settles the findings about polynomials: a wrong number of them is the only finding (oracle-behavior.md 6.2).
     fn settle_polynomials(&mut self) {
-        let actual = self.frame.logged;
+        let actual = self.frame.logged_polynomials;
         if actual != self.polynomials {
             let per_pass = self.polynomials.checked_div(self.passes).unwrap_or(0);
             let detail = FindingDetail::PolynomialCount { expected: self.polynomials, actual, per_pass };
@@ -297,7 +297,7 @@ impl Observer for Tally<'_> {
         let order = std::mem::take(&mut self.buffers.order);
         let mut coefficients = [0.0; MAX_COEFFICIENTS];
         // The original accepts identical coefficients of this size, and never rejects NaN.
-        let is_small = own.largest() < SAFE_SUM / MAX_COEFFICIENTS as f64;
+        let is_small = own.max_modulus() < SAFE_SUM / MAX_COEFFICIENTS as f64;
         for (number, bytes) in own.iter().enumerate() {
             let index = self.polynomials;
             match self.likeness(bytes) {
@@ -315,7 +315,8 @@ impl Observer for Tally<'_> {
             let places = coefficients.iter_mut().zip(bytes.as_chunks::<8>().0);
             places.for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes));
             self.compare_polynomial(&coefficients[..bytes.len() / 8], || {
-                let (_, pair, which) = order.polynomial(number).expect("a pass logs the polynomials of these pairs");
+                let (_, pair, which) =
+                    order.locate_polynomial(number).expect("a pass logs the polynomials of these pairs");
                 PolynomialPlace { pass, pair, role: Role::from_number(pair.kind, which), index }
             });
         }
@@ -336,12 +337,12 @@ impl Observer for Tally<'_> {
 }
 
 impl StepController for Tally<'_> {
-    fn synchronize(&mut self, state: &mut State) -> Resume {
+    fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         if let Some(mid) = self.mid {
-            self.identical &= mid.logged == self.polynomials && same_state(state, &mid.state);
+            self.identical &= mid.logged_polynomials == self.polynomials && same_state(state, &mid.state);
             state.clone_from(&mid.state);
         }
-        Resume::Own
+        ResumeState::Own
     }
 }
 

@@ -24,7 +24,7 @@ pub(crate) fn line(remark: &Remark) -> Option<String> {
 /// Returns `Particle A - Edge B with normal = X Y`; empty for an unknown kind of pair.
 fn describe(impulse: &LoggedImpulse) -> String {
     let Some(kind) = impulse.kind() else { return String::new() };
-    let second = kind.second_of_original();
+    let second = kind.original_second_name();
     let normal = format_direction(impulse.normal);
     format!("Particle {} - {second} {} with normal = {normal}", impulse.first, impulse.second)
 }

@@ -7,11 +7,11 @@ use crate::{
     words::{INPUT_AND_OUTPUT, NO_PICTURE_FOLDER, NO_VORTEX_HESSIAN, not_opened},
 };
 use fosssim_files::{Identity, open_for_reading, open_for_writing, read_limited, with_timeout};
-use fosssim_judge::{Stop, Unreadable, WithoutResult, replay, replay::Progress};
+use fosssim_judge::{ReadFailure, Stop, WithoutResult, replay, replay::Progress};
 use fosssim_model::{
     scene::{
-        MAX_IMPLICIT, MAX_SCENE_BYTES, Scene,
-        original::{self, OriginalScene, RefusalKind, Rejection},
+        MAX_IMPLICIT_PARTICLES, MAX_SCENE_BYTES, Scene,
+        original::{self, OriginalScene, Rejection, RejectionKind},
     },
     sim::{RootSearch, Simulation, State, StepError},
     trace::{Frame, Layout, Reader, Recorder},
@@ -108,13 +108,13 @@ fn print_error(text: impl AsRef<[u8]>) -> u8 {
 /// Reads the scene like the original. A directory can be opened and reads as empty text.
 fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Rejection> {
     let name = Path::new(&arguments.scene);
-    let unreadable = || Rejection::unreadable(arguments.scene.as_bytes());
+    let unreadable = || Rejection::from_unreadable_file(arguments.scene.as_bytes());
     let (file, metadata) = open_for_reading(name).map_err(|_| unreadable())?;
     let bytes = if metadata.is_dir() {
         Vec::new()
     } else {
         read_limited(file, &metadata, MAX_SCENE_BYTES as u64).map_err(|error| Rejection {
-            kind: RefusalKind::Undefined,
+            kind: RejectionKind::Undefined,
             stderr: format!("cannot read the scene {}: {error}\n", name.display()).into_bytes(),
             exit_code: FAILURE_CODE,
             explanation: error.to_string(),
@@ -124,7 +124,7 @@ fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Rejection> {
 }
 
 fn refuse_scene(arguments: &Arguments, refusal: &Rejection) -> u8 {
-    if refusal.kind == RefusalKind::Crash {
+    if refusal.kind == RejectionKind::Crash {
         // The original crashes with an uncaught exception in this case.
         let name = arguments.scene.display();
         return print_error(format!("{name}: {}; `fosssim-oracle simulate {name}` says where\n", refusal.explanation));
@@ -139,8 +139,10 @@ fn find_unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
     }
     let particles = scene.particles.len();
-    (scene.integrator.is_implicit() && particles > MAX_IMPLICIT).then(|| {
-        format!("{particles} particles are too many for an implicit integrator, which can have {MAX_IMPLICIT}\n")
+    (scene.integrator.is_implicit() && particles > MAX_IMPLICIT_PARTICLES).then(|| {
+        format!(
+            "{particles} particles are too many for an implicit integrator, which can have {MAX_IMPLICIT_PARTICLES}\n"
+        )
     })
 }
 
@@ -171,11 +173,11 @@ fn simulate<W: Write>(
     mut transcript: Transcript<'_, impl Write>,
     mut pictures: Option<Box<dyn Pictures>>,
 ) -> u8 {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(file, Layout::for_scene(scene), simulation.state());
     transcript.observe_begin();
     let mut stopped = None;
-    for step in 1..=scene.steps() {
+    for step in 1..=scene.step_count() {
         transcript.step_begins(step);
         stopped = simulation.step(&mut recorder).err();
         if stopped.is_some() || recorder.has_failed() {
@@ -213,8 +215,8 @@ fn draw(scene: &Scene, name: &Path, mut pictures: Box<dyn Pictures>) -> Result<(
     let mut reader = Reader::new(trace, layout);
     let mut frame = Frame::default();
     while let Ok(true) = reader.next(&mut frame) {
-        let record = reader.records() - 1;
-        let step = layout.step_of(record);
+        let record = reader.record_count() - 1;
+        let step = layout.step_of_record(record);
         if step > 0 && record == layout.end_record(step) {
             pictures.step(step, &frame.state.positions)?;
         }
@@ -239,9 +241,9 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
     match &outcome.stop {
         None => 0,
         Some(Stop::Step(error)) => step_failed(error),
-        Some(Stop::Trace { cause: Unreadable::State | Unreadable::Impulses, .. }) => FAILURE_CODE,
+        Some(Stop::Trace { cause: ReadFailure::State | ReadFailure::Impulses, .. }) => FAILURE_CODE,
         Some(Stop::Trace {
-            cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io,
+            cause: ReadFailure::Memory | ReadFailure::Limit | ReadFailure::Io,
             frame,
             step,
             offset,

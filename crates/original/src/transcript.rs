@@ -4,7 +4,7 @@ use crate::{
     words::{BLUE, GREEN, PINK, RED, RESET},
 };
 use fosssim_judge::{
-    Book, Outcome, Residuals, Stop, Unreadable,
+    Book, Outcome, ReadFailure, Residuals, Stop,
     replay::{Progress, Remark},
 };
 use fosssim_model::scene::{Integrator, Scene};
@@ -78,7 +78,7 @@ const BANNER: [&str; 7] = [
 impl<'a, W: Write> Transcript<'a, W> {
     /// Creates an empty transcript.
     pub(crate) fn new(stream: W, heading: Heading<'a>) -> Self {
-        Self { stream, heading, steps: heading.scene.steps(), threshold: DOT_INTERVAL, clock: None, error: None }
+        Self { stream, heading, steps: heading.scene.step_count(), threshold: DOT_INTERVAL, clock: None, error: None }
     }
 
     /// Notes that all steps are completed.
@@ -104,18 +104,18 @@ impl<'a, W: Write> Transcript<'a, W> {
     pub(crate) fn print_end(&mut self, outcome: &Outcome) {
         match &outcome.stop_of(Book::Parity) {
             None => self.print_completion(),
-            Some(Stop::Trace { cause: Unreadable::State, .. }) => {
+            Some(Stop::Trace { cause: ReadFailure::State, .. }) => {
                 let text = format!("{RED}Error in TwoDSceneSerialized: {RESET}Failed to load timestep. Exiting.\n");
                 self.write(text.as_bytes());
             }
-            Some(Stop::Trace { cause: Unreadable::Impulses, .. }) => {
+            Some(Stop::Trace { cause: ReadFailure::Impulses, .. }) => {
                 // The original never resets this color.
                 let text = format!("{RED}Error while trying to deserialize time step impulses. Exiting.\n");
                 self.write(text.as_bytes());
             }
             // Here the original crashes or hangs. The reason goes to standard error, but the run is closed normally.
             Some(
-                Stop::Trace { cause: Unreadable::Memory | Unreadable::Limit | Unreadable::Io, .. } | Stop::Step(_),
+                Stop::Trace { cause: ReadFailure::Memory | ReadFailure::Limit | ReadFailure::Io, .. } | Stop::Step(_),
             ) => self.write(b"\n"),
         }
         if let Task::Grade(file) = self.heading.task {
@@ -379,7 +379,7 @@ mod tests {
     #[test]
     fn an_unreadable_first_record_leaves_no_banner() {
         let scene = scene(3);
-        let cause = Unreadable::State;
+        let cause = ReadFailure::State;
         let stop = Stop::Trace { frame: 0, step: 0, cause, offset: 0, what: Malformation::Empty };
         let text = after_heading(&scene, Task::Grade(b"e"), |transcript| {
             transcript.print_end(&outcome(Overall::None, Some(stop)));

@@ -13,7 +13,9 @@ use collisions::CollisionWalk;
 use fosssim_findings::PairWords;
 use fosssim_model::{
     scene::{Collision, CollisionDetection, Force, Integrator, Scene},
-    sim::{Pair, PairKind, Pass, PenaltyTerms, RootSearch, Simulation, State, Steering, StepController, gradients},
+    sim::{
+        Pair, PairKind, Pass, PenaltyTerms, RootSearch, Simulation, State, SteeringObserver, StepController, gradients,
+    },
 };
 use fosssim_num::{
     linear,
@@ -30,7 +32,7 @@ const MAX_ROWS: usize = 8;
 #[must_use]
 pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
     let mut walk = CollisionWalk::new(scene, pair);
-    Simulation::new(scene, RootSearch::WhereNeeded).step(&mut walk).ok()?;
+    Simulation::new(scene, RootSearch::OnDemand).step(&mut walk).ok()?;
     let parts: Vec<String> = [render_integration(scene, step), walk.finish()].into_iter().flatten().collect();
     let before = (step > 1).then(|| format!("Before step {step}\n{}\n", render_states(&State::for_scene(scene))));
     Some(before.unwrap_or_default() + &parts.join("\n"))
@@ -66,8 +68,8 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
         return None;
     }
     let sum: Vec<f64> = (0..x.len()).map(|entry| all.iter().map(|gradient| gradient[entry]).sum()).collect();
-    let mut systems = Steering(FirstSystem(None));
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut systems = SteeringObserver(FirstSystem(None));
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     simulation.step(&mut systems).ok()?;
     let (end, particles) = (simulation.state(), 0..scene.particles.len());
     let names = scene.forces.iter().map(|force| force.kind().element()).chain(["penalty"]);

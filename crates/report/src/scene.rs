@@ -27,7 +27,7 @@ fn describe_size(scene: &Scene) -> String {
         (scene.particles.len() as u64, "particle"),
         (scene.edges.len() as u64, "edge"),
         (scene.half_planes.len() as u64, "half-plane"),
-        (scene.steps().into(), "step"),
+        (scene.step_count().into(), "step"),
     ];
     let told = parts.iter().filter(|(many, _)| *many > 0).map(|(many, noun)| format_count(*many, noun));
     let milestones = scene.assignments().map(|assignment| assignment.key().to_uppercase());

@@ -14,7 +14,7 @@ use fosssim_findings::{
         SceneResult, UnusableReason, WrongTrace,
     },
 };
-use fosssim_judge::{FindingKind, PairWords, Unreadable};
+use fosssim_judge::{FindingKind, PairWords, ReadFailure};
 use fosssim_mistakes::together::likely_mistakes;
 use fosssim_model::assignments::Assignment;
 
@@ -169,10 +169,10 @@ fn describe_bad_trace(bad: &BadTrace) -> String {
     match bad {
         BadTrace::Unreadable { frame, step, cause, offset, damage } => {
             let what = match cause {
-                Unreadable::State | Unreadable::Impulses => "the trace ends too early",
-                Unreadable::Memory => "the trace holds a count that it cannot satisfy",
-                Unreadable::Limit => "the trace is beyond a limit of this grader",
-                Unreadable::Io => "the trace could not be read",
+                ReadFailure::State | ReadFailure::Impulses => "the trace ends too early",
+                ReadFailure::Memory => "the trace holds a count that it cannot satisfy",
+                ReadFailure::Limit => "the trace is beyond a limit of this grader",
+                ReadFailure::Io => "the trace could not be read",
             };
             format!("{what}: frame {frame} (step {step}), byte {offset}: {damage}")
         }

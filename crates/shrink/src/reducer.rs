@@ -106,5 +106,5 @@ impl Search<'_, '_> {
 /// sound has more of them than any other.
 fn count_warnings(scene: &Scene, assignment: Assignment) -> usize {
     let loaded = scene::read("", scene::write(scene).as_bytes()).ok().filter(|loaded| loaded.scene == *scene);
-    loaded.map_or(usize::MAX, |loaded| loaded.warnings.len() + scene.unknown_to(assignment).count())
+    loaded.map_or(usize::MAX, |loaded| loaded.warnings.len() + scene.unknown_features(assignment).count())
 }

@@ -98,7 +98,7 @@ fn move_and_round(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scen
 
 /// Returns the scene with each number replaced.
 fn map_numbers(scene: &Scene, mut replace: impl FnMut(NumberKind, f64) -> f64) -> Scene {
-    let (mut scene, steps) = (scene.clone(), scene.steps());
+    let (mut scene, steps) = (scene.clone(), scene.step_count());
     list_numbers(&mut scene).into_iter().for_each(|(kind, value)| *value = replace(kind, *value));
     set_steps(&mut scene, steps);
     scene

@@ -77,7 +77,7 @@ pub(crate) fn list_numbers(scene: &mut Scene) -> Vec<(NumberKind, &mut f64)> {
 /// Sets the duration to this number of steps.
 pub(crate) fn set_steps(scene: &mut Scene, steps: u32) {
     scene.duration = scene.time_step * f64::from(steps);
-    if scene.steps() != steps {
+    if scene.step_count() != steps {
         scene.duration = scene.time_step * (f64::from(steps) - 0.5);
     }
 }
@@ -105,11 +105,11 @@ pub(crate) fn measure_size(scene: &Scene) -> Size {
         Collision::Hybrid { max_iterations, .. } => 2 + usize::from(max_iterations != 1),
     };
     let fixed = scene.particles.iter().filter(|particle| particle.fixed).count();
-    let is_small = scene.particles.len().max(scene.steps() as usize) <= MAX_SIMULATED_SIZE;
+    let is_small = scene.particles.len().max(scene.step_count() as usize) <= MAX_SIMULATED_SIZE;
     let (hits, end) = if is_small { run(scene).unwrap_or_default() } else { Default::default() };
     let hits = hits.iter().filter(|(_, collides)| *collides).count();
     let long: usize = end.iter().map(|value| count_digits(*value).saturating_sub(HAND_DIGITS)).sum();
-    let (steps, bodies) = (scene.steps() as usize, scene.particles.len());
+    let (steps, bodies) = (scene.step_count() as usize, scene.particles.len());
     let (objects, features) = (scene.edges.len() + scene.half_planes.len(), effort + handling + fixed);
     ([steps, bodies, objects, scene.forces.len(), features, hits, written + long], magnitude)
 }
@@ -148,8 +148,8 @@ pub(crate) fn run(scene: &Scene) -> Option<RunResult> {
         }
     }
     let mut decisions = Decisions::default();
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    for _ in 0..scene.steps() {
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
+    for _ in 0..scene.step_count() {
         simulation.step(&mut decisions).ok()?;
     }
     let state = simulation.state();

@@ -3,7 +3,7 @@ use crate::size::set_steps;
 use fosssim_model::{
     scene::{Display, Scene},
     sim::State,
-    trace::{Layout, Lenient, LenientFrame},
+    trace::{Layout, LenientFrame, LenientReader},
 };
 use fosssim_num::vector::vector_at;
 
@@ -19,12 +19,12 @@ pub fn step_starts(scene: &Scene, trace: &[u8], wrong: &[u32]) -> Vec<(u32, Scen
     let wrong = &wrong[..wrong.len().min(MAX_STEPS)];
     let (Some(&first), Some(&last)) = (wrong.first(), wrong.last()) else { return Vec::new() };
     let layout = Layout::for_scene(scene);
-    let (mut reader, mut frame) = (Lenient::from_slice(trace, layout), LenientFrame::default());
+    let (mut reader, mut frame) = (LenientReader::from_slice(trace, layout), LenientFrame::default());
     // The state before each step, if the trace has it.
     let mut states = vec![State::for_scene(scene)];
     while states.len() < last as usize && reader.next(&mut frame).is_ok() {
-        let record = reader.records() - 1;
-        if record > 0 && !layout.is_mid(record) {
+        let record = reader.record_count() - 1;
+        if record > 0 && !layout.is_mid_record(record) {
             states.push(frame.state.clone());
         }
     }

@@ -32,7 +32,7 @@ fn smallest(assignment: Assignment, mistake: &str) -> (WrongReason, SmallScene) 
     for (_, scene) in probe_scenes(assignment) {
         let seen = run(&scene, student);
         let Some(reason) = WrongReason::first_reason(&scene, &seen) else { continue };
-        let steps: Vec<u32> = (1..=scene.steps()).collect();
+        let steps: Vec<u32> = (1..=scene.step_count()).collect();
         let mut holds = |scene: &Scene, is_alone| Some(reason.holds(scene, &run(scene, student), is_alone));
         let found = reduce(&step_starts(&scene, &seen.trace, &steps), assignment, &mut holds).expect("a scene");
         return (reason, found);
@@ -56,14 +56,14 @@ fn a_named_mistake_is_shown_by_one_step_of_few_bodies_and_round_numbers() {
         let (reason, small) = smallest(assignment, mistake);
         let (scene, student) = (&small.scene, Student::new(Some(find(mistake).expect("a row").mistake)));
         assert!(small.is_minimal, "{mistake}");
-        assert_eq!((scene.steps(), scene.particles.len()), (1, bodies), "{mistake}: {}", scene::write(scene));
+        assert_eq!((scene.step_count(), scene.particles.len()), (1, bodies), "{mistake}: {}", scene::write(scene));
         assert!(most_digits(scene) <= 2, "{mistake}: {}", scene::write(scene));
         // The result can be computed by hand, too: 0.375, but no 17 digits.
         let (_, end) = size::run(scene).expect("a result");
         let short = |value: &f64| value.to_string().len() < 9;
         assert!(assignment == T1M3 || end.iter().all(short), "{mistake}: {end:?}");
         assert!(reason.holds(scene, &run(scene, student), false), "{mistake}");
-        assert!(scene.unknown_to(assignment).next().is_none(), "{mistake}");
+        assert!(scene.unknown_features(assignment).next().is_none(), "{mistake}");
         for right in [Student::default(), Student::default().with_right_approach()] {
             assert_eq!(WrongReason::first_reason(scene, &run(scene, right)), None, "{mistake}");
         }

@@ -96,7 +96,7 @@ fn write_trace(scene: &Scene, student: Student, mut log: StepLog<'_>) -> Result<
     if !student.makes(Mistake::LogNoInitial) {
         Record::new(student, &scene.collision, &state, &log).encode(None, &mut bytes);
     }
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         let stepped = step(&world, &mut state, &mut log, &mut |state, log| {
             Record::new(student, &scene.collision, state, log).encode(None, &mut bytes);
         });

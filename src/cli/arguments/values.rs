@@ -71,7 +71,7 @@ pub(in crate::cli) fn explanation_hints() -> impl TypedValueParser<Value = Hints
 
 /// Returns the parser for a milestone of the course.
 pub(in crate::cli) fn assignment_parser() -> impl TypedValueParser<Value = Assignment> {
-    PossibleValuesParser::new(Assignment::default_first().map(Assignment::key))
+    PossibleValuesParser::new(Assignment::list_default_first().map(Assignment::key))
         .try_map(|key| Assignment::from_key(&key.to_ascii_lowercase()).ok_or("no such milestone"))
 }
 

@@ -34,7 +34,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
     let (shown, lasts) = (ShownParts::from_arguments(arguments), is_rereadable(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
-    let mut bar = console::Bar::new(scene.scene.steps());
+    let mut bar = console::Bar::new(scene.scene.step_count());
     let (options, heard) = (replay_options(arguments), &mut BothObservers(&mut bar, &mut wrong));
     let examined = examine(&scene.scene, &mut trace.reader, shown.keep(lasts), &options, heard);
     drop(bar);
@@ -113,7 +113,7 @@ impl ShownParts {
 fn replay_options(arguments: &CheckArguments) -> replay::Options {
     replay::Options {
         threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
-        root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded },
+        root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::OnDemand },
         fair: arguments.rules.ask_fair(),
         ..replay::Options::default()
     }
@@ -121,7 +121,7 @@ fn replay_options(arguments: &CheckArguments) -> replay::Options {
 
 /// Returns an empty collection for wrong steps, if they are shown.
 fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
-    let steps = scene.scene.steps();
+    let steps = scene.scene.step_count();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
         bail!("the scene {} has {}; there is no step {step}", scene.name, format_count(steps.into(), "step"));
     }

@@ -82,7 +82,7 @@ fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
 fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let scene = input::scene(name)?;
     let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
-    let steps = scene.scene.steps();
+    let steps = scene.scene.step_count();
     if step == 0 || step > steps {
         let steps = format_count(steps.into(), "step");
         bail!("the scene {} has {steps}, counted from 1; there is no step {step}", scene.name);
@@ -120,7 +120,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let study = match call.map(|call| &call.study) {
         Some(Ok(seen)) => seen.clone(),
         Some(Err(error)) => return Err(*error).context(NO_ANSWER),
-        None => study_motion(&PairMotion::between(&scene.scene, pair, &before.positions, &end.positions))?,
+        None => study_motion(&PairMotion::from_positions(&scene.scene, pair, &before.positions, &end.positions))?,
     };
     let pass = call.filter(|call| call.polynomials > 0).map(|call| call.pass);
     let logged = call.map_or(&CallLog::Unknown, |call| &call.logged);
@@ -131,7 +131,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
 
 /// Returns the state before a step of the reference's run.
 fn simulate_to(scene: &SceneInput, step: u32) -> Result<State> {
-    let mut simulation = Simulation::new(&scene.scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(&scene.scene, RootSearch::OnDemand);
     for _ in 1..step {
         if let Err(error) = simulation.step(&mut ()) {
             bail!("the scene {} can't be simulated: {}", scene.name, no_result(&error));
@@ -157,7 +157,7 @@ fn read_traced(scene: &SceneInput, name: &Path, step: u32) -> Result<TracedStep>
     let (mut frame, mut before, mut mid) = (Frame::default(), State::default(), State::default());
     loop {
         let read = reader.next(&mut frame);
-        let record = reader.records();
+        let record = reader.record_count();
         match read {
             Ok(true) if record - 1 == layout.end_record(step) => break,
             Ok(true) => {

@@ -83,7 +83,7 @@ impl<'a> LiveDisplay<'a> {
     fn begin(&mut self, submission: usize, scene: usize) {
         let Some(bars) = &mut self.bars else { return };
         let Some(task) = self.plan.scenes().nth(scene) else { return };
-        let bar = console::add_bar(&bars.all, task.scene.steps().into(), "  {msg:<60!} step {pos} of {len}");
+        let bar = console::add_bar(&bars.all, task.scene.step_count().into(), "  {msg:<60!} step {pos} of {len}");
         bar.set_message(format!("{} {}", shorten_name(&one_line(&self.submissions[submission].name)), task.name));
         bars.running.insert((submission, scene), bar);
     }

@@ -123,7 +123,7 @@ pub(super) fn describe(
         program,
         xml: scene::write(scene),
         bodies: scene.particles.len(),
-        steps: scene.steps(),
+        steps: scene.step_count(),
         runs: *runs,
         is_minimal: *is_minimal,
         note,
@@ -138,7 +138,7 @@ pub(super) fn describe(
         let (differs, first) = list_differences(small);
         told.differs = differs;
         if let Some(Finding { step, detail, .. }) = first.filter(|_| told.note.is_none()) {
-            let alone = step_starts(scene, &seen.trace, &[step]).into_iter().find(|(_, scene)| scene.steps() == 1);
+            let alone = step_starts(scene, &seen.trace, &[step]).into_iter().find(|(_, scene)| scene.step_count() == 1);
             let pair = detail.pair().map(|pair| (pair, detail.pass()));
             told.by_hand = alone.and_then(|(_, scene)| first_step(&scene, pair, step));
         }

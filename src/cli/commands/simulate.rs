@@ -19,11 +19,11 @@ pub(super) fn run(arguments: &SimulateArguments) -> Result<()> {
         None => Output::Nowhere,
     };
     let to_stdout = output.is_stdout();
-    let root_search = if arguments.audit { RootSearch::Audit } else { RootSearch::WhereNeeded };
+    let root_search = if arguments.audit { RootSearch::Audit } else { RootSearch::OnDemand };
     let mut simulation = Simulation::new(&scene.scene, root_search);
     let mut recorder = Recorder::start(output, Layout::for_scene(&scene.scene), simulation.state());
     let mut counts = EventCounts::new(&scene.scene);
-    let steps = scene.scene.steps();
+    let steps = scene.scene.step_count();
     let mut bar = console::Bar::new(steps);
     for step in 1..=steps {
         if let Err(error) = simulation.step(&mut (&mut recorder, &mut counts)) {

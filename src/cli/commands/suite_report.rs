@@ -181,7 +181,7 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     }
     for task in &group.scenes {
         let particles = format_count(task.scene.particles.len() as u64, "particle");
-        let steps = format_count(task.scene.steps().into(), "step");
+        let steps = format_count(task.scene.step_count().into(), "step");
         let _ = writeln!(text, "  {} ({particles}, {steps})", one_line(&task.name));
     }
     text
@@ -238,7 +238,7 @@ fn notes_on_unknown(plan: &Plan, style: Style) -> Vec<String> {
     let milestone = plan.assignment();
     let note = style.paint(Look::Notice, "note");
     let scenes = plan.scenes().filter_map(|task| {
-        let unknown = task.scene.unknown_to(milestone).map(|unknown| unknown.to_string());
+        let unknown = task.scene.unknown_features(milestone).map(|unknown| unknown.to_string());
         Some((one_line(&task.name), unknown.reduce(|all, one| all + ", " + &one)?))
     });
     scenes.map(|(scene, unknown)| format!("\n{note}: {scene}: {unknown}\n")).collect()

@@ -39,7 +39,7 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
     scenes.retain(|scene| scene.particles.len() <= MAX_PARTICLES);
     // Begin with small scenes, because most mistakes show in the first scenes.
-    scenes.sort_by_key(|scene| u64::from(scene.steps()) * (scene.particles.len() as u64).pow(2));
+    scenes.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
     let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written(row, scene.assignment()));
     let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_theirs).collect();

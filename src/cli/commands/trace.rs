@@ -27,7 +27,7 @@ pub(super) fn print_info(arguments: &TraceInfoArguments) -> Result<u8> {
 pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;
-    let steps = scene.scene.steps();
+    let steps = scene.scene.step_count();
     let step = arguments.step;
     if step > steps {
         bail!("the scene {} has {}; there is no step {step}", scene.name, format_count(steps.into(), "step"));
@@ -45,12 +45,12 @@ pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
                 bail!("cannot show step {step} of the trace {}: {error}", trace.name);
             }
         }
-        let number = reader.records() - 1;
-        if layout.step_of(number) == step {
+        let number = reader.record_count() - 1;
+        if layout.step_of_record(number) == step {
             records.push(ShownRecord {
                 number,
                 offset: reader.record_offset(),
-                mid: layout.is_mid(number),
+                mid: layout.is_mid_record(number),
                 frame: frame.clone(),
                 notes: reader.notes().iter().map(ToString::to_string).collect(),
             });
@@ -58,7 +58,7 @@ pub(super) fn show(arguments: &TraceShowArguments) -> Result<()> {
         if number == layout.end_record(step) {
             break;
         }
-        if !layout.is_mid(number) {
+        if !layout.is_mid_record(number) {
             std::mem::swap(&mut frame, &mut before);
         }
     }

@@ -70,7 +70,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
         PairKind::ParticleEdge => scene.edges.len(),
         PairKind::ParticleHalfPlane => scene.half_planes.len(),
     };
-    let second = index(second, count, kind.second())?;
+    let second = index(second, count, kind.second_name())?;
     match kind {
         PairKind::ParticleParticle if first == second => bail!("a particle cannot form a pair with itself"),
         // Detection checks each pair only once, with the lower index first.

@@ -43,7 +43,7 @@ fn impulses_conserve_momentum() {
         let impulses = Cell::new(0);
         search(1500, &crowd(Wanted { collision, fixed: false, half_planes: false, steps: 1 }), |scene| {
             let mut seen = AfterImpulses::default();
-            let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+            let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
             let before = simulation.state().clone();
             simulation.step(&mut seen).expect("an ordinary step");
             impulses.set(impulses.get() + seen.impulses);
@@ -109,7 +109,7 @@ fn one_impulse_never_adds_energy() {
     let (hits, kept) = (Cell::new([0; 3]), Cell::new(0));
     search(4000, &one_contact(), |scene| {
         let mut seen = AfterImpulses::default();
-        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
         let before = energy(&scene, simulation.state());
         simulation.step(&mut seen).expect("an ordinary step");
         if seen.impulses != 1 {
@@ -158,7 +158,7 @@ impl Observer for Geometric {
 
 fn geometric(scene: &Scene) -> Geometric {
     let mut seen = Geometric::default();
-    Simulation::new(scene, RootSearch::WhereNeeded).step(&mut seen).expect("an ordinary step");
+    Simulation::new(scene, RootSearch::OnDemand).step(&mut seen).expect("an ordinary step");
     seen
 }
 

@@ -84,17 +84,17 @@ impl Story {
 /// Simulates the scene and its image side by side and says how many steps were the same, and what ended it: `None` if
 /// nothing did, else whether a coefficient was dropped on one side only.
 fn same_steps(scene: &Scene, map: &Map) -> (u32, Option<bool>) {
-    let mut one = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut two = Simulation::new(&map.scene(scene), RootSearch::WhereNeeded);
+    let mut one = Simulation::new(scene, RootSearch::OnDemand);
+    let mut two = Simulation::new(&map.scene(scene), RootSearch::OnDemand);
     let (mut left, mut right) = (Story::default(), Story::default());
-    for step in 0..scene.steps() {
+    for step in 0..scene.step_count() {
         one.step(&mut left).expect("an ordinary step");
         two.step(&mut right).expect("an ordinary step");
         if left.mapped(map) != right || map.state(one.state()) != *two.state() {
             return (step, Some(left.drops_others(&right)));
         }
     }
-    (scene.steps(), None)
+    (scene.step_count(), None)
 }
 
 /// The linear solver pivots by rows and columns, which a turn exchanges.
@@ -145,7 +145,7 @@ fn powers_of_two_as_unit_of_length_change_no_bit() {
         .flat_map_iter(|(name, scene)| {
             [4.0, 0.5].map(|factor| {
                 let map = Map { factor, ..Map::NONE };
-                (format!("{name} times {factor}"), same_steps(scene, &map), scene.steps())
+                (format!("{name} times {factor}"), same_steps(scene, &map), scene.step_count())
             })
         })
         .collect();
@@ -237,11 +237,11 @@ fn compare(scene: &Scene, rewriting: &Rewriting) -> Result<(u32, u32), String> {
         return Ok((0, 0));
     }
     let image = (rewriting.scene)(scene);
-    let mut one = Simulation::new(scene, RootSearch::WhereNeeded);
-    let mut two = Simulation::new(&image, RootSearch::WhereNeeded);
+    let mut one = Simulation::new(scene, RootSearch::OnDemand);
+    let mut two = Simulation::new(&image, RootSearch::OnDemand);
     let mut observer = Mended { scene, inner: Doubt::default() };
     let mut compared = 0;
-    for step in 1..=scene.steps() {
+    for step in 1..=scene.step_count() {
         *two.state_mut() = (rewriting.state)(one.state());
         observer.inner.any = false;
         let left = one.step(&mut observer);

@@ -77,8 +77,8 @@ impl Observer for Tally {
 
 fn tally(scene: &Scene) -> Tally {
     let mut tally = Tally::default();
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    for _ in 0..scene.steps() {
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
+    for _ in 0..scene.step_count() {
         simulation.step(&mut tally).expect("an ordinary step");
     }
     tally

@@ -85,7 +85,7 @@ impl<O: Observer> Observer for Mended<'_, O> {
 }
 
 impl<O: Observer> StepController for Mended<'_, O> {
-    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+    fn adjust_polynomials(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         if pair.kind == PairKind::ParticleEdge {
             let edge = self.scene.edges[pair.second as usize];
             let ends = [edge.first, edge.second];

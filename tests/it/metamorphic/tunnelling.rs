@@ -27,7 +27,7 @@ const ELASTIC: Collision = Collision::ContinuousTime { restitution: 1.0 };
 
 /// The end positions of a step.
 fn end_of(scene: &Scene) -> Vec<f64> {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     simulation.step(&mut ()).expect("an ordinary step");
     simulation.state().positions.clone()
 }
@@ -134,12 +134,12 @@ fn discs_do_not_pass_through_edges_unseen() {
     let (right, course) = (Cell::new([0; 2]), Cell::new([0; 2]));
     search(8000, &disc_and_edge(), |scene| {
         let mut mended = Mended { scene: &scene, inner: Crossings::default() };
-        Simulation::new(&scene, RootSearch::WhereNeeded).step(&mut mended).expect("an ordinary step");
+        Simulation::new(&scene, RootSearch::OnDemand).step(&mut mended).expect("an ordinary step");
         let [seen, missed] = right.get();
         right.set([seen + mended.inner.seen, missed + mended.inner.missed]);
         prop_assert_eq!(mended.inner.missed, 0);
         let mut plain = Crossings::default();
-        Simulation::new(&scene, RootSearch::WhereNeeded).step(&mut plain).expect("an ordinary step");
+        Simulation::new(&scene, RootSearch::OnDemand).step(&mut plain).expect("an ordinary step");
         let [seen, missed] = course.get();
         course.set([seen + plain.seen, missed + plain.missed]);
         Ok(())
@@ -170,10 +170,10 @@ fn the_direction_of_an_edge_matters_to_the_wrong_letter_only() {
         let [mut right, mut plain] = [[None; 2]; 2];
         for (index, scene) in [&scene, &other].into_iter().enumerate() {
             let mut met = Mended { scene, inner: Met::default() };
-            Simulation::new(scene, RootSearch::WhereNeeded).step(&mut met).expect("an ordinary step");
+            Simulation::new(scene, RootSearch::OnDemand).step(&mut met).expect("an ordinary step");
             right[index] = met.inner.0;
             let mut met = Met::default();
-            Simulation::new(scene, RootSearch::WhereNeeded).step(&mut met).expect("an ordinary step");
+            Simulation::new(scene, RootSearch::OnDemand).step(&mut met).expect("an ordinary step");
             plain[index] = met.0;
         }
         prop_assert_eq!(right[0], right[1]);

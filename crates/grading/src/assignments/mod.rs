@@ -90,7 +90,7 @@ pub fn version(name: &str) -> Option<(Assignment, Version)> {
 /// Returns the names of the built-in suites with their versions, such as `t2m2@2`, beginning with the newest version
 /// for the default assignment.
 pub fn names() -> impl Iterator<Item = String> {
-    Assignment::default_first().into_iter().flat_map(|assignment| {
+    Assignment::list_default_first().into_iter().flat_map(|assignment| {
         (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))
     })
 }

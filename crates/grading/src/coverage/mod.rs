@@ -81,8 +81,8 @@ impl Coverage {
         let mut coverage = Self::default();
         if scene.assignment() == Assignment::T2M2 {
             let mut watch = watch::Watch::new(scene, &mut coverage);
-            let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-            for _ in 0..scene.steps() {
+            let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
+            for _ in 0..scene.step_count() {
                 simulation.step(&mut watch)?;
             }
         }

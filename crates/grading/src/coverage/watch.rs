@@ -197,7 +197,7 @@ impl Observer for Watch<'_> {
         }
     }
 
-    fn pass_positions(&mut self, q_start: &[f64], q_end: &[f64]) {
+    fn observe_positions(&mut self, q_start: &[f64], q_end: &[f64]) {
         (self.step.q_start, self.step.q_end) = (q_start.to_vec(), q_end.to_vec());
     }
 

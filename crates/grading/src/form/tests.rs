@@ -11,12 +11,12 @@ use crate::{
 };
 use fosssim_findings::FindingPlace;
 use fosssim_judge::{
-    Book, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Part, PolynomialPlace, RecordPart,
-    RescaledCoefficient, Residuals, Role, Ruling, Unreadable, fair::Cause,
+    Book, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Part, PolynomialPlace, ReadFailure, RecordPart,
+    RescaledCoefficient, Residuals, Role, Ruling, fair::Cause,
 };
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, Stage, StepError},
-    trace::{List, LoggedImpulse, Malformation},
+    trace::{LoggedImpulse, Malformation, RecordList},
 };
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use fosssim_sandbox::{RunEnd, StartProblem};
@@ -121,7 +121,7 @@ fn wrong() -> SceneResult {
     };
     let residuals = Residuals { accumulated_position: f64::INFINITY, maximum_position: 0.1, ..Residuals::default() };
     let damage =
-        Damage { frame: 1, step: 2, offset: 3, what: Malformation::CountCut { list: List::Impulses, left: 3 } };
+        Damage { frame: 1, step: 2, offset: 3, what: Malformation::CountCut { list: RecordList::Impulses, left: 3 } };
     let why = Reason::Wrong(WrongTrace::Steps { wrong: 3, first: 7, kind: FindingKind::Coefficient });
     SceneResult {
         ended: Some(RunEnd::Exited(0)),
@@ -171,7 +171,7 @@ fn every_reason_and_every_end_reads_back() {
         step: 5,
         cause,
         offset: 77,
-        damage: Malformation::CountCut { list: List::Impulses, left: 3 },
+        damage: Malformation::CountCut { list: RecordList::Impulses, left: 3 },
     };
     let errors = [
         StepError::RootSearch { step: 1, pair: pair(PairKind::ParticleEdge) },
@@ -179,7 +179,7 @@ fn every_reason_and_every_end_reads_back() {
         StepError::VortexHessian { step: 3 },
         StepError::Work { step: 4 },
     ];
-    let causes = [Unreadable::State, Unreadable::Impulses, Unreadable::Memory, Unreadable::Limit, Unreadable::Io];
+    let causes = [ReadFailure::State, ReadFailure::Impulses, ReadFailure::Memory, ReadFailure::Limit, ReadFailure::Io];
     let others = FolderContents::Others { names: vec!["a/".to_owned()], more: 3, elsewhere: Some("b/c".to_owned()) };
     let mut reasons: Vec<Reason> = vec![
         Reason::Right,

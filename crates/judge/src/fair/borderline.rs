@@ -18,8 +18,8 @@ use fosssim_model::{
 /// Fails if a step has no result.
 pub fn find_borderline(scene: &Scene) -> Result<Vec<Borderline>, StepError> {
     let mut observer = BorderlineObserver { scene, step: 0, found: Vec::new() };
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    for _ in 0..scene.steps() {
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
+    for _ in 0..scene.step_count() {
         simulation.step(&mut observer)?;
     }
     Ok(observer.found)

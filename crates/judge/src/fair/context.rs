@@ -2,7 +2,7 @@
 use super::ordinary::OrdinaryRange;
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{ByKind, Decision, Pair, PairKind, Pass, State, pairs},
+    sim::{Decision, Pair, PairKind, PairKindMap, Pass, State, pairs},
     trace::{Layout, LenientFrame},
 };
 
@@ -16,7 +16,7 @@ pub(crate) struct Context<'a> {
     /// The number of pairs of one detection pass.
     pub pairs: usize,
     /// The number of calls of each kind in a pass.
-    pub of_kinds: ByKind<u64>,
+    pub of_kinds: PairKindMap<u64>,
     /// The number of records of one step.
     pub records_per_step: u32,
     /// The range of states that need no comparison with the reference's own run.
@@ -30,8 +30,8 @@ impl<'a> Context<'a> {
     pub fn new(scene: &'a Scene) -> Self {
         let pairs = pairs(scene);
         let counts = pairs.counts();
-        let of_kinds = ByKind::from_fn(|kind| counts[kind] as u64);
-        let (per_pass, pairs) = (pairs.polynomials(), pairs.count());
+        let of_kinds = PairKindMap::from_fn(|kind| counts[kind] as u64);
+        let (per_pass, pairs) = (pairs.polynomial_count(), pairs.count());
         let records_per_step = Layout::for_scene(scene).records_per_step();
         Self {
             scene,

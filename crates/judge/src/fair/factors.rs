@@ -1,5 +1,5 @@
 //! The factors that a trace's polynomials show.
-use fosssim_model::sim::{ByKind, PairKind};
+use fosssim_model::sim::{PairKind, PairKindMap};
 use fosssim_num::tolerances::FAIR_OUTLIER;
 
 /// The factors that polynomials of one kind of pair and number show: the smallest, the largest, and their distribution.
@@ -16,7 +16,7 @@ pub struct Factors {
 }
 
 /// The factors of all kinds of pairs and numbers of polynomials.
-pub type Scales = ByKind<[Factors; PairKind::MAX_POLYNOMIALS]>;
+pub type Scales = PairKindMap<[Factors; PairKind::MAX_POLYNOMIALS]>;
 
 impl Default for Factors {
     fn default() -> Self {

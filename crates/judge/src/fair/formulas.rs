@@ -322,7 +322,7 @@ mod tests {
         }
         let scene = original::read(SCENE.as_bytes()).expect("a scene").scene;
         let mut compare = Compare(&scene, 0);
-        let mut simulation = Simulation::new(&scene, fosssim_model::sim::RootSearch::WhereNeeded);
+        let mut simulation = Simulation::new(&scene, fosssim_model::sim::RootSearch::OnDemand);
         simulation.step(&mut compare).expect("a step");
         assert_eq!(compare.1, 3 * 5 + (5 + 3 + 3 + 6) + 3 * 5);
     }

@@ -8,7 +8,7 @@ use fosssim_findings::{
     Finding, FindingDetail, FindingKind, Outcome, Stop,
     fair::{FairRefusal, FairVerdict, Form, Judgement},
 };
-use fosssim_model::sim::{ByKind, PairKind, StepError};
+use fosssim_model::sim::{PairKind, PairKindMap, StepError};
 
 /// The maximum number of borderline decisions that are kept as examples.
 const MAX_EXAMPLES: usize = 8;
@@ -26,7 +26,7 @@ pub(crate) struct Judging {
     claimed: Scales,
     /// The number of polynomials that are identical to the reference's. Approaches count once per step, because they
     /// show nothing for objects at rest.
-    same: ByKind<[u64; PairKind::MAX_POLYNOMIALS]>,
+    same: PairKindMap<[u64; PairKind::MAX_POLYNOMIALS]>,
     /// Polynomials that depend on the program's factors, step by step.
     pending: Vec<PendingOfStep>,
 }
@@ -77,7 +77,7 @@ impl Judging {
         }
         self.said.findings.wrong_steps += u64::from(is_wrong);
         for (kind, &calls) in step.same.iter() {
-            let approach = kind.polynomials() - 1;
+            let approach = kind.polynomial_count() - 1;
             for (number, same) in self.same[kind].iter_mut().enumerate() {
                 *same += if number == approach { calls.min(1) } else { calls };
             }

@@ -9,7 +9,7 @@ use super::{
     formulas::BoundedPairMotion,
 };
 use fosssim_model::sim::{
-    Decision, Detection, Observer, Pair, Pass, Resume, Simulation, Stage, State, StepController, Time,
+    Decision, Detection, ImpactTime, Observer, Pair, Pass, ResumeState, Simulation, Stage, State, StepController,
 };
 use fosssim_num::{
     bounded::UNIT_ROUNDOFF,
@@ -184,7 +184,7 @@ impl Observer for PerturbedRun<'_> {
 }
 
 impl StepController for PerturbedRun<'_> {
-    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
+    fn adjust_polynomials(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
         self.motion = Some(BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end));
     }
 
@@ -199,7 +199,7 @@ impl StepController for PerturbedRun<'_> {
         }
     }
 
-    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+    fn adjust_decision(&mut self, pair: Pair, decision: Decision) -> Decision {
         let call = self.run.hits.len();
         self.run.hits.push(decision.collides());
         let Some(known) = self.decisions.get(call).filter(|known| known.pair == pair) else { return decision };
@@ -210,19 +210,19 @@ impl StepController for PerturbedRun<'_> {
                 self.decide_nearby(time).unwrap_or(decision)
             }
             (Decision::Hit { .. }, _) => known.decision,
-            (Decision::Miss { .. }, Decision::Hit { time, .. }) => Decision::Miss { time: Time::Found(time) },
+            (Decision::Miss { .. }, Decision::Hit { time, .. }) => Decision::Miss { time: ImpactTime::Found(time) },
             (Decision::Miss { .. }, Decision::Miss { .. }) => decision,
         }
     }
 
-    fn synchronize(&mut self, state: &mut State) -> Resume {
+    fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         self.run.mid.clone_from(state);
-        let Some(mid) = self.records.mid else { return Resume::Own };
+        let Some(mid) = self.records.mid else { return ResumeState::Own };
         if mid.state.is_finite() {
             state.clone_from(&mid.state);
             perturb(state, self.seed);
         }
-        Resume::Synchronized
+        ResumeState::Synchronized
     }
 }
 

@@ -61,7 +61,7 @@ impl<'a> Reach<'a> {
             (Some(judged), _) => (judged, 0),
             (None, Some(detail)) => (StepJudgement::default().with_finding(records, detail), 0),
             (None, None) => {
-                let simulation = self.other.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::WhereNeeded));
+                let simulation = self.other.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::OnDemand));
                 let begin = simulation.work();
                 simulation.limit_work(begin.saturating_add(most_work));
                 let judged = judge(context, simulation, records, identical);
@@ -88,7 +88,7 @@ impl<'a> Reach<'a> {
     /// Simulates the reference's own run up to the end of a step.
     fn run_to(&mut self, step: u32) {
         let run = self.run.get_or_insert_with(|| Run {
-            simulation: Simulation::new(self.scene, RootSearch::WhereNeeded),
+            simulation: Simulation::new(self.scene, RootSearch::OnDemand),
             steps: 0,
             is_lost: false,
         });

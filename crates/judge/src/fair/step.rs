@@ -116,5 +116,5 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
 /// more coefficients than any detection has.
 fn is_impossible(frame: &LenientFrame) -> bool {
     let log = &frame.polynomials;
-    frame.note.is_none() && !frame.plain || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)
+    frame.note.is_none() && !frame.is_unchanged || (0..log.len()).any(|index| log.get(index).len() > MAX_COEFFICIENTS)
 }

@@ -8,7 +8,7 @@ use fosssim_findings::{
     Finding, FindingCounts, FindingDetail, FindingKind, PolynomialPlace,
     fair::{Borderline, Shares},
 };
-use fosssim_model::sim::{ByKind, Pair, PairKind, Pass};
+use fosssim_model::sim::{Pair, PairKind, PairKindMap, Pass};
 
 /// The findings, decisions and factors of one step.
 #[derive(Debug, Clone, Default)]
@@ -28,7 +28,7 @@ pub(crate) struct StepJudgement {
     /// Factors of polynomials that differ from the reference's.
     pub scales: Scales,
     /// The number of calls of each kind that logged polynomials identical to the reference's.
-    pub same: ByKind<u64>,
+    pub same: PairKindMap<u64>,
     /// The number of polynomials that lack other small coefficients than the reference's.
     pub lost: u64,
     /// The used shares of tolerances.
@@ -50,7 +50,7 @@ impl StepJudgement {
         let frame = u64::from(step) * u64::from(context.records_per_step);
         let passes = polynomials.checked_div(context.per_pass).unwrap_or(0);
         let passes = passes as u64;
-        let same = ByKind::from_fn(|kind| passes * context.of_kinds[kind]);
+        let same = PairKindMap::from_fn(|kind| passes * context.of_kinds[kind]);
         Self { step, frame, decisions: passes * context.pairs as u64, same, ..Self::default() }
     }
 

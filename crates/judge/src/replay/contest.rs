@@ -14,13 +14,13 @@ pub(super) struct ContestOrder {
 impl ContestOrder {
     /// Creates the state before the first step.
     pub(super) fn new(scene: &Scene) -> Self {
-        Self { simulation: Simulation::new(scene, RootSearch::WhereNeeded), order: SweepOrder::default() }
+        Self { simulation: Simulation::new(scene, RootSearch::OnDemand), order: SweepOrder::default() }
     }
 
     /// Runs a step from `before`, with at most `most_work` work. Returns the order with which the reference begins this
     /// step; it is empty outside a contest.
     pub(super) fn follow(&mut self, step: u32, before: &State, most_work: u64) -> &SweepOrder {
-        if self.simulation.penalty_pairs().is_some_and(|pairs| pairs.order(&mut self.order)) {
+        if self.simulation.penalty_pairs().is_some_and(|pairs| pairs.copy_order(&mut self.order)) {
             self.simulation.state_mut().clone_from(before);
             self.simulation.set_steps_done(step - 1);
             self.simulation.limit_work(self.simulation.work().saturating_add(most_work));

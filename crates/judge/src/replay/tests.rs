@@ -32,7 +32,7 @@ fn a_batch_counts_all_lists() {
                 (0..polynomials).for_each(|_| frame.polynomials.push(&[]));
             }
         });
-        let mut replay = Replay::new(&scene, Lenient::new(&trace[..], Layout::for_scene(&scene)), true);
+        let mut replay = Replay::new(&scene, LenientReader::new(&trace[..], Layout::for_scene(&scene)), true);
         replay.read_initial().expect("a first record");
         let mut batch = Batch::default();
         assert!(replay.read_batch(&mut batch).is_none());
@@ -79,7 +79,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
         let judge = |memory, mut trace: &[u8]| judge_within(memory, None, &scene, &mut trace, &options, &mut ());
         let whole = judge(usize::MAX, &right);
         assert!(whole.stop.is_none() && whole.parity.findings.counts.total() == 0, "{whole:?}");
-        let Some(Stop::Trace { step: 1, frame: 2, cause: Unreadable::Limit, what, .. }) = judge(0, &right).stop else {
+        let Some(Stop::Trace { step: 1, frame: 2, cause: ReadFailure::Limit, what, .. }) = judge(0, &right).stop else {
             panic!("not judged")
         };
         assert!(what.to_string().contains("14280 polynomials, as many as it should have"), "{what}");

@@ -10,7 +10,7 @@ use fosssim_judge::{
 };
 use fosssim_model::{
     scene::Scene,
-    sim::{Detection, Observer, Pair, PairKind, RootSearch, Simulation, Steering, StepController},
+    sim::{Detection, Observer, Pair, PairKind, RootSearch, Simulation, SteeringObserver, StepController},
     trace::{Frame, Layout, Reader, Recorder, Writer},
 };
 use fosssim_num::{bounded::BoundedValue, polynomial::Polynomial};
@@ -72,7 +72,7 @@ impl Observer for Note<'_> {
     fn observe_detection(&mut self, detection: &Detection<'_>) {
         let &Detection { pair, q_start, q_end, .. } = detection;
         let expected = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();
-        self.1.extend((0..pair.kind.polynomials()).map(|number| Known { pair, number, expected }));
+        self.1.extend((0..pair.kind.polynomial_count()).map(|number| Known { pair, number, expected }));
     }
 }
 
@@ -80,7 +80,7 @@ impl Observer for Note<'_> {
 struct Multiply<'a, F>(&'a Scene, F);
 
 impl<F: FnMut(Pair, usize, &[f64]) -> f64> StepController for Multiply<'_, F> {
-    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+    fn adjust_polynomials(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         let whole = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();
         for (number, polynomial) in polynomials.iter_mut().enumerate() {
             let factor = (self.1)(pair, number, polynomial.coefficients());
@@ -98,9 +98,9 @@ impl Stage {
     /// None if the scene logs no polynomials, or the reference has no result.
     pub fn of(name: &str, scene: Scene) -> Option<Self> {
         let frames = run(&scene, &mut ())?;
-        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+        let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
         let mut steps = Vec::new();
-        for _ in 0..scene.steps() {
+        for _ in 0..scene.step_count() {
             let mut note = Note(&scene, Vec::new());
             simulation.step(&mut note).ok()?;
             steps.push(note.1);
@@ -157,7 +157,7 @@ impl Stage {
 /// The frames of a run that `steer` may change.
 fn run(scene: &Scene, steer: &mut dyn Observer) -> Option<Vec<Frame>> {
     let layout = Layout::for_scene(scene);
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
     for _ in 0..layout.steps {
         simulation.step(&mut (&mut *steer, &mut recorder)).ok()?;
@@ -409,7 +409,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
     let factors = match random.below(11) {
         0..=2 => Factors::All(factor),
         3..=4 => Factors::Kind(kind, factor),
-        5..=6 => Factors::Number(kind, random.below(kind.polynomials()), factor),
+        5..=6 => Factors::Number(kind, random.below(kind.polynomial_count()), factor),
         7 => Factors::Each(random.log(0.0, 6.0)),
         8 => Factors::Pair(random.log(0.0, 6.0)),
         9 => Factors::Size,
@@ -428,7 +428,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
         (Factors::Leading, _) => own.first().map_or(1.0, |c| c.abs().recip()),
         (Factors::Kind(..) | Factors::Number(..), _) => 1.0,
     });
-    let frames = run(&stage.scene, &mut Steering(steer))?;
+    let frames = run(&stage.scene, &mut SteeringObserver(steer))?;
     let is_whole = |frame: &Frame| frame.polynomials.iter().flatten().all(|c| c.is_finite());
     if !frames.iter().all(is_whole) {
         return None;
@@ -465,7 +465,7 @@ pub fn multiply(stage: &Stage, random: &mut Random) -> Option<String> {
 pub fn misprint(stage: &Stage, random: &mut Random) -> Option<String> {
     let Target::One { step, index } = Target::draw(stage, random) else { return None };
     let known = stage.known(step, index);
-    let last = known.pair.kind.polynomials() - 1;
+    let last = known.pair.kind.polynomial_count() - 1;
     let other = last - known.number;
     let (own, beside) = (stage.own(step, index), stage.own(step, index + other - known.number));
     let proof = known.expected.polynomial(other);

@@ -77,7 +77,7 @@ impl Arithmetic {
         let mut forces = ForceTerms::new(scene, self);
         let mut bytes = Vec::new();
         record(scene, &state, &[], &mut bytes);
-        for _ in 0..scene.steps() {
+        for _ in 0..scene.step_count() {
             if integrators::advance(scene, self, &mut forces, &mut state).is_none() {
                 return Err(bytes);
             }

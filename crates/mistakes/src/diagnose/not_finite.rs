@@ -92,7 +92,7 @@ fn wild_impulse(impulse: &LoggedImpulse) -> Option<f64> {
 
 fn wild_polynomial(polynomials: &PolynomialLog) -> Option<(usize, f64)> {
     let first = polynomials.coefficients.iter().position(|value| !value.is_finite())?;
-    Some((polynomials.ends.partition_point(|&end| end <= first), polynomials.coefficients[first]))
+    Some((polynomials.coefficient_ends.partition_point(|&end| end <= first), polynomials.coefficients[first]))
 }
 
 fn is_wild(frame: &LenientFrame) -> bool {
@@ -128,7 +128,7 @@ fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
         Collision::ContinuousTime { .. } => find_stage_in_single_pass(scene, end, polynomial)
             .or_else(|| Some((of_state, wild_value(&mid.state).or(state)?))),
         Collision::Hybrid { .. } => {
-            let pass: usize = pairs(scene).counts().iter().map(|(kind, count)| count * kind.polynomials()).sum();
+            let pass: usize = pairs(scene).counts().iter().map(|(kind, count)| count * kind.polynomial_count()).sum();
             let middle = mid.polynomials.len();
             let kind = |index: usize| pair_at(scene, index % pass.max(1)).map(|(_, pair)| pair.kind);
             match polynomial {
@@ -175,7 +175,7 @@ fn find_stage_in_single_pass(
 fn pair_at(scene: &Scene, index: usize) -> Option<(usize, Pair)> {
     let mut first = 0;
     pairs(scene).iter().enumerate().find(|(_, pair)| {
-        first += pair.kind.polynomials();
+        first += pair.kind.polynomial_count();
         index < first
     })
 }

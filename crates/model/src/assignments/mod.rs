@@ -49,7 +49,7 @@ impl Assignment {
 
     /// Returns all assignments: the default one, then the others in the order of the course.
     #[must_use]
-    pub fn default_first() -> [Self; Self::ALL.len()] {
+    pub fn list_default_first() -> [Self; Self::ALL.len()] {
         let mut all = Self::ALL;
         all.sort_by_key(|assignment| *assignment != Self::DEFAULT);
         all
@@ -104,7 +104,7 @@ pub struct Definition {
     /// the number of polynomials of each.
     pub pairs: &'static [PairKind],
     /// The rule for dropping coefficients of polynomials.
-    pub dropping: Dropping,
+    pub trimming_rule: TrimmingRule,
     /// The version that the original program shows above a run.
     pub version: &'static str,
     /// The original's name for its verdict on collisions (oracle-behavior.md 6).
@@ -123,7 +123,7 @@ const COMMON: Definition = Definition {
     title: "",
     handlings: &[],
     pairs: &[],
-    dropping: Dropping::Leading,
+    trimming_rule: TrimmingRule::Leading,
     version: "Fall 2010 v.A",
     verdict: "Collisions Passed",
     prints_times: false,
@@ -152,9 +152,9 @@ pub struct Library {
     pub collisions: &'static [CollisionType],
     /// Whether the library rejects other collision types. Otherwise it ignores them, or handles them without the
     /// student's code.
-    pub refuses_collisions: bool,
+    pub rejects_collisions: bool,
     /// Whether scenes select the contest's detection. The penalty force then has no layer: the thickness is 0.
-    pub contest: bool,
+    pub has_contest: bool,
 }
 
 /// Every feature that a library can support; each milestone's library supports a part.
@@ -168,8 +168,8 @@ const LIBRARY: Library = Library {
     ],
     forces: &ForceKind::ALL,
     collisions: &CollisionType::ALL,
-    refuses_collisions: false,
-    contest: false,
+    rejects_collisions: false,
+    has_contest: false,
 };
 
 /// The tasks of a program for a collision type.
@@ -207,7 +207,7 @@ pub enum ImpulseList {
 ///
 /// Code that depends on a rule is marked ([`drops_leading`](crate::drops_leading)).
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Dropping {
+pub enum TrimmingRule {
     /// Leading coefficients with `|c| < 1e-12` (root-finder.md 15.1, the dropping build).
     Leading,
 }
@@ -217,8 +217,8 @@ pub enum Dropping {
 #[macro_export]
 macro_rules! drops_leading {
     () => {
-        const _: () = match $crate::assignments::Assignment::T2M2.definition().dropping {
-            $crate::assignments::Dropping::Leading => (),
+        const _: () = match $crate::assignments::Assignment::T2M2.definition().trimming_rule {
+            $crate::assignments::TrimmingRule::Leading => (),
         };
     };
 }

@@ -20,7 +20,7 @@ fosssim_num::closed_set! {
 impl PairKind {
     /// Returns the number of polynomials that a detection call of this kind logs: 2, 4, 2.
     #[must_use]
-    pub const fn polynomials(self) -> usize {
+    pub const fn polynomial_count(self) -> usize {
         match self {
             Self::ParticleEdge => 4,
             Self::ParticleParticle | Self::ParticleHalfPlane => 2,
@@ -30,7 +30,7 @@ impl PairKind {
     /// Returns the number of coefficients of each polynomial before small leading ones are dropped; 0 for a missing
     /// polynomial.
     #[must_use]
-    pub const fn coefficients(self) -> [usize; Self::MAX_POLYNOMIALS] {
+    pub const fn coefficient_counts(self) -> [usize; Self::MAX_POLYNOMIALS] {
         match self {
             Self::ParticleEdge => [5, 3, 3, 6],
             Self::ParticleParticle | Self::ParticleHalfPlane => [3, 2, 0, 0],
@@ -61,7 +61,7 @@ impl PairKind {
 
     /// Returns the kind of the second object: `edge`.
     #[must_use]
-    pub const fn second(self) -> &'static str {
+    pub const fn second_name(self) -> &'static str {
         match self {
             Self::ParticleParticle => "particle",
             Self::ParticleEdge => "edge",
@@ -71,7 +71,7 @@ impl PairKind {
 
     /// Returns the original's name for the second object (oracle-behavior.md 6.1).
     #[must_use]
-    pub const fn second_of_original(self) -> &'static str {
+    pub const fn original_second_name(self) -> &'static str {
         match self {
             Self::ParticleParticle => "Particle",
             Self::ParticleEdge => "Edge",

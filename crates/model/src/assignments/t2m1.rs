@@ -19,7 +19,7 @@ pub(super) const DEFINITION: Definition = Definition {
     ],
     library: Library {
         collisions: &[CollisionType::None, CollisionType::Simple, CollisionType::Penalty],
-        refuses_collisions: true,
+        rejects_collisions: true,
         ..LIBRARY
     },
     student: &[

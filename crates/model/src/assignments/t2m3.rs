@@ -15,7 +15,7 @@ pub(super) const DEFINITION: Definition = Definition {
             Integrator::LinearizedImplicitEuler,
         ],
         collisions: &[CollisionType::Penalty],
-        contest: true,
+        has_contest: true,
         ..LIBRARY
     },
     student: &[Part::NearPairs],

@@ -7,13 +7,13 @@ use super::document::Document;
 use super::model::{Collision, CollisionDetection, Edge, Force, HalfPlane, Particle};
 use super::problem::{Problem, Report};
 use super::tag::Tag;
-use super::xml::{Part, SceneParts};
+use super::xml::{ParsedElement, SceneParts};
 use crate::assignments::Integrator;
 use fosssim_num::vector::Vec2;
 
 /// The maximum number of particles with an implicit integrator. Its dense matrix of (2N)² numbers then takes half a
 /// gibibyte, and solving it takes minutes per step.
-pub const MAX_IMPLICIT: usize = 4096;
+pub const MAX_IMPLICIT_PARTICLES: usize = 4096;
 
 /// The maximum number of pairs of a particle and an obstacle that are checked for coincidence, so that the time of a
 /// check does not grow with the square of the file's length. A scene with more pairs would take days to simulate.
@@ -25,9 +25,9 @@ pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report:
     check_size(document, parts, report);
     check_methods(parts, report);
     check_normals(parts, report);
-    check_fixed_and_moving(parts, report);
-    check_lengths_of_edges(parts, report);
-    check_directions_of_forces(parts, report);
+    check_moving_fixed_particles(parts, report);
+    check_edge_lengths(parts, report);
+    check_force_directions(parts, report);
     if let Some(rule) = ContactRule::from_parts(parts) {
         check_coincident_particles(parts, &rule, report);
         check_particles_on_edges(parts, &rule, report);
@@ -37,7 +37,7 @@ pub(super) fn check(document: &Document<'_>, parts: &SceneParts<'_, '_>, report:
 
 /// Returns an error or warning about an element.
 fn problem_at(tag: &Tag<'_>, message: String, help: &str) -> Problem {
-    Problem::from_element(tag.rule.name, &tag.span, message).help(help)
+    Problem::from_element(tag.rule.name, &tag.span, message).with_help(help)
 }
 
 fn check_steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
@@ -49,10 +49,10 @@ fn check_steps(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
     let steps = (time / time_step).ceil();
     if time == 0.0 {
-        report.warning(|| problem_at(duration.tag, "the duration is zero".into(), "there are no steps"));
+        report.add_warning(|| problem_at(duration.tag, "the duration is zero".into(), "there are no steps"));
     } else if steps > f64::from(i32::MAX) {
         let help = "at most 2147483647 steps are possible; the original would run none";
-        report.error(|| {
+        report.add_error(|| {
             problem_at(duration.tag, format!("{time:?} seconds in steps of {time_step:?} are {steps:e} steps"), help)
         });
     }
@@ -62,12 +62,14 @@ fn check_size(document: &Document<'_>, parts: &SceneParts<'_, '_>, report: &mut 
     let count = parts.particles.len();
     if count == 0 && !report.has_errors() {
         let span = document.scene.clone().unwrap_or(0..0);
-        report.warning(|| Problem::new(span, "the scene has no particles").help("its trace would contain no state"));
+        report.add_warning(|| {
+            Problem::new(span, "the scene has no particles").with_help("its trace would contain no state")
+        });
     }
     if let (Some(part), true) = (&parts.integrator, is_implicit(parts))
-        && count > MAX_IMPLICIT
+        && count > MAX_IMPLICIT_PARTICLES
     {
-        report.error(|| {
+        report.add_error(|| {
             problem_at(
                 part.tag,
                 format!("{count} particles are too many for an implicit integrator"),
@@ -87,7 +89,7 @@ fn check_methods(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let Some(integrator) = &parts.integrator else { return };
     if is_implicit(parts) {
         for part in parts.forces.iter().filter(|part| part.tag.rule.name == "vortexforce") {
-            report.error(|| {
+            report.add_error(|| {
                 let help = "it has no Hessian; the original stops at the first step";
                 problem_at(part.tag, "a `vortexforce` with an implicit integrator".into(), help)
             });
@@ -95,7 +97,7 @@ fn check_methods(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
     let penalty = matches!(parts.collision, Some(Collision::Penalty { .. } | Collision::Hybrid { .. }));
     if penalty && matches!(integrator.value, Some((Integrator::ImplicitEuler, _))) {
-        report.warning(|| {
+        report.add_warning(|| {
             let help = "its Hessian is missing, so Newton's method may never converge";
             problem_at(integrator.tag, "`implicit-euler` with a penalty force".into(), help)
         });
@@ -106,7 +108,7 @@ fn check_normals(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for (number, part) in parts.half_planes.iter().enumerate() {
         let Some(HalfPlane { normal, .. }) = part.value else { continue };
         if normal.dot(&normal) == 0.0 {
-            report.error(|| {
+            report.add_error(|| {
                 let help = "`nx` and `ny` must not both be zero or so small that their squares vanish";
                 problem_at(part.tag, format!("the normal of halfplane {number} has no length"), help)
             });
@@ -115,7 +117,7 @@ fn check_normals(parts: &SceneParts<'_, '_>, report: &mut Report) {
 }
 
 /// Checks for fixed particles that move; half-planes reflect fixed particles as well.
-fn check_fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_moving_fixed_particles(parts: &SceneParts<'_, '_>, report: &mut Report) {
     let responds = matches!(
         parts.collision,
         Some(Collision::Simple { .. } | Collision::ContinuousTime { .. } | Collision::Hybrid { .. })
@@ -125,7 +127,7 @@ fn check_fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
     for (number, part) in parts.particles.iter().enumerate() {
         if part.value.as_ref().is_some_and(|particle| particle.fixed && particle.velocity != Vec2::zeros()) {
-            report.warning(|| {
+            report.add_warning(|| {
                 let help = "the response to half-planes does not check whether a particle is fixed";
                 problem_at(
                     part.tag,
@@ -138,15 +140,15 @@ fn check_fixed_and_moving(parts: &SceneParts<'_, '_>, report: &mut Report) {
 }
 
 /// Returns whether two particles start at the same position, if the positions could be read.
-fn in_one_place(parts: &SceneParts<'_, '_>, first: usize, second: usize) -> bool {
-    parts.place(first).zip(parts.place(second)).is_some_and(|(first, second)| first == second)
+fn are_coincident(parts: &SceneParts<'_, '_>, first: usize, second: usize) -> bool {
+    parts.start_position(first).zip(parts.start_position(second)).is_some_and(|(first, second)| first == second)
 }
 
-fn check_lengths_of_edges(parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_edge_lengths(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for (number, part) in parts.edges.iter().enumerate() {
         let Some(Edge { first, second, .. }) = part.value else { continue };
-        if in_one_place(parts, first, second) {
-            report.error(|| {
+        if are_coincident(parts, first, second) {
+            report.add_error(|| {
                 let help = "an edge without length has no direction; a spring on it is not a number";
                 problem_at(
                     part.tag,
@@ -158,14 +160,14 @@ fn check_lengths_of_edges(parts: &SceneParts<'_, '_>, report: &mut Report) {
     }
 }
 
-fn check_directions_of_forces(parts: &SceneParts<'_, '_>, report: &mut Report) {
+fn check_force_directions(parts: &SceneParts<'_, '_>, report: &mut Report) {
     for part in &parts.forces {
         let Some(Force::Gravitation { first, second, .. } | Force::Vortex { first, second, .. }) = part.value else {
             continue;
         };
-        if in_one_place(parts, first, second) {
+        if are_coincident(parts, first, second) {
             let name = part.tag.rule.name;
-            report.error(|| {
+            report.add_error(|| {
                 let message = format!("`{name}` between particles {first} and {second}, which start at one position");
                 problem_at(part.tag, message, "at distance zero it is not a number")
             });
@@ -203,10 +205,10 @@ impl ContactRule {
     fn report(&self, tag: &Tag<'_>, report: &mut Report, message: impl FnOnce() -> String) {
         if self.penalty {
             let help = "the penalty force between them has no direction and is not a number; move one of them";
-            report.error(|| problem_at(tag, message(), help));
+            report.add_error(|| problem_at(tag, message(), help));
         } else {
             let help = "a contact there has no direction and would not be a number";
-            report.warning(|| problem_at(tag, message(), help));
+            report.add_warning(|| problem_at(tag, message(), help));
         }
     }
 }
@@ -245,8 +247,10 @@ fn check_particles_on_edges(parts: &SceneParts<'_, '_>, rule: &ContactRule, repo
     let pairs =
         parts.edges.iter().enumerate().flat_map(|edge| parts.particles.iter().enumerate().map(move |p| (edge, p)));
     for ((edge_number, edge), (number, particle)) in pairs.take(MAX_PAIRS) {
-        let (Some(edge), Part { tag, value: Some(particle) }) = (edge.value, particle) else { continue };
-        let Some((start, end)) = parts.place(edge.first).zip(parts.place(edge.second)) else { continue };
+        let (Some(edge), ParsedElement { tag, value: Some(particle) }) = (edge.value, particle) else { continue };
+        let Some((start, end)) = parts.start_position(edge.first).zip(parts.start_position(edge.second)) else {
+            continue;
+        };
         if number == edge.first || number == edge.second || start == end {
             continue;
         }
@@ -266,7 +270,7 @@ fn check_particles_on_half_planes(parts: &SceneParts<'_, '_>, rule: &ContactRule
     let planes = parts.half_planes.iter().enumerate();
     let pairs = planes.flat_map(|plane| parts.particles.iter().enumerate().map(move |particle| (plane, particle)));
     for ((plane_number, plane), (number, particle)) in pairs.take(MAX_PAIRS) {
-        let (Some(plane), Part { tag, value: Some(particle) }) = (plane.value, particle) else { continue };
+        let (Some(plane), ParsedElement { tag, value: Some(particle) }) = (plane.value, particle) else { continue };
         let (toward, normal) = (plane.point - particle.position, plane.normal);
         let scale = toward.dot(&normal) / normal.dot(&normal);
         let on_it = scale * normal == Vec2::zeros();

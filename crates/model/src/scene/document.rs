@@ -19,13 +19,13 @@ pub(super) struct Document<'t> {
     /// The known children of the scene in document order.
     pub(super) tags: Vec<Tag<'t>>,
     /// Whether the XML is broken, so that elements may have been lost.
-    pub(super) broken: bool,
+    pub(super) is_broken: bool,
     /// The probable intended names of misspelt elements.
-    pub(super) meant: BTreeSet<&'static str>,
+    pub(super) intended_names: BTreeSet<&'static str>,
     /// Whether the scene has elements of the rigid-body stub, which are not checked.
-    pub(super) rigid_bodies: bool,
+    pub(super) has_rigid_bodies: bool,
     /// Whether a root element with another name has been reported.
-    pub(super) other_root: bool,
+    pub(super) has_other_root: bool,
 }
 
 /// Reads the text, and reports every fault of the XML, of names and of nesting.
@@ -34,11 +34,11 @@ pub(super) fn read<'t>(text: &'t str, report: &mut Report) -> Document<'t> {
         text,
         report,
         document: Document::default(),
-        open: Vec::new(),
-        roots: 0,
-        in_scene: false,
-        wrong_ends: 0,
-        stray: false,
+        open_elements: Vec::new(),
+        root_count: 0,
+        is_in_scene: false,
+        wrong_end_count: 0,
+        has_stray_text: false,
     };
     reading.read_all()
 }
@@ -48,19 +48,19 @@ struct OpenElement<'t> {
     name: &'t str,
     span: Range<usize>,
     /// Whether an element inside has been reported.
-    complained: bool,
+    is_reported: bool,
 }
 
 struct DocumentReader<'t, 'r> {
     text: &'t str,
     report: &'r mut Report,
     document: Document<'t>,
-    open: Vec<OpenElement<'t>>,
-    roots: usize,
-    in_scene: bool,
-    wrong_ends: usize,
+    open_elements: Vec<OpenElement<'t>>,
+    root_count: usize,
+    is_in_scene: bool,
+    wrong_end_count: usize,
     /// Whether the last item was stray text that has been reported.
-    stray: bool,
+    has_stray_text: bool,
 }
 
 impl<'t> DocumentReader<'t, '_> {
@@ -78,20 +78,22 @@ impl<'t> DocumentReader<'t, '_> {
             let from = position(reader.buffer_position());
             let event = reader.read_event();
             let span = from..position(reader.buffer_position());
-            let was_stray = std::mem::take(&mut self.stray);
+            let was_stray = std::mem::take(&mut self.has_stray_text);
             match event {
                 Ok(Event::Eof) => break,
-                Ok(Event::Start(_)) => self.start(span, true),
-                Ok(Event::Empty(_)) => self.start(span, false),
+                Ok(Event::Start(_)) => self.start_element(span, true),
+                Ok(Event::Empty(_)) => self.start_element(span, false),
                 // Enough problems are reported, and the search for an intended name costs time.
-                Ok(Event::End(_)) if self.wrong_ends > MAX_PROBLEMS => break,
-                Ok(Event::End(_)) => self.end(span),
-                Ok(Event::Text(_)) if self.text[span.clone()].trim_ascii().is_empty() => self.stray = was_stray,
+                Ok(Event::End(_)) if self.wrong_end_count > MAX_PROBLEMS => break,
+                Ok(Event::End(_)) => self.end_element(span),
+                Ok(Event::Text(_)) if self.text[span.clone()].trim_ascii().is_empty() => {
+                    self.has_stray_text = was_stray
+                }
                 Ok(Event::Text(_) | Event::CData(_) | Event::GeneralRef(_)) => self.report_stray_text(span, was_stray),
-                Ok(Event::DocType(_)) => self.document_type(span),
+                Ok(Event::DocType(_)) => self.read_document_type(span),
                 Ok(Event::Comment(_) | Event::PI(_) | Event::Decl(_)) => {}
                 Err(error) => {
-                    self.document.broken = true;
+                    self.document.is_broken = true;
                     let at = position(reader.error_position()).min(self.text.len());
                     self.report_syntax(at, &error);
                     if !matches!(error, Error::IllFormed(_)) {
@@ -107,103 +109,103 @@ impl<'t> DocumentReader<'t, '_> {
     /// Reports an element that is still open at the end. Only the innermost is reported, because the others may follow
     /// from it.
     fn finish(&mut self) {
-        if let Some(open) = self.open.last() {
-            if !self.document.broken {
-                self.report.error(|| {
+        if let Some(open) = self.open_elements.last() {
+            if !self.document.is_broken {
+                self.report.add_error(|| {
                     Problem::from_element(open.name, &open.span, format!("`<{}>` is never closed", quote(open.name)))
-                        .help(format!("end it with `/>` or with `</{}>`", quote(open.name)))
+                        .with_help(format!("end it with `/>` or with `</{}>`", quote(open.name)))
                 });
             }
-            self.document.broken = true;
+            self.document.is_broken = true;
         }
     }
 
     fn report_syntax(&mut self, at: usize, error: &Error) {
         let (message, help) = match error {
-            Error::Syntax(syntax) => syntax_words(*syntax),
+            Error::Syntax(syntax) => describe_syntax_error(*syntax),
             other => (other.to_string(), None),
         };
         let first = self.text.get(at..).and_then(|rest| rest.chars().next());
         let end = at + first.map_or(0, char::len_utf8);
-        self.report.error(|| Problem::new(at..end, message).maybe_help(help));
+        self.report.add_error(|| Problem::new(at..end, message).with_optional_help(help));
     }
 
-    fn document_type(&mut self, span: Range<usize>) {
+    fn read_document_type(&mut self, span: Range<usize>) {
         let declares = self.text[span.clone()].contains('[');
         if declares {
-            self.report.error(|| {
+            self.report.add_error(|| {
                 Problem::new(span, "a document type with declarations, which the original ignores")
-                    .help("remove it and write its declarations out")
+                    .with_help("remove it and write its declarations out")
             });
         }
     }
 
     fn report_stray_text(&mut self, span: Range<usize>, reported: bool) {
-        self.stray = true;
+        self.has_stray_text = true;
         if reported {
             return;
         }
         let text = self.text[span.clone()].trim_ascii();
-        let outside = self.open.is_empty();
+        let outside = self.open_elements.is_empty();
         let at = offset(self.text, text);
-        self.report.error(|| {
+        self.report.add_error(|| {
             let place = if outside { "outside the scene" } else { "between the elements" };
             Problem::new(at..at + text.len(), format!("text {place}: `{}`", quote(text)))
-                .help("only elements count here; remove it or make it a comment, `<!-- ... -->`")
+                .with_help("only elements count here; remove it or make it a comment, `<!-- ... -->`")
         });
     }
 
-    fn start(&mut self, span: Range<usize>, opens: bool) {
+    fn start_element(&mut self, span: Range<usize>, opens: bool) {
         let inner = &self.text[span.start + 1..span.end - if opens { 1 } else { 2 }];
         let name_length = inner.bytes().position(is_space).unwrap_or(inner.len());
         let name = &inner[..name_length];
         if name.is_empty() {
-            self.document.broken = true;
-            self.report.error(|| Problem::new(span.clone(), "no element name after `<`"));
+            self.document.is_broken = true;
+            self.report.add_error(|| Problem::new(span.clone(), "no element name after `<`"));
             return;
         }
         let name_span = span.start..span.start + 1 + name_length;
-        self.report_glued(inner, name, &name_span);
-        match self.open.len() {
+        self.warn_joined_name(inner, name, &name_span);
+        match self.open_elements.len() {
             0 => self.read_root(name, inner, &name_span),
-            1 if self.in_scene => self.read_child(name, inner, &name_span),
-            2.. if self.in_scene => self.report_nested(name, &name_span),
+            1 if self.is_in_scene => self.read_child(name, inner, &name_span),
+            2.. if self.is_in_scene => self.report_nested(name, &name_span),
             _ => {}
         }
         // `/ >` is reported as an attribute, but was meant to end the element.
         if opens && !inner.trim_ascii_end().ends_with('/') {
-            self.open.push(OpenElement { name, span: name_span, complained: false });
-        } else if self.open.is_empty() {
-            self.in_scene = false;
+            self.open_elements.push(OpenElement { name, span: name_span, is_reported: false });
+        } else if self.open_elements.is_empty() {
+            self.is_in_scene = false;
         }
     }
 
     /// Warns if the original joins lines: it joins a name that is followed only by a line feed with the next word.
-    fn report_glued(&mut self, inner: &str, name: &str, span: &Range<usize>) {
+    fn warn_joined_name(&mut self, inner: &str, name: &str, span: &Range<usize>) {
         let behind = inner[name.len()..].trim_start_matches('\n');
         let glued = behind.len() < inner.len() - name.len() && behind.bytes().next().is_some_and(|b| !is_space(b));
         if glued && behind != "/" {
-            self.report.error(|| {
+            self.report.add_error(|| {
                 Problem::from_element(
                     name,
                     span,
                     format!("only a line break between `{}` and its first attribute", quote(name)),
                 )
-                .help("the original joins the lines and then misses the element; put a space before the attribute")
+                .with_help("the original joins the lines and then misses the element; put a space before the attribute")
             });
         }
     }
 
     fn read_root(&mut self, name: &'t str, inner: &'t str, span: &Range<usize>) {
-        self.roots += 1;
-        let similar = grammar::closest(name, ["scene"].into_iter()).is_some();
-        self.in_scene = self.document.scene.is_none() && (name == "scene" || (similar && self.roots == 1));
-        if self.in_scene {
+        self.root_count += 1;
+        let similar = grammar::find_closest(name, ["scene"].into_iter()).is_some();
+        self.is_in_scene = self.document.scene.is_none() && (name == "scene" || (similar && self.root_count == 1));
+        if self.is_in_scene {
             self.document.scene = Some(span.clone());
         }
         if name != "scene" {
-            self.document.other_root = true;
-            let (message, help) = match (self.in_scene, self.document.scene.is_some()) {
+            self.document.has_other_root = true;
+            let (message, help) = match (self.is_in_scene, self.document.scene.is_some()) {
                 (true, _) => (format!("the root element is `{}`, not `scene`", quote(name)), "did you mean `scene`?"),
                 (_, true) => (format!("a second root element `{}`", quote(name)), "only the first `scene` counts"),
                 (_, false) => (
@@ -211,27 +213,27 @@ impl<'t> DocumentReader<'t, '_> {
                     "put all elements into one element `scene`",
                 ),
             };
-            self.report.error(|| Problem::from_element(name, span, message).help(help));
-        } else if !self.in_scene {
-            self.report.error(|| {
+            self.report.add_error(|| Problem::from_element(name, span, message).with_help(help));
+        } else if !self.is_in_scene {
+            self.report.add_error(|| {
                 Problem::from_element(name, span, "a second `scene`")
-                    .help("only the first one counts; move its elements there or to another file")
+                    .with_help("only the first one counts; move its elements there or to another file")
             });
         }
-        static SCENE: Rule = Rule { name: "scene", attributes: &[] };
-        if self.in_scene {
-            tag::read(self.text, &SCENE, inner, span.clone(), self.report);
+        static SCENE_RULE: Rule = Rule { name: "scene", attributes: &[] };
+        if self.is_in_scene {
+            tag::read(self.text, &SCENE_RULE, inner, span.clone(), self.report);
         }
     }
 
     fn report_nested(&mut self, name: &str, span: &Range<usize>) {
-        let Some(parent) = self.open.get_mut(1) else { return };
-        if std::mem::replace(&mut parent.complained, true) {
+        let Some(parent) = self.open_elements.get_mut(1) else { return };
+        if std::mem::replace(&mut parent.is_reported, true) {
             return;
         }
-        self.document.broken = true;
-        self.report.error(|| {
-            Problem::from_element(name, span, format!("`{}` inside `{}`", quote(name), quote(parent.name))).help(
+        self.document.is_broken = true;
+        self.report.add_error(|| {
+            Problem::from_element(name, span, format!("`{}` inside `{}`", quote(name), quote(parent.name))).with_help(
                 format!("only elements directly in `scene` count; is the end of `{}` missing?", quote(parent.name)),
             )
         });
@@ -240,7 +242,7 @@ impl<'t> DocumentReader<'t, '_> {
     fn read_child(&mut self, name: &'t str, inner: &'t str, span: &Range<usize>) {
         if let Some(rule) = grammar::rule(name) {
             if rule.name.starts_with("rigidbody") {
-                self.document.rigid_bodies = true;
+                self.document.has_rigid_bodies = true;
                 return;
             }
             let tag = tag::read(self.text, rule, inner, span.clone(), self.report);
@@ -248,42 +250,45 @@ impl<'t> DocumentReader<'t, '_> {
             return;
         }
         // The search for a similar name takes time, so only displayed problems get a suggestion.
-        let meant = &mut self.document.meant;
-        self.report.error(|| {
+        let meant = &mut self.document.intended_names;
+        self.report.add_error(|| {
             let similar = grammar::similar_element(name);
             meant.extend(similar);
-            Problem::from_element(name, span, format!("unknown element `{}`", quote(name))).help(similar.map_or_else(
-                || "the original ignores it silently".to_owned(),
-                |similar| format!("did you mean `{similar}`?"),
-            ))
+            Problem::from_element(name, span, format!("unknown element `{}`", quote(name))).with_help(
+                similar.map_or_else(
+                    || "the original ignores it silently".to_owned(),
+                    |similar| format!("did you mean `{similar}`?"),
+                ),
+            )
         });
     }
 
-    fn end(&mut self, span: Range<usize>) {
+    fn end_element(&mut self, span: Range<usize>) {
         let name = self.text[span.start + 2..span.end - 1].trim_ascii_end();
         // The maximum depth of nesting. Without a limit, a file of wrong closing tags would take too long.
         const MAX_DEPTH: usize = 64;
-        let known = self.open.iter().rev().take(MAX_DEPTH).position(|open| open.name == name);
-        match (known, self.open.last()) {
+        let known = self.open_elements.iter().rev().take(MAX_DEPTH).position(|open| open.name == name);
+        match (known, self.open_elements.last()) {
             (Some(0), _) => {}
             (Some(above), Some(last)) => {
-                self.document.broken = true;
-                let nested = self.in_scene && self.open.get(1).is_some_and(|open| open.complained);
+                self.document.is_broken = true;
+                let nested = self.is_in_scene && self.open_elements.get(1).is_some_and(|open| open.is_reported);
                 if !nested {
-                    self.report.error(|| {
+                    self.report.add_error(|| {
                         Problem::from_element(last.name, &last.span, format!("`<{}>` is not closed", quote(last.name)))
-                            .help(format!("end it with `/>` or with `</{}>`", quote(last.name)))
+                            .with_help(format!("end it with `/>` or with `</{}>`", quote(last.name)))
                     });
                 }
-                self.open.truncate(self.open.len() - above);
+                self.open_elements.truncate(self.open_elements.len() - above);
             }
             (None, last) => {
-                self.document.broken = true;
-                self.wrong_ends += 1;
-                let slip = last.is_some_and(|open| grammar::closest(name, [open.name].into_iter()).is_some());
-                self.report.error(|| {
+                self.document.is_broken = true;
+                self.wrong_end_count += 1;
+                let slip = last.is_some_and(|open| grammar::find_closest(name, [open.name].into_iter()).is_some());
+                self.report.add_error(|| {
                     let help = last.map(|open| format!("open is `<{}>`", quote(open.name)));
-                    Problem::from_element(name, &span, format!("`</{}>` closes nothing", quote(name))).maybe_help(help)
+                    Problem::from_element(name, &span, format!("`</{}>` closes nothing", quote(name)))
+                        .with_optional_help(help)
                 });
                 if !slip {
                     return;
@@ -291,12 +296,12 @@ impl<'t> DocumentReader<'t, '_> {
             }
             (Some(_), None) => return,
         }
-        self.open.pop();
-        self.in_scene &= !self.open.is_empty();
+        self.open_elements.pop();
+        self.is_in_scene &= !self.open_elements.is_empty();
     }
 }
 
-fn syntax_words(error: SyntaxError) -> (String, Option<String>) {
+fn describe_syntax_error(error: SyntaxError) -> (String, Option<String>) {
     let (message, help) = match error {
         SyntaxError::InvalidBangMarkup => ("`<!` does not start a known construct", "`<!-- ... -->`"),
         SyntaxError::UnclosedPI | SyntaxError::UnclosedXmlDecl => ("`<?` without `?>`", "end it with `?>`"),

@@ -9,17 +9,17 @@ use super::grammar;
 use super::model::Color;
 use super::numbers::{self, NumberError};
 use super::problem::{Problem, Report, Severity, quote};
-use super::tag::{Attribute, Tag, list};
+use super::tag::{Attribute, Tag, join_names};
 use fosssim_num::vector::Vec2;
 
 /// The number of objects of a kind, for indices that point to them.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Count {
+pub(super) struct ObjectCount {
     /// The name of one such object, such as `particle`.
-    pub(super) what: &'static str,
+    pub(super) noun: &'static str,
     pub(super) count: usize,
     /// Whether the number is certain. After broken XML or a misspelt element it is not, and indices are not checked.
-    pub(super) certain: bool,
+    pub(super) is_certain: bool,
 }
 
 /// The attributes of one element.
@@ -36,17 +36,17 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         Self { tag, number, report }
     }
 
-    pub(super) fn has(&self, name: &str) -> bool {
-        self.raw(name).is_some()
+    pub(super) fn has_attribute(&self, name: &str) -> bool {
+        self.raw_attribute(name).is_some()
     }
 
     /// Returns the place of an attribute's value, or of the element if the attribute is missing.
     pub(super) fn span(&self, name: &str) -> Range<usize> {
-        self.raw(name).map_or_else(|| self.tag.span.clone(), |attribute| attribute.span.clone())
+        self.raw_attribute(name).map_or_else(|| self.tag.span.clone(), |attribute| attribute.span.clone())
     }
 
     /// Reports an error about an attribute's value: `NAME of WHO MESSAGE`.
-    pub(super) fn error(&mut self, name: &str, message: &str, help: impl Into<String>) {
+    pub(super) fn report_error(&mut self, name: &str, message: &str, help: impl Into<String>) {
         self.report_problem(Severity::Error, name, || (message.to_owned(), help.into()));
     }
 
@@ -56,14 +56,14 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     /// Reports an error about an attribute's value, which is shown as written.
-    pub(super) fn report_bad(&mut self, name: &str, help: impl Into<String>) {
-        let written = self.raw(name).map_or("", |attribute| attribute.value);
+    pub(super) fn report_bad_value(&mut self, name: &str, help: impl Into<String>) {
+        let written = self.raw_attribute(name).map_or("", |attribute| attribute.value);
         self.report_problem(Severity::Error, name, || (format!("is `{}`", quote(written)), help.into()));
     }
 
     /// Reports a warning about an attribute's value, which is shown as written.
-    pub(super) fn warn_bad(&mut self, name: &str, help: impl Into<String>) {
-        let written = self.raw(name).map_or("", |attribute| attribute.value);
+    pub(super) fn warn_bad_value(&mut self, name: &str, help: impl Into<String>) {
+        let written = self.raw_attribute(name).map_or("", |attribute| attribute.value);
         self.report_problem(Severity::Warning, name, || (format!("is `{}`", quote(written)), help.into()));
     }
 
@@ -73,14 +73,14 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         self.report.add(severity, || {
             let (message, help) = words();
             Problem::from_element(tag.rule.name, &span, format!("`{name}` of {} {message}", describe_tag(tag, number)))
-                .attribute(name)
-                .help(help)
+                .with_attribute(name)
+                .with_help(help)
         });
     }
 
     /// Returns whether an attribute is absent or empty.
     pub(super) fn is_blank(&self, name: &str) -> bool {
-        self.raw(name).is_none_or(|attribute| attribute.value.is_empty())
+        self.raw_attribute(name).is_none_or(|attribute| attribute.value.is_empty())
     }
 
     /// Returns the text of a required attribute.
@@ -95,22 +95,22 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
 
     /// Returns the text of an optional attribute; the outer `None` means unreadable.
     pub(super) fn optional_text(&mut self, name: &str) -> Option<Option<String>> {
-        if self.has(name) { self.text(name, "").map(Some) } else { Some(None) }
+        if self.has_attribute(name) { self.text(name, "").map(Some) } else { Some(None) }
     }
 
     /// Returns the choice named by the attribute.
     pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
-        let attribute = self.require(name, &list(&names))?;
+        let attribute = self.require(name, &join_names(&names))?;
         let text = self.decode(attribute)?;
         if let Some((_, value)) = choices.iter().find(|(name, _)| *name == text) {
             return Some(*value);
         }
-        let help = match grammar::closest(&text, names.iter().copied()) {
+        let help = match grammar::find_closest(&text, names.iter().copied()) {
             Some(meant) => format!("did you mean `{meant}`?"),
-            None => format!("allowed are {}", list(&names)),
+            None => format!("allowed are {}", join_names(&names)),
         };
-        self.report_bad(name, help);
+        self.report_bad_value(name, help);
         None
     }
 
@@ -122,7 +122,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
 
     /// Returns a scalar with a default.
     pub(super) fn scalar_or(&mut self, name: &str, default: f64) -> Option<f64> {
-        match self.raw(name) {
+        match self.raw_attribute(name) {
             Some(attribute) => self.number(attribute),
             None => Some(default),
         }
@@ -137,27 +137,27 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     /// Returns a required whole number of 32 bits.
     pub(super) fn integer(&mut self, name: &str) -> Option<i32> {
         let attribute = self.require(name, "a whole number")?;
-        let text = self.one_line(attribute)?;
-        match numbers::integer(&text) {
+        let text = self.single_line_text(attribute)?;
+        match numbers::parse_integer(&text) {
             Ok(value) => Some(value),
             Err(error) => self.report_number(name, &text, error),
         }
     }
 
     /// Returns a required index of an existing object.
-    pub(super) fn index(&mut self, name: &str, of: Count) -> Option<usize> {
+    pub(super) fn index(&mut self, name: &str, of: ObjectCount) -> Option<usize> {
         let written = self.integer(name)?;
         let index = usize::try_from(written).ok();
         if index.is_some_and(|index| index < of.count) {
             return index;
         }
-        if of.certain || index.is_none() {
+        if of.is_certain || index.is_none() {
             self.report_problem(Severity::Error, name, || {
                 let help = match of.count {
-                    0 => format!("there is no {}", of.what),
+                    0 => format!("there is no {}", of.noun),
                     count => format!("allowed is 0 to {}; numbering starts at 0", count - 1),
                 };
-                (format!("is {written}, but the scene has no such {}", of.what), help)
+                (format!("is {written}, but the scene has no such {}", of.noun), help)
             });
         }
         None
@@ -166,7 +166,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     /// Returns a required truth value.
     pub(super) fn boolean(&mut self, name: &str) -> Option<bool> {
         let attribute = self.require(name, "0 or 1")?;
-        let text = self.one_line(attribute)?;
+        let text = self.single_line_text(attribute)?;
         let text = text.trim_ascii();
         let help = match text.to_ascii_lowercase().as_str() {
             "0" => return Some(false),
@@ -175,7 +175,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             "false" | "no" => "write `0`",
             _ => "allowed are `0` and `1`",
         };
-        self.report_bad(name, help);
+        self.report_bad_value(name, help);
         None
     }
 
@@ -186,30 +186,30 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
             if (0.0..=1.0).contains(&value) {
                 return Some(value);
             }
-            self.report_bad(name, "allowed is 0 to 1");
+            self.report_bad_value(name, "allowed is 0 to 1");
             None
         };
         let (red, green, blue) = (component("r"), component("g"), component("b"));
         Some(Color { red: red?, green: green?, blue: blue? })
     }
 
-    fn raw(&self, name: &str) -> Option<&'d Attribute<'t>> {
+    fn raw_attribute(&self, name: &str) -> Option<&'d Attribute<'t>> {
         self.tag.attributes.iter().find(|attribute| attribute.name == name)
     }
 
     /// Returns a required attribute. Its absence is not reported if it may be misspelt or unreadable.
     fn require(&mut self, name: &str, what: &str) -> Option<&'d Attribute<'t>> {
-        let attribute = self.raw(name);
-        if attribute.is_none() && !self.tag.broken && !self.tag.meant.contains(name) {
+        let attribute = self.raw_attribute(name);
+        if attribute.is_none() && !self.tag.is_broken && !self.tag.intended_names.contains(name) {
             let (tag, number) = (self.tag, self.number);
-            self.report.error(|| {
+            self.report.add_error(|| {
                 Problem::from_element(
                     tag.rule.name,
                     &tag.span,
                     format!("{} has no `{name}`", describe_tag(tag, number)),
                 )
-                .attribute(name)
-                .help(format!("required: {what}"))
+                .with_attribute(name)
+                .with_help(format!("required: {what}"))
             });
         }
         attribute
@@ -235,7 +235,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
                     EscapeError::InvalidCharRef(_) => "has a reference to a character that does not exist".to_owned(),
                     other => format!("cannot be read: {other}"),
                 };
-                self.error(
+                self.report_error(
                     attribute.name,
                     &message,
                     "known are `&lt;` `&gt;` `&amp;` `&apos;` `&quot;` `&#65;` `&#x41;`",
@@ -246,19 +246,19 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
     }
 
     /// Returns the text of a number, which must be on one line.
-    fn one_line(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
+    fn single_line_text(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
         let text = self.decode(attribute)?;
         if attribute.value.trim_ascii().contains('\n') {
             let help = format!("the original joins the lines and reads `{}`", quote(&text));
-            self.error(attribute.name, "has a line break inside", help);
+            self.report_error(attribute.name, "has a line break inside", help);
             return None;
         }
         Some(text)
     }
 
     fn number(&mut self, attribute: &'d Attribute<'t>) -> Option<f64> {
-        let text = self.one_line(attribute)?;
-        match numbers::scalar(&text) {
+        let text = self.single_line_text(attribute)?;
+        match numbers::parse_scalar(&text) {
             Ok((value, vanished)) => {
                 if vanished {
                     let message = format!("is `{}`, which becomes zero", quote(&text));

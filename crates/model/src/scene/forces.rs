@@ -6,7 +6,7 @@ use crate::assignments::ForceKind;
 use fosssim_num::vector::Vec2;
 
 /// Provides the attributes of one element to a reader.
-pub(super) trait Source {
+pub(super) trait AttributeSource {
     /// The reason why an attribute cannot be used.
     type Error;
     /// Returns the index of an edge.
@@ -32,7 +32,7 @@ macro_rules! forces {
             }
 
             /// Reads the force of an element. All attributes are read before the first error is returned.
-            pub(super) fn read<S: Source>(self, source: &mut S) -> Result<Force, S::Error> {
+            pub(super) fn read<S: AttributeSource>(self, source: &mut S) -> Result<Force, S::Error> {
                 match self {
                     $(Self::$kind => {
                         $(let $field = source.$part($($name),+ $(, $($rule),+)?);)+

@@ -1,32 +1,32 @@
 //! The names that a scene may use, and suggestions for misspelt ones (scene-format.md 4, 5).
 use super::{forces, rule::Rule};
 
-const fn element(name: &'static str, attributes: &'static [&'static str]) -> Rule {
+const fn new_rule(name: &'static str, attributes: &'static [&'static str]) -> Rule {
     Rule { name, attributes }
 }
 
 /// Every element that a scene may have, except those of forces.
 static ELEMENT_RULES: [Rule; 19] = [
-    element("simtype", &["type"]),
-    element("duration", &["time"]),
-    element("maxsimfreq", &["max"]),
-    element("viewport", &["cx", "cy", "size"]),
-    element("backgroundcolor", &["r", "g", "b"]),
-    element("description", &["text"]),
-    element("scenetag", &["tag"]),
-    element("integrator", &["type", "dt"]),
-    element("collision", &["type", "COR", "maxiters", "k", "thickness"]),
-    element("collisiondetection", &["type"]),
-    element("particle", &["px", "py", "vx", "vy", "m", "fixed", "radius", "tag"]),
-    element("edge", &["i", "j", "radius"]),
-    element("halfplane", &["px", "py", "nx", "ny"]),
-    element("particlecolor", &["i", "r", "g", "b"]),
-    element("edgecolor", &["i", "r", "g", "b"]),
-    element("halfplanecolor", &["i", "r", "g", "b"]),
-    element("particlepath", &["i", "duration", "r", "g", "b"]),
+    new_rule("simtype", &["type"]),
+    new_rule("duration", &["time"]),
+    new_rule("maxsimfreq", &["max"]),
+    new_rule("viewport", &["cx", "cy", "size"]),
+    new_rule("backgroundcolor", &["r", "g", "b"]),
+    new_rule("description", &["text"]),
+    new_rule("scenetag", &["tag"]),
+    new_rule("integrator", &["type", "dt"]),
+    new_rule("collision", &["type", "COR", "maxiters", "k", "thickness"]),
+    new_rule("collisiondetection", &["type"]),
+    new_rule("particle", &["px", "py", "vx", "vy", "m", "fixed", "radius", "tag"]),
+    new_rule("edge", &["i", "j", "radius"]),
+    new_rule("halfplane", &["px", "py", "nx", "ny"]),
+    new_rule("particlecolor", &["i", "r", "g", "b"]),
+    new_rule("edgecolor", &["i", "r", "g", "b"]),
+    new_rule("halfplanecolor", &["i", "r", "g", "b"]),
+    new_rule("particlepath", &["i", "duration", "r", "g", "b"]),
     // Known only so that the rigid-body stub's elements are rejected with a specific message.
-    element("rigidbody", &["p", "r"]),
-    element("rigidbodyvertex", &["x", "y", "m"]),
+    new_rule("rigidbody", &["p", "r"]),
+    new_rule("rigidbodyvertex", &["x", "y", "m"]),
 ];
 
 fn rules() -> impl Iterator<Item = &'static Rule> {
@@ -40,7 +40,7 @@ pub(super) fn rule(name: &str) -> Option<&'static Rule> {
 
 /// Returns the known element whose name is similar to `name`.
 pub(super) fn similar_element(name: &str) -> Option<&'static str> {
-    closest(name, rules().map(|rule| rule.name))
+    find_closest(name, rules().map(|rule| rule.name))
 }
 
 /// Names that many people write instead of a name of the format.
@@ -58,17 +58,17 @@ const COMMON_MISSPELLINGS: [(&str, &str); 8] = [
 /// Returns the candidate that `word` probably means: equal except for case and punctuation, a common alternative name,
 /// an abbreviation, or within a few typos (a third of the letters, at most two).
 #[must_use]
-pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
+pub fn find_closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Option<&'c str> {
     const MAX_LETTERS: usize = 40;
     if word.len() > MAX_LETTERS {
         return None;
     }
-    let plain = to_plain(word);
+    let plain = normalize_word(word);
     let habit = COMMON_MISSPELLINGS.iter().find(|(habit, _)| *habit == plain).map(|(_, name)| *name);
     candidates
         .filter(|candidate| candidate.len() <= MAX_LETTERS)
         .filter_map(|candidate| {
-            let other = self::to_plain(candidate);
+            let other = self::normalize_word(candidate);
             // The beginning of a name is as good as a name with one typo.
             let begins = plain.len() >= 3 && other.starts_with(&plain);
             let distance = match habit {
@@ -84,7 +84,7 @@ pub fn closest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Opt
 }
 
 /// Returns the letters, in lower case, and the digits of a word.
-fn to_plain(word: &str) -> String {
+fn normalize_word(word: &str) -> String {
     word.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).collect()
 }
 
@@ -113,7 +113,7 @@ mod tests {
     #[test]
     fn short_names_are_not_guessed_wildly() {
         let particle = rule("particle").expect("known").attributes;
-        let meant = |word| closest(word, particle.iter().copied());
+        let meant = |word| find_closest(word, particle.iter().copied());
         assert_eq!(meant("mass"), Some("m"));
         assert_eq!(meant("pX"), Some("px"));
         assert_eq!(meant("fx"), None);

@@ -35,7 +35,7 @@ impl UnknownFeature {
     pub const fn is_rejected(&self) -> bool {
         match self.part {
             UnknownPart::Integrator(_) => true,
-            UnknownPart::Collision(_) => self.assignment.definition().library.refuses_collisions,
+            UnknownPart::Collision(_) => self.assignment.definition().library.rejects_collisions,
             _ => false,
         }
     }
@@ -48,7 +48,7 @@ impl fmt::Display for UnknownFeature {
         match self.part {
             UnknownPart::Integrator(integrator) => write!(formatter, "{programs} {verb} {}", integrator.name()),
             UnknownPart::Force(kind) => write!(formatter, "{programs} {verb} <{}>", kind.element()),
-            UnknownPart::Collision(kind) if self.assignment.definition().library.contest => {
+            UnknownPart::Collision(kind) if self.assignment.definition().library.has_contest => {
                 write!(formatter, "scenes of {programs} have penalty collisions, not {}", kind.name())
             }
             UnknownPart::Collision(kind) => write!(formatter, "{programs} {verb} collisions of type {}", kind.name()),
@@ -63,7 +63,7 @@ impl fmt::Display for UnknownFeature {
 
 impl Scene {
     /// Returns everything in the scene that programs of `assignment` do not support, each kind once.
-    pub fn unknown_to(&self, assignment: Assignment) -> impl Iterator<Item = UnknownFeature> {
+    pub fn unknown_features(&self, assignment: Assignment) -> impl Iterator<Item = UnknownFeature> {
         let library = &assignment.definition().library;
         let integrator = Some(self.integrator).filter(|integrator| !library.integrators.contains(integrator));
         let forces = ForceKind::ALL
@@ -73,13 +73,13 @@ impl Scene {
         let collision = if library.collisions.contains(&kind) {
             let contest = CollisionDetection::Contest;
             match self.collision {
-                Collision::Penalty { detection, .. } if library.contest && detection != contest => {
+                Collision::Penalty { detection, .. } if library.has_contest && detection != contest => {
                     Some(UnknownPart::AllPairs)
                 }
-                Collision::Penalty { thickness, .. } if library.contest && thickness != 0.0 => {
+                Collision::Penalty { thickness, .. } if library.has_contest && thickness != 0.0 => {
                     Some(UnknownPart::Thickness(thickness))
                 }
-                Collision::Penalty { detection, .. } if !library.contest && detection == contest => {
+                Collision::Penalty { detection, .. } if !library.has_contest && detection == contest => {
                     Some(UnknownPart::Contest)
                 }
                 _ => None,
@@ -96,7 +96,7 @@ impl Scene {
 
     /// Returns the assignments whose programs can run the scene, in the order of the course.
     pub fn assignments(&self) -> impl Iterator<Item = Assignment> {
-        Assignment::ALL.into_iter().filter(|assignment| self.unknown_to(*assignment).next().is_none())
+        Assignment::ALL.into_iter().filter(|assignment| self.unknown_features(*assignment).next().is_none())
     }
 
     /// Returns the first assignment of the course whose programs can run the scene; otherwise the assignment that added
@@ -125,7 +125,7 @@ mod tests {
              <particle m=\"1\" px=\"5\" py=\"0\" vx=\"0\" vy=\"0\" fixed=\"0\" radius=\"1\"/></scene>"
         );
         let scene = read("a scene", text.as_bytes()).expect("a sound scene").scene;
-        scene.unknown_to(assignment).map(|unknown| unknown.to_string()).collect()
+        scene.unknown_features(assignment).map(|unknown| unknown.to_string()).collect()
     }
 
     #[test]

@@ -26,8 +26,8 @@ mod write;
 mod xml;
 
 pub use crate::assignments::Integrator;
-pub use checks::MAX_IMPLICIT;
-pub use grammar::closest;
+pub use checks::MAX_IMPLICIT_PARTICLES;
+pub use grammar::find_closest;
 pub use milestones::{UnknownFeature, UnknownPart};
 pub use model::{
     Collision, CollisionDetection, Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene, Viewport,

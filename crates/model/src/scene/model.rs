@@ -32,7 +32,7 @@ impl Scene {
     /// Returns the number of steps as the original computes it: the 32-bit conversion of `ceil(duration / dt)`; zero,
     /// negative and unrepresentable quotients give no step (scene-format.md 4).
     #[must_use]
-    pub fn steps(&self) -> u32 {
+    pub fn step_count(&self) -> u32 {
         let quotient = (self.duration / self.time_step).ceil();
         // Outside the 32-bit range (and for NaN) the processor's conversion gives -2147483648, so there are no steps.
         if quotient >= 1.0 && quotient <= f64::from(i32::MAX) {

@@ -25,11 +25,11 @@ pub(super) enum NumberError {
 }
 
 /// Returns a finite 64-bit float, and whether a nonzero number became zero.
-pub(super) fn scalar(text: &str) -> Result<(f64, bool), NumberError> {
+pub(super) fn parse_scalar(text: &str) -> Result<(f64, bool), NumberError> {
     let text = text.trim_ascii();
     let length = number_length(text);
     if length < text.len() || text.is_empty() {
-        return Err(number_error(text, length));
+        return Err(classify_error(text, length));
     }
     let value: f64 = text.parse().map_err(|_| NumberError::NoNumber)?;
     if value.is_infinite() {
@@ -41,19 +41,19 @@ pub(super) fn scalar(text: &str) -> Result<(f64, bool), NumberError> {
 }
 
 /// Returns a whole 32-bit number.
-pub(super) fn integer(text: &str) -> Result<i32, NumberError> {
+pub(super) fn parse_integer(text: &str) -> Result<i32, NumberError> {
     let text = text.trim_ascii();
     let digits = text.strip_prefix(['+', '-']).unwrap_or(text);
     if !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit()) {
         return text.parse().map_err(|_| NumberError::TooLarge);
     }
-    Err(match scalar(text) {
+    Err(match parse_scalar(text) {
         Ok(_) => NumberError::NotWhole,
         Err(flaw) => flaw,
     })
 }
 
-fn number_error(text: &str, length: usize) -> NumberError {
+fn classify_error(text: &str, length: usize) -> NumberError {
     let bare = text.strip_prefix(['+', '-']).unwrap_or(text).to_ascii_lowercase();
     if text.is_empty() {
         NumberError::Empty
@@ -74,10 +74,10 @@ fn number_error(text: &str, length: usize) -> NumberError {
 /// Returns the number of leading bytes that have the form of a number; 0 without digits.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
-    let Some(end) = mantissa(bytes) else { return 0 };
+    let Some(end) = mantissa_end(bytes) else { return 0 };
     if matches!(bytes.get(end), Some(b'e' | b'E')) {
         let sign = usize::from(matches!(bytes.get(end + 1), Some(b'+' | b'-')));
-        let exponent = digits(bytes, end + 1 + sign);
+        let exponent = count_digits(bytes, end + 1 + sign);
         if exponent > 0 {
             return end + 1 + sign + exponent;
         }
@@ -86,16 +86,16 @@ fn number_length(text: &str) -> usize {
 }
 
 /// Returns the offsets at which a number's sign, digits and fraction end; `None` without digits.
-pub(super) fn mantissa(text: &[u8]) -> Option<usize> {
+pub(super) fn mantissa_end(text: &[u8]) -> Option<usize> {
     let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
-    let whole = digits(text, sign);
+    let whole = count_digits(text, sign);
     let point = sign + whole;
-    let fraction = if text.get(point) == Some(&b'.') { 1 + digits(text, point + 1) } else { 0 };
+    let fraction = if text.get(point) == Some(&b'.') { 1 + count_digits(text, point + 1) } else { 0 };
     (whole > 0 || fraction > 1).then_some(point + fraction)
 }
 
 /// Returns the number of digits at `from`.
-pub(super) fn digits(text: &[u8], from: usize) -> usize {
+pub(super) fn count_digits(text: &[u8], from: usize) -> usize {
     text.get(from..).unwrap_or_default().iter().take_while(|byte| byte.is_ascii_digit()).count()
 }
 
@@ -106,11 +106,11 @@ mod tests {
     #[test]
     fn whole_texts_are_read() {
         for (text, value) in [(" 1.5\t", 1.5), ("-.5e1", -5.0), ("+3.", 3.0), ("0e999999999999", 0.0)] {
-            assert_eq!(scalar(text), Ok((value, false)), "{text}");
+            assert_eq!(parse_scalar(text), Ok((value, false)), "{text}");
         }
-        assert_eq!(scalar("1e-400"), Ok((0.0, true)));
-        assert_eq!(integer(" +07 "), Ok(7));
-        assert_eq!(integer("-2147483648"), Ok(i32::MIN));
+        assert_eq!(parse_scalar("1e-400"), Ok((0.0, true)));
+        assert_eq!(parse_integer(" +07 "), Ok(7));
+        assert_eq!(parse_integer("-2147483648"), Ok(i32::MIN));
     }
 
     #[test]
@@ -131,11 +131,11 @@ mod tests {
             ("-1e400", NumberError::Overflow),
             ("é", NumberError::NoNumber),
         ] {
-            assert_eq!(scalar(text), Err(flaw), "{text}");
+            assert_eq!(parse_scalar(text), Err(flaw), "{text}");
         }
-        assert_eq!(integer("1.0"), Err(NumberError::NotWhole));
-        assert_eq!(integer("2147483648"), Err(NumberError::TooLarge));
-        assert_eq!(integer("99999999999999999999"), Err(NumberError::TooLarge));
-        assert_eq!(integer("3x"), Err(NumberError::Trailing("3".into())));
+        assert_eq!(parse_integer("1.0"), Err(NumberError::NotWhole));
+        assert_eq!(parse_integer("2147483648"), Err(NumberError::TooLarge));
+        assert_eq!(parse_integer("99999999999999999999"), Err(NumberError::TooLarge));
+        assert_eq!(parse_integer("3x"), Err(NumberError::Trailing("3".into())));
     }
 }

@@ -59,8 +59,8 @@ pub struct Problems {
 
 impl Problems {
     /// Returns a rejection of the whole text, with its start as the place.
-    pub(super) fn whole(source: &str, message: String, help: &str) -> Self {
-        Self { source: source.to_owned(), list: vec![Problem::new(0..0, message).help(help)], omitted: 0 }
+    pub(super) fn from_whole_text(source: &str, message: String, help: &str) -> Self {
+        Self { source: source.to_owned(), list: vec![Problem::new(0..0, message).with_help(help)], omitted: 0 }
     }
 }
 
@@ -92,15 +92,15 @@ impl Problem {
         Self { element: Some(quote(element)), ..Self::new(span.clone(), message) }
     }
 
-    pub(super) fn attribute(self, name: &str) -> Self {
+    pub(super) fn with_attribute(self, name: &str) -> Self {
         Self { attribute: Some(quote(name)), ..self }
     }
 
-    pub(super) fn help(self, help: impl Into<String>) -> Self {
-        self.maybe_help(Some(help.into()))
+    pub(super) fn with_help(self, help: impl Into<String>) -> Self {
+        self.with_optional_help(Some(help.into()))
     }
 
-    pub(super) fn maybe_help(self, help: Option<String>) -> Self {
+    pub(super) fn with_optional_help(self, help: Option<String>) -> Self {
         Self { help, ..self }
     }
 }
@@ -110,21 +110,21 @@ impl Problem {
 pub(super) struct Report {
     list: Vec<Problem>,
     /// The number of kept problems of each severity.
-    kept: [usize; 2],
+    kept_counts: [usize; 2],
     omitted: usize,
 }
 
 impl Report {
-    pub(super) fn error(&mut self, problem: impl FnOnce() -> Problem) {
+    pub(super) fn add_error(&mut self, problem: impl FnOnce() -> Problem) {
         self.add(Severity::Error, problem);
     }
 
-    pub(super) fn warning(&mut self, problem: impl FnOnce() -> Problem) {
+    pub(super) fn add_warning(&mut self, problem: impl FnOnce() -> Problem) {
         self.add(Severity::Warning, problem);
     }
 
     pub(super) fn add(&mut self, severity: Severity, problem: impl FnOnce() -> Problem) {
-        let kept = &mut self.kept[severity as usize];
+        let kept = &mut self.kept_counts[severity as usize];
         if *kept < MAX_PROBLEMS {
             *kept += 1;
             self.list.push(Problem { severity, ..problem() });
@@ -134,14 +134,14 @@ impl Report {
     }
 
     pub(super) fn has_errors(&self) -> bool {
-        self.kept[Severity::Error as usize] > 0
+        self.kept_counts[Severity::Error as usize] > 0
     }
 
     /// Returns the problems in the order of their places, and the number of further problems. The spans refer to
     /// `text`.
     pub(super) fn finish(mut self, text: &[u8]) -> (Vec<Problem>, usize) {
         self.list.sort_by_key(|problem| (problem.span.start, problem.severity));
-        let mut place = Place::at_start(text);
+        let mut place = TextCursor::from_start(text);
         for problem in &mut self.list {
             (problem.line, problem.column) = place.advance(text, problem.span.start);
         }
@@ -150,22 +150,22 @@ impl Report {
 }
 
 /// A position in the text that moves forward and counts lines and characters.
-struct Place {
-    at: usize,
+struct TextCursor {
+    offset: usize,
     line: usize,
     column: usize,
 }
 
-impl Place {
-    fn at_start(text: &[u8]) -> Self {
+impl TextCursor {
+    fn from_start(text: &[u8]) -> Self {
         // A byte order mark has no width on the screen.
         let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
-        Self { at, line: 1, column: 1 }
+        Self { offset: at, line: 1, column: 1 }
     }
 
     fn advance(&mut self, text: &[u8], to: usize) -> (usize, usize) {
         let to = to.min(text.len());
-        for &byte in text.get(self.at..to).unwrap_or_default() {
+        for &byte in text.get(self.offset..to).unwrap_or_default() {
             if byte == b'\n' {
                 self.line += 1;
                 self.column = 1;
@@ -174,7 +174,7 @@ impl Place {
                 self.column += 1;
             }
         }
-        self.at = self.at.max(to);
+        self.offset = self.offset.max(to);
         (self.line, self.column)
     }
 }
@@ -199,9 +199,9 @@ mod tests {
     fn places_count_lines_and_characters() {
         let text = "\u{feff}a\né b\r\nc".as_bytes();
         let mut report = Report::default();
-        report.warning(|| Problem::new(13..13, "third"));
-        report.error(|| Problem::new(8..9, "second").help("do this"));
-        report.error(|| Problem::from_element("e", &(3..4), "first"));
+        report.add_warning(|| Problem::new(13..13, "third"));
+        report.add_error(|| Problem::new(8..9, "second").with_help("do this"));
+        report.add_error(|| Problem::from_element("e", &(3..4), "first"));
         let (list, omitted) = report.finish(text);
         let shown = Problems { source: "x".into(), list, omitted }.to_string();
         assert_eq!(shown, "1:1: first\n2:3: second (do this)\n3:2: warning: third");
@@ -211,9 +211,9 @@ mod tests {
     fn the_list_is_capped_and_the_rest_counted() {
         let mut report = Report::default();
         for _ in 0..MAX_PROBLEMS + 3 {
-            report.error(|| Problem::new(0..0, "e"));
+            report.add_error(|| Problem::new(0..0, "e"));
         }
-        report.warning(|| Problem::new(0..0, "w"));
+        report.add_warning(|| Problem::new(0..0, "w"));
         let (list, omitted) = report.finish(b"");
         assert_eq!((list.len(), omitted), (MAX_PROBLEMS + 1, 3));
         let shown = Problems { source: String::new(), list, omitted }.to_string();

@@ -30,19 +30,20 @@ pub struct LoadedScene {
 pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
     if text.len() > MAX_SCENE_BYTES {
         let message = format!("the file has {} bytes", text.len());
-        return Err(Problems::whole(name, message, "a scene has at most 8 MiB"));
+        return Err(Problems::from_whole_text(name, message, "a scene has at most 8 MiB"));
     }
     if text.starts_with(b"\xff\xfe") || text.starts_with(b"\xfe\xff") {
-        return Err(Problems::whole(name, "the file is in UTF-16".into(), "save it as UTF-8"));
+        return Err(Problems::from_whole_text(name, "the file is in UTF-16".into(), "save it as UTF-8"));
     }
     let mut report = Report::default();
     let readable = decode(text, &mut report);
     let document = document::read(&readable, &mut report);
     let mut scene = None;
     if document.scene.is_none() {
-        if !document.broken && !document.other_root {
-            report.error(|| {
-                Problem::new(0..0, "the file has no `scene`").help("put everything between `<scene>` and `</scene>`")
+        if !document.is_broken && !document.has_other_root {
+            report.add_error(|| {
+                Problem::new(0..0, "the file has no `scene`")
+                    .with_help("put everything between `<scene>` and `</scene>`")
             });
         }
     } else if let Some(parts) = xml::read(&document, &mut report) {
@@ -52,7 +53,7 @@ pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
     if let Some(found) = &scene {
         compare(found, text, &mut report);
     } else if !report.has_errors() {
-        report.error(|| Problem::new(0..0, "the scene is incomplete"));
+        report.add_error(|| Problem::new(0..0, "the scene is incomplete"));
     }
     let refused = report.has_errors();
     let (list, omitted) = report.finish(text);
@@ -65,11 +66,11 @@ pub fn read(name: &str, text: &[u8]) -> Result<LoadedScene, Problems> {
 /// Returns the text with every byte that is not UTF-8 replaced by `?`, which keeps the offsets.
 fn decode<'t>(text: &'t [u8], report: &mut Report) -> Cow<'t, str> {
     if let Some(at) = text.iter().position(|&byte| byte == 0) {
-        report.error(|| Problem::new(at..at + 1, "a NUL byte").help("the original stops reading there"));
+        report.add_error(|| Problem::new(at..at + 1, "a NUL byte").with_help("the original stops reading there"));
     }
     let Err(error) = std::str::from_utf8(text) else { return String::from_utf8_lossy(text) };
     let at = error.valid_up_to();
-    report.error(|| Problem::new(at..at + 1, "a byte that is not UTF-8").help("save the file as UTF-8"));
+    report.add_error(|| Problem::new(at..at + 1, "a byte that is not UTF-8").with_help("save the file as UTF-8"));
     let mut readable = String::with_capacity(text.len());
     for chunk in text.utf8_chunks() {
         readable.push_str(chunk.valid());
@@ -85,5 +86,5 @@ fn compare(scene: &Scene, text: &[u8], report: &mut Report) {
         Ok(_) => "it joins lines without a space and may see other markup".to_owned(),
         Err(refusal) => refusal.explanation,
     };
-    report.error(|| Problem::new(0..0, "the original reads this file differently").help(difference));
+    report.add_error(|| Problem::new(0..0, "the original reads this file differently").with_help(difference));
 }

@@ -26,9 +26,9 @@ pub(super) struct Tag<'t> {
     /// The known attributes, each once.
     pub(super) attributes: Vec<Attribute<'t>>,
     /// The probable intended names of misspelt attributes.
-    pub(super) meant: BTreeSet<&'static str>,
+    pub(super) intended_names: BTreeSet<&'static str>,
     /// Whether some attributes of the tag could not be read.
-    pub(super) broken: bool,
+    pub(super) is_broken: bool,
 }
 
 /// Reads a tag. `inner` is the part of `text` between `<` and `>` or `/>`, and `span` the bytes of `<name`.
@@ -40,7 +40,7 @@ pub(super) fn read<'t>(
     report: &mut Report,
 ) -> Tag<'t> {
     let (start, name_length) = (span.start + 1, span.len() - 1);
-    let mut tag = Tag { rule, span, attributes: Vec::new(), meant: BTreeSet::new(), broken: false };
+    let mut tag = Tag { rule, span, attributes: Vec::new(), intended_names: BTreeSet::new(), is_broken: false };
     let mut found = Attributes::new(inner, name_length);
     // The library's own check compares each attribute with all others; here there are few names to compare with.
     found.with_checks(false);
@@ -53,8 +53,8 @@ pub(super) fn read<'t>(
             }
             Err(error) => {
                 // The text after the error may belong to a different element.
-                tag.broken = true;
-                report.error(|| broken(rule, inner, start, &error));
+                tag.is_broken = true;
+                report.add_error(|| syntax_problem(rule, inner, start, &error));
                 break;
             }
         }
@@ -68,27 +68,27 @@ impl<'t> Tag<'t> {
         let name_span = at..at + name.len();
         let rule = self.rule;
         if !rule.attributes.contains(&name) {
-            report.error(|| {
-                let similar = grammar::closest(name, rule.attributes.iter().copied());
-                self.meant.extend(similar);
+            report.add_error(|| {
+                let similar = grammar::find_closest(name, rule.attributes.iter().copied());
+                self.intended_names.extend(similar);
                 let help = match similar {
                     Some(similar) => format!("did you mean `{similar}`?"),
                     None if rule.attributes.is_empty() => format!("`{}` has none", rule.name),
-                    None => format!("`{}` has {}", rule.name, list(rule.attributes)),
+                    None => format!("`{}` has {}", rule.name, join_names(rule.attributes)),
                 };
                 Problem::from_element(
                     rule.name,
                     &name_span,
                     format!("unknown attribute `{}` of `{}`", quote(name), rule.name),
                 )
-                .attribute(name)
-                .help(help)
+                .with_attribute(name)
+                .with_help(help)
             });
         } else if self.attributes.iter().any(|other| other.name == name) {
-            report.error(|| {
+            report.add_error(|| {
                 Problem::from_element(rule.name, &name_span, format!("a second `{name}` of `{}`", rule.name))
-                    .attribute(name)
-                    .help("the original takes the first; remove one")
+                    .with_attribute(name)
+                    .with_help("the original takes the first; remove one")
             });
         } else {
             let at = offset(text, value);
@@ -99,7 +99,7 @@ impl<'t> Tag<'t> {
 }
 
 /// Returns the fault in the form of an attribute. `start` is the offset of `inner` in the text.
-fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem {
+fn syntax_problem(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem {
     let (at, message) = match *error {
         AttrError::ExpectedEq(at) => (at, "`=` and a value are missing after"),
         AttrError::ExpectedValue(at) => (at, "a value is missing after"),
@@ -119,7 +119,7 @@ fn broken(rule: &Rule, inner: &str, start: usize, error: &AttrError) -> Problem 
         (word, format!("{message} `{}`", quote(&before[word..])), "attributes are written `name=\"value\"`")
     };
     Problem::from_element(rule.name, &(start + from..start + before.len()), format!("{message} in `{}`", rule.name))
-        .help(help)
+        .with_help(help)
 }
 
 /// Returns whether a byte is white space of XML.
@@ -133,7 +133,7 @@ pub(super) fn offset(text: &str, part: &str) -> usize {
 }
 
 /// Returns the names joined for a message, such as `a`, `b` and `c`.
-pub(super) fn list(names: &[&str]) -> String {
+pub(super) fn join_names(names: &[&str]) -> String {
     let quoted: Vec<String> = names.iter().map(|name| format!("`{name}`")).collect();
     match quoted.split_last() {
         Some((last, [])) => last.clone(),

@@ -4,7 +4,7 @@
 //! the order of every loop over them (simulation.md 1).
 use super::{
     pair::{Pair, PairKind},
-    pairs::Objects,
+    pairs::ObjectCounts,
 };
 use crate::scene::Scene;
 use fosssim_num::vector::Vec2;
@@ -57,18 +57,18 @@ impl Bodies {
     }
 
     /// Returns the number of particles N.
-    pub fn particles(&self) -> usize {
+    pub fn particle_count(&self) -> usize {
         self.masses.len()
     }
 
     /// Returns the number of objects of each kind.
     #[inline]
-    pub fn objects(&self) -> Objects {
-        Objects { particles: self.particles(), edges: self.edges.len(), half_planes: self.points.len() }
+    pub fn object_counts(&self) -> ObjectCounts {
+        ObjectCounts { particles: self.particle_count(), edges: self.edges.len(), half_planes: self.points.len() }
     }
 
     /// Returns the particles of a pair; a pair with fewer than three repeats the last one.
-    pub fn particles_of(&self, pair: Pair) -> [usize; 3] {
+    pub fn pair_particles(&self, pair: Pair) -> [usize; 3] {
         let (first, second) = (pair.first as usize, pair.second as usize);
         match pair.kind {
             PairKind::ParticleParticle => [first, second, second],
@@ -78,8 +78,8 @@ impl Bodies {
     }
 
     /// Estimates the number of pairs in a pass.
-    pub fn pairs(&self) -> usize {
-        self.particles() * (self.particles() / 2 + self.edges.len() + self.points.len())
+    pub fn estimate_pair_count(&self) -> usize {
+        self.particle_count() * (self.particle_count() / 2 + self.edges.len() + self.points.len())
     }
 
     /// Writes +0 into both entries of every fixed particle of an array in trace order.

@@ -24,11 +24,12 @@ mod step_error;
 
 pub use collision::{PairMotion, PointMotion, formulas};
 pub use forces::{PenaltyPairs, PenaltyTerms, SweepOrder, gradients};
-pub use integrators::least_work;
+pub use integrators::min_work;
 pub use observer::{
-    Decision, Detection, Impulse, Observer, Pass, Resume, Stage, Steering, StepController, Time, WantedPairs, Zone,
+    Decision, Detection, ImpactTime, Impulse, Observer, Pass, ResumeState, Stage, SteeringObserver, StepController,
+    WantedPairs, Zone,
 };
-pub use pair::{ByKind, Pair, PairKind};
+pub use pair::{Pair, PairKind, PairKindMap};
 pub use pairs::{Pairs, pairs};
 pub use polynomial_bytes::PolynomialBytes;
 pub use search::{RootSearch, SearchCounts};

@@ -19,7 +19,7 @@ pub trait Observer {
     /// Observes the start of a detection pass.
     fn begin_pass(&mut self, _pass: Pass) {}
     /// Observes the start and end positions of particles (2N each) for the pass, right after `begin_pass`.
-    fn pass_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
+    fn observe_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
     /// Returns the pairs whose detections this observer needs; called at least once in each pass. Unless the answer is
     /// [`WantedPairs::Calls`], `detection` is not called, calls are not steered, and pairs are computed many at a time.
     #[inline]
@@ -54,35 +54,35 @@ pub trait StepController {
     /// Receives the trimmed polynomials of a pair before the search for a time of impact. They may be replaced; search,
     /// decision and [`Observer::observe_detection`] then use the replacements. Not called by `simple`, which has no
     /// polynomials.
-    fn solve(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
+    fn adjust_polynomials(&mut self, _pair: Pair, _q_start: &[f64], _q_end: &[f64], _polynomials: &mut [Polynomial]) {}
     /// Receives the system matrix of an implicit integrator, column by column, before each solve of a step. The step
     /// continues with the modified entries.
     fn observe_system(&mut self, _matrix: &mut [f64]) {}
     /// Returns the decision about a pair with which the step continues.
-    fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
+    fn adjust_decision(&mut self, _pair: Pair, decision: Decision) -> Decision {
         decision
     }
     /// Receives the synchronization point, after [`Observer::observe_synchronization`]. The step continues with the
     /// values written here; the returned value selects the state from which the geometric part of `hybrid` starts.
-    fn synchronize(&mut self, _state: &mut State) -> Resume {
-        Resume::Own
+    fn choose_resume_state(&mut self, _state: &mut State) -> ResumeState {
+        ResumeState::Own
     }
 }
 
 /// An observer that only steers.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Steering<S>(pub S);
+pub struct SteeringObserver<S>(pub S);
 
-impl<S: StepController> Observer for Steering<S> {
+impl<S: StepController> Observer for SteeringObserver<S> {
     fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         Some(&mut self.0)
     }
 }
 
 /// Passes the state of the synchronization point to an observer, and lets it steer.
-pub(super) fn synchronize<O: Observer>(observer: &mut O, state: &mut State) -> Resume {
+pub(super) fn pass_on_synchronization<O: Observer>(observer: &mut O, state: &mut State) -> ResumeState {
     observer.observe_synchronization(state);
-    observer.as_controller().map_or(Resume::Own, |steer| steer.synchronize(state))
+    observer.as_controller().map_or(ResumeState::Own, |steer| steer.choose_resume_state(state))
 }
 
 /// The pairs of a detection pass that an observer needs.
@@ -109,7 +109,7 @@ macro_rules! forward_all {
     ($self:ident => $($to:expr),+) => {
         fn begin_step(&mut $self, step: u32) { $($to.begin_step(step);)+ }
         fn begin_pass(&mut $self, pass: Pass) { $($to.begin_pass(pass);)+ }
-        fn pass_positions(&mut $self, q_start: &[f64], q_end: &[f64]) { $($to.pass_positions(q_start, q_end);)+ }
+        fn observe_positions(&mut $self, q_start: &[f64], q_end: &[f64]) { $($to.observe_positions(q_start, q_end);)+ }
         fn observe_detection(&mut $self, detection: &Detection<'_>) { $($to.observe_detection(detection);)+ }
         fn observe_hit(&mut $self, pair: Pair) { $($to.observe_hit(pair);)+ }
         fn end_pass(&mut $self, pass: Pass, hits: usize) { $($to.end_pass(pass, hits);)+ }
@@ -155,26 +155,26 @@ impl<A: Observer, B: Observer> Observer for (A, B) {
 /// The second observer receives the state as the first one sets it. The geometric part starts from the synchronized
 /// state if one of them requests it.
 impl<A: Observer, B: Observer> StepController for (A, B) {
-    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+    fn adjust_polynomials(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         let both = [self.0.as_controller(), self.1.as_controller()].into_iter().flatten();
-        both.for_each(|steer| steer.solve(pair, q_start, q_end, polynomials));
+        both.for_each(|steer| steer.adjust_polynomials(pair, q_start, q_end, polynomials));
     }
-    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+    fn adjust_decision(&mut self, pair: Pair, decision: Decision) -> Decision {
         let both = [self.0.as_controller(), self.1.as_controller()].into_iter().flatten();
-        both.fold(decision, |decision, steer| steer.decide(pair, decision))
+        both.fold(decision, |decision, steer| steer.adjust_decision(pair, decision))
     }
-    fn synchronize(&mut self, state: &mut State) -> Resume {
+    fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         let both = [self.0.as_controller(), self.1.as_controller()].into_iter().flatten();
-        both.fold(Resume::Own, |resume, steer| match steer.synchronize(state) {
-            Resume::Own => resume,
-            Resume::Synchronized => Resume::Synchronized,
+        both.fold(ResumeState::Own, |resume, steer| match steer.choose_resume_state(state) {
+            ResumeState::Own => resume,
+            ResumeState::Synchronized => ResumeState::Synchronized,
         })
     }
 }
 
 /// The state from which the geometric part of `hybrid` starts, after the synchronization point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Resume {
+pub enum ResumeState {
     /// The simulator's own values, as in the original's grading (collisions.md 5.4).
     Own,
     /// The state that an observer has set.
@@ -287,7 +287,7 @@ pub enum Decision {
     /// The objects do not collide within the step.
     Miss {
         /// The information about the time of impact.
-        time: Time,
+        time: ImpactTime,
     },
 }
 
@@ -302,7 +302,7 @@ impl Decision {
     #[must_use]
     pub const fn time(self) -> f64 {
         match self {
-            Self::Hit { time, .. } | Self::Miss { time: Time::Found(time) } => time,
+            Self::Hit { time, .. } | Self::Miss { time: ImpactTime::Found(time) } => time,
             Self::Miss { .. } => f64::INFINITY,
         }
     }
@@ -310,7 +310,7 @@ impl Decision {
 
 /// The information about the time of a pair that does not collide.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub enum Time {
+pub enum ImpactTime {
     /// The time was not searched, because a certificate proves that it is not within the step.
     Excluded,
     /// The search found this time (greater than 1 or infinite, or at most 1 with a zero normal).

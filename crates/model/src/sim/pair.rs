@@ -23,9 +23,9 @@ pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
 
 /// A value for each kind of pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub struct ByKind<T>([T; PairKind::ALL.len()]);
+pub struct PairKindMap<T>([T; PairKind::ALL.len()]);
 
-impl<T> ByKind<T> {
+impl<T> PairKindMap<T> {
     /// Creates the values with a function.
     #[must_use]
     pub fn from_fn(value: impl FnMut(PairKind) -> T) -> Self {
@@ -53,13 +53,13 @@ impl<T> ByKind<T> {
     }
 }
 
-impl<T> From<[T; PairKind::ALL.len()]> for ByKind<T> {
+impl<T> From<[T; PairKind::ALL.len()]> for PairKindMap<T> {
     fn from(values: [T; PairKind::ALL.len()]) -> Self {
         Self(values)
     }
 }
 
-impl<T> Index<PairKind> for ByKind<T> {
+impl<T> Index<PairKind> for PairKindMap<T> {
     type Output = T;
 
     #[inline]
@@ -68,7 +68,7 @@ impl<T> Index<PairKind> for ByKind<T> {
     }
 }
 
-impl<T> IndexMut<PairKind> for ByKind<T> {
+impl<T> IndexMut<PairKind> for PairKindMap<T> {
     #[inline]
     fn index_mut(&mut self, kind: PairKind) -> &mut T {
         &mut self.0[kind.index()]

@@ -2,14 +2,14 @@
 //! (collisions.md 1, trace-format.md 2).
 //!
 //! This is the only enumeration of a pass. Code that visits the pairs of a particle by kind, to share values between
-//! pairs, gets the ranges from [`Objects::row`].
-use super::pair::{ByKind, Pair, PairKind, pair};
+//! pairs, gets the ranges from [`ObjectCounts::remaining_row`].
+use super::pair::{Pair, PairKind, PairKindMap, pair};
 use crate::scene::Scene;
 use std::{cmp::Ordering, ops::Range};
 
 /// The number of objects of each kind.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Objects {
+pub(super) struct ObjectCounts {
     /// The number of particles.
     pub particles: usize,
     /// The number of edges.
@@ -38,16 +38,16 @@ impl PassCursor {
 
     /// Returns the position after a pair.
     #[inline]
-    pub const fn following(kind: PairKind, first: usize, second: usize) -> Self {
+    pub const fn after_pair(kind: PairKind, first: usize, second: usize) -> Self {
         Self { first, kind, second: second + 1 }
     }
 }
 
-impl Objects {
+impl ObjectCounts {
     /// Returns the numbers of the objects that a particle is paired with: all later particles, all edges (but see
     /// [`is_end`]), and all half-planes.
     #[inline]
-    fn seconds(self, kind: PairKind, first: usize) -> Range<usize> {
+    fn second_range(self, kind: PairKind, first: usize) -> Range<usize> {
         match kind {
             PairKind::ParticleParticle => first + 1..self.particles,
             PairKind::ParticleEdge => 0..self.edges,
@@ -58,9 +58,9 @@ impl Objects {
     /// Returns the rest of a particle's pairs from a position on: for each kind, in the order of the pass, the numbers
     /// of the second objects. The edges include those that end in the particle ([`is_end`]).
     #[inline(always)]
-    pub fn row(self, from: PassCursor) -> [Range<usize>; PairKind::ALL.len()] {
+    pub fn remaining_row(self, from: PassCursor) -> [Range<usize>; PairKind::ALL.len()] {
         PairKind::ALL.map(|kind| {
-            let Range { start, end } = self.seconds(kind, from.first);
+            let Range { start, end } = self.second_range(kind, from.first);
             match kind.cmp(&from.kind) {
                 Ordering::Less => end..end,
                 Ordering::Equal => start.max(from.second)..end,
@@ -96,12 +96,12 @@ impl Pairs {
     /// Returns all pairs in the order of the pass: particle by particle, with all later particles, then with the edges
     /// that do not end in it, then with the half-planes.
     pub fn iter(&self) -> impl Iterator<Item = Pair> + Clone {
-        (0..self.particles).flat_map(|particle| self.pairs_of(particle))
+        (0..self.particles).flat_map(|particle| self.pairs_of_particle(particle))
     }
 
     /// Returns the pairs whose first object is particle `first`.
-    pub fn pairs_of(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
-        PairKind::ALL.into_iter().zip(self.objects().row(PassCursor::from_first(first))).flat_map(
+    pub fn pairs_of_particle(&self, first: usize) -> impl Iterator<Item = Pair> + Clone {
+        PairKind::ALL.into_iter().zip(self.object_counts().remaining_row(PassCursor::from_first(first))).flat_map(
             move |(kind, seconds)| {
                 let is_pair = move |&second: &usize| match kind {
                     PairKind::ParticleEdge => !is_end(self.edges[second], first),
@@ -112,15 +112,15 @@ impl Pairs {
         )
     }
 
-    fn objects(&self) -> Objects {
-        Objects { particles: self.particles, edges: self.edges.len(), half_planes: self.half_planes }
+    fn object_counts(&self) -> ObjectCounts {
+        ObjectCounts { particles: self.particles, edges: self.edges.len(), half_planes: self.half_planes }
     }
 
     /// Returns the number of pairs of each kind.
     #[must_use]
-    pub fn counts(&self) -> ByKind<usize> {
+    pub fn counts(&self) -> PairKindMap<usize> {
         let at_ends: usize = self.edges.iter().map(|[one, other]| if one == other { 1 } else { 2 }).sum();
-        ByKind::from_fn(|kind| match kind {
+        PairKindMap::from_fn(|kind| match kind {
             PairKind::ParticleParticle => self.particles * self.particles.saturating_sub(1) / 2,
             PairKind::ParticleEdge => self.particles * self.edges.len() - at_ends,
             PairKind::ParticleHalfPlane => self.particles * self.half_planes,
@@ -135,27 +135,27 @@ impl Pairs {
 
     /// Returns the number of polynomials of a pass, if passes log polynomials.
     #[must_use]
-    pub fn polynomials(&self) -> usize {
-        self.counts().iter().map(|(kind, count)| kind.polynomials() * count).sum()
+    pub fn polynomial_count(&self) -> usize {
+        self.counts().iter().map(|(kind, count)| kind.polynomial_count() * count).sum()
     }
 
     /// Returns the owner of polynomial `index` of a step's list: the number of the pass, the pair, and the polynomial's
     /// number within the pair. `None` if passes have no polynomials.
     #[must_use]
-    pub fn polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {
-        let per_pass = self.polynomials();
+    pub fn locate_polynomial(&self, index: usize) -> Option<(usize, Pair, usize)> {
+        let per_pass = self.polynomial_count();
         let (pass, mut rest) = (index.checked_div(per_pass)?, index % per_pass.max(1));
         for particle in 0..self.particles {
             let apart = self.edges.iter().filter(|&&ends| !is_end(ends, particle)).count();
-            let of_particle = PairKind::ParticleParticle.polynomials() * (self.particles - particle - 1)
-                + PairKind::ParticleEdge.polynomials() * apart
-                + PairKind::ParticleHalfPlane.polynomials() * self.half_planes;
+            let of_particle = PairKind::ParticleParticle.polynomial_count() * (self.particles - particle - 1)
+                + PairKind::ParticleEdge.polynomial_count() * apart
+                + PairKind::ParticleHalfPlane.polynomial_count() * self.half_planes;
             if let Some(more) = rest.checked_sub(of_particle) {
                 rest = more;
                 continue;
             }
-            for pair in self.pairs_of(particle) {
-                match rest.checked_sub(pair.kind.polynomials()) {
+            for pair in self.pairs_of_particle(particle) {
+                match rest.checked_sub(pair.kind.polynomial_count()) {
                     Some(more) => rest = more,
                     None => return Some((pass, pair, rest)),
                 }
@@ -216,13 +216,13 @@ mod tests {
             let expected: Vec<Pair> = pairs(&scene).iter().collect();
             assert_eq!(expected.len(), pairs(&scene).count());
             let mut looked = Looked::default();
-            let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+            let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
             simulation.step(&mut looked).expect("a step");
             assert!(!looked.0.is_empty());
             for pass in &looked.0 {
                 assert_eq!(pass.iter().map(|(pair, _)| *pair).collect::<Vec<_>>(), expected, "{collision}");
                 let logged: usize = pass.iter().map(|(_, polynomials)| polynomials).sum();
-                assert!(logged == 0 || logged == pairs(&scene).polynomials(), "{collision}");
+                assert!(logged == 0 || logged == pairs(&scene).polynomial_count(), "{collision}");
             }
         }
     }
@@ -232,13 +232,13 @@ mod tests {
         let scene = scene("<collision type=\"continuous-time\"/>");
         let pairs = pairs(&scene);
         // Ten pairs of discs, fifteen less four of discs and edges, ten of discs and half-planes.
-        assert_eq!(pairs.counts(), ByKind::from([10, 6, 10]));
-        assert_eq!(pairs.polynomials(), 2 * 10 + 4 * 6 + 2 * 10);
+        assert_eq!(pairs.counts(), PairKindMap::from([10, 6, 10]));
+        assert_eq!(pairs.polynomial_count(), 2 * 10 + 4 * 6 + 2 * 10);
         let mut index = 0;
         for pass in 0..3 {
             for pair in pairs.iter() {
-                for number in 0..pair.kind.polynomials() {
-                    assert_eq!(pairs.polynomial(index), Some((pass, pair, number)));
+                for number in 0..pair.kind.polynomial_count() {
+                    assert_eq!(pairs.locate_polynomial(index), Some((pass, pair, number)));
                     index += 1;
                 }
             }
@@ -250,14 +250,14 @@ mod tests {
         let xml = b"<scene><duration time=\"1\"/><integrator type=\"explicit-euler\" dt=\"1\"/></scene>";
         let scene = original::read(xml).expect("a scene").scene;
         let pairs = pairs(&scene);
-        assert_eq!((pairs.iter().count(), pairs.polynomials(), pairs.polynomial(0)), (0, 0, None));
+        assert_eq!((pairs.iter().count(), pairs.polynomial_count(), pairs.locate_polynomial(0)), (0, 0, None));
     }
 
     #[test]
     fn numbers_lead_back_to_kinds() {
         for (number, kind) in PairKind::ALL.into_iter().enumerate() {
             assert_eq!((kind.index(), PairKind::from_code(kind.code())), (number, Some(kind)));
-            assert!(kind.polynomials() <= PairKind::MAX_POLYNOMIALS);
+            assert!(kind.polynomial_count() <= PairKind::MAX_POLYNOMIALS);
         }
         assert_eq!((PairKind::from_code(-1), PairKind::from_code(3)), (None, None));
     }

@@ -11,10 +11,10 @@ use std::ops::Range;
 pub struct PolynomialBytes {
     /// The bytes of the list are those from `begin` to `used`. Earlier lists may precede them, and free room follows.
     bytes: Vec<u8>,
-    begin: usize,
-    used: usize,
+    start: usize,
+    used_bytes: usize,
     count: usize,
-    largest: f64,
+    max_modulus: f64,
 }
 
 /// The number of bytes of the largest polynomial that a detection logs.
@@ -27,23 +27,23 @@ const MAX_GROWTH: usize = 16 << 20;
 impl PolynomialBytes {
     /// Empties the list, and removes earlier ones.
     pub fn clear(&mut self) {
-        self.used = 0;
-        self.begin();
+        self.used_bytes = 0;
+        self.begin_list();
     }
 
     /// Begins a new list after the existing ones.
-    pub(crate) fn begin(&mut self) {
-        (self.begin, self.count, self.largest) = (self.used, 0, 0.0);
+    pub(crate) fn begin_list(&mut self) {
+        (self.start, self.count, self.max_modulus) = (self.used_bytes, 0, 0.0);
     }
 
     /// Returns the range of the list within [all](Self::all) bytes.
     pub(crate) fn range(&self) -> Range<usize> {
-        self.begin..self.used
+        self.start..self.used_bytes
     }
 
     /// Returns the bytes of all lists.
-    pub(crate) fn all(&self) -> &[u8] {
-        &self.bytes[..self.used]
+    pub(crate) fn all_bytes(&self) -> &[u8] {
+        &self.bytes[..self.used_bytes]
     }
 
     /// Returns the number of polynomials.
@@ -71,8 +71,8 @@ impl PolynomialBytes {
 
     /// Returns an upper bound of all moduli of coefficients, ignoring NaN. It may come from a pair that is not logged.
     #[must_use]
-    pub fn largest(&self) -> f64 {
-        self.largest
+    pub fn max_modulus(&self) -> f64 {
+        self.max_modulus
     }
 
     /// Appends one polynomial, highest power first.
@@ -82,7 +82,7 @@ impl PolynomialBytes {
     #[inline]
     pub fn push(&mut self, coefficients: &[f64]) {
         assert!(coefficients.len() <= MAX_COEFFICIENTS, "detection polynomials are of degree five at most");
-        let mut largest = self.largest;
+        let mut largest = self.max_modulus;
         // A copy of constant length, of which a part counts, is several times faster than a copy of variable length.
         let mut polynomial = [0; MAX_BYTES];
         #[expect(clippy::cast_possible_truncation, reason = "at most six")]
@@ -93,36 +93,36 @@ impl PolynomialBytes {
             largest = if coefficient.abs() > largest { coefficient.abs() } else { largest };
         }
         self.reserve(MAX_BYTES)[..MAX_BYTES].copy_from_slice(&polynomial);
-        self.largest = largest;
+        self.max_modulus = largest;
         self.count_added(4 + 8 * coefficients.len(), 1);
     }
 
     /// Returns at least `bytes` bytes of room after the list.
     #[inline]
     pub(super) fn reserve(&mut self, bytes: usize) -> &mut [u8] {
-        if self.bytes.len() - self.used < bytes {
+        if self.bytes.len() - self.used_bytes < bytes {
             self.grow(bytes);
         }
-        &mut self.bytes[self.used..]
+        &mut self.bytes[self.used_bytes..]
     }
 
     /// Adds the bytes that were written into the [room](Self::room) to the list.
     #[inline]
     pub(super) fn count_added(&mut self, bytes: usize, polynomials: usize) {
-        self.used += bytes;
+        self.used_bytes += bytes;
         self.count += polynomials;
     }
 
     /// Raises the bound of moduli to `largest`.
     #[inline]
-    pub(super) fn raise(&mut self, largest: f64) {
-        self.largest = self.largest.max(largest);
+    pub(super) fn raise_max_modulus(&mut self, largest: f64) {
+        self.max_modulus = self.max_modulus.max(largest);
     }
 
     #[cold]
     fn grow(&mut self, bytes: usize) {
         let size = self.bytes.len();
-        let most = (self.used + bytes).max(size + size.min(MAX_GROWTH));
+        let most = (self.used_bytes + bytes).max(size + size.min(MAX_GROWTH));
         self.bytes.reserve_exact(most - size);
         self.bytes.resize(most, 0);
     }
@@ -148,17 +148,17 @@ mod tests {
         list.push(&[1.0, -3.0]);
         list.push(&[]);
         list.push(&[0.5; 6]);
-        assert_eq!((list.count(), list.largest()), (3, 3.0));
+        assert_eq!((list.count(), list.max_modulus()), (3, 3.0));
         assert_eq!(list.bytes().len(), 20 + 4 + 52);
         assert_eq!(list.bytes()[..4], [2, 0, 0, 0]);
         assert_eq!(list.bytes()[12..20], (-3.0_f64).to_le_bytes());
         assert_eq!(list.bytes()[20..28], [0, 0, 0, 0, 6, 0, 0, 0]);
-        list.begin();
+        list.begin_list();
         list.push(&[1.0]);
-        assert_eq!((list.count(), list.largest(), list.bytes().len(), list.range()), (1, 1.0, 12, 76..88));
-        assert_eq!(list.all()[..4], [2, 0, 0, 0]);
+        assert_eq!((list.count(), list.max_modulus(), list.bytes().len(), list.range()), (1, 1.0, 12, 76..88));
+        assert_eq!(list.all_bytes()[..4], [2, 0, 0, 0]);
         list.clear();
         list.push(&[f64::NAN]);
-        assert_eq!((list.count(), list.largest(), list.bytes().len()), (1, 0.0, 12));
+        assert_eq!((list.count(), list.max_modulus(), list.bytes().len()), (1, 0.0, 12));
     }
 }

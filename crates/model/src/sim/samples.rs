@@ -15,7 +15,7 @@ pub(crate) fn particle(position: (f64, f64), velocity: (f64, f64), mass: f64, ra
 }
 
 /// Returns a fixed copy of a particle.
-pub(crate) fn fix(particle: Particle) -> Particle {
+pub(crate) fn fixed_copy(particle: Particle) -> Particle {
     Particle { fixed: true, ..particle }
 }
 
@@ -46,9 +46,9 @@ pub(crate) fn scene(particles: Vec<Particle>) -> Scene {
 }
 
 /// A source of reproducible numbers in [-1, 1), by a linear congruential generator; quality does not matter here.
-pub(crate) struct Numbers(pub u64);
+pub(crate) struct NumberSource(pub u64);
 
-impl Numbers {
+impl NumberSource {
     /// Returns the next number.
     pub fn next(&mut self) -> f64 {
         self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
@@ -58,7 +58,7 @@ impl Numbers {
     }
 
     /// Returns the next pair of numbers.
-    pub fn pair(&mut self) -> (f64, f64) {
+    pub fn next_pair(&mut self) -> (f64, f64) {
         let x = self.next();
         (x, self.next())
     }

@@ -6,7 +6,7 @@ use serde::Serialize;
 pub enum RootSearch {
     /// Search only if no certificate excludes an impact. The traces are the same.
     #[default]
-    WhereNeeded,
+    OnDemand,
     /// Search for every pair.
     Always,
     /// Search for every pair, compute the certificate as well, and count disagreements.

@@ -22,7 +22,7 @@ pub struct Simulation {
     state: State,
     /// The number of completed steps; the next step is this plus 1.
     steps_done: u32,
-    most_work: u64,
+    max_work: u64,
 }
 
 impl Simulation {
@@ -41,7 +41,7 @@ impl Simulation {
             q_start: Vec::with_capacity(state.positions.len()),
             state,
             steps_done: 0,
-            most_work: u64::MAX,
+            max_work: u64::MAX,
         }
     }
 
@@ -86,9 +86,9 @@ impl Simulation {
             return Err(StepError::VortexHessian { step });
         }
         self.q_start.clone_from(&self.state.positions);
-        self.stepper.limit_work(self.most_work.saturating_sub(self.handler.counts().work()));
+        self.stepper.limit_work(self.max_work.saturating_sub(self.handler.counts().work()));
         self.stepper.advance(step, &self.bodies, &mut self.forces, &mut self.state, observer.as_controller())?;
-        self.handler.limit_work(self.most_work.saturating_sub(self.stepper.work()));
+        self.handler.limit_work(self.max_work.saturating_sub(self.stepper.work()));
         self.handler.handle(&self.bodies, step, &self.q_start, &mut self.state, observer)?;
         self.steps_done = step;
         observer.end_step(step, &self.state);
@@ -115,7 +115,7 @@ impl Simulation {
     /// Sets the maximum [`Simulation::work`]. The detection pass or iteration that exceeds it ends its step with
     /// [`StepError::Work`].
     pub fn limit_work(&mut self, most: u64) {
-        self.most_work = most;
+        self.max_work = most;
     }
 }
 
@@ -125,8 +125,8 @@ mod tests {
     use crate::{
         scene::{Collision, CollisionDetection, Force, Integrator, Particle},
         sim::{
-            Decision, Detection, Impulse, Pair, PairKind, Pass, Resume, StepController, Time, Zone,
-            samples::{edge, fix, half_plane, particle, scene},
+            Decision, Detection, ImpactTime, Impulse, Pair, PairKind, Pass, ResumeState, StepController, Zone,
+            samples::{edge, fixed_copy, half_plane, particle, scene},
         },
     };
     use fosssim_num::vector::Vec2;
@@ -150,7 +150,7 @@ mod tests {
             self.polynomials += detection.polynomials.len();
             self.lines.push(match detection.decision {
                 Decision::Hit { time, .. } => format!("hit at {time}"),
-                Decision::Miss { time: Time::None } => "no overlap".to_owned(),
+                Decision::Miss { time: ImpactTime::None } => "no overlap".to_owned(),
                 Decision::Miss { .. } => "miss".to_owned(),
             });
         }
@@ -178,11 +178,11 @@ mod tests {
     }
 
     impl StepController for Log {
-        fn synchronize(&mut self, state: &mut State) -> Resume {
+        fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
             if let Some(replacement) = &self.replacement {
                 state.clone_from(replacement);
             }
-            Resume::Own
+            ResumeState::Own
         }
     }
 
@@ -323,8 +323,8 @@ mod tests {
     #[test]
     fn two_fixed_particles_are_looked_at_too() {
         let mut scene = scene(vec![
-            fix(particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
-            fix(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fixed_copy(particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fixed_copy(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
         ]);
         scene.collision = Collision::ContinuousTime { restitution: 1.0 };
         let mut log = Log::default();
@@ -337,8 +337,8 @@ mod tests {
     fn later_pairs_of_a_pass_see_earlier_responses() {
         let mut scene = scene(vec![
             particle((0.0, 0.0), (2.0, 0.0), 1.0, 0.1),
-            fix(particle((0.5, 0.0), (0.0, 0.0), 1.0, 0.1)),
-            fix(particle((0.75, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fixed_copy(particle((0.5, 0.0), (0.0, 0.0), 1.0, 0.1)),
+            fixed_copy(particle((0.75, 0.0), (0.0, 0.0), 1.0, 0.1)),
         ]);
         scene.collision = Collision::ContinuousTime { restitution: 0.0 };
         let mut log = Log::default();
@@ -354,7 +354,7 @@ mod tests {
         let places = [(0.0, 1.0), (-1.0, 0.0), (1.0, 0.0)];
         let mut scene = scene(places.map(|place| particle(place, (0.0, 0.0), 1.0, 0.1)).to_vec());
         scene.collision = Collision::ContinuousTime { restitution: 1.0 };
-        for search in [RootSearch::WhereNeeded, RootSearch::Always, RootSearch::Audit] {
+        for search in [RootSearch::OnDemand, RootSearch::Always, RootSearch::Audit] {
             for (edges, expected) in [
                 (vec![], Ok(())),
                 (

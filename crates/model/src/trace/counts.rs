@@ -1,7 +1,7 @@
 //! Counts the events inside the steps, with an observer that only adds up.
 use crate::{
     scene::Scene,
-    sim::{ByKind, Impulse, Observer, Pair, Pass, Stage, State, WantedPairs, Zone, pairs},
+    sim::{Impulse, Observer, Pair, PairKindMap, Pass, Stage, State, WantedPairs, Zone, pairs},
 };
 use std::fmt;
 
@@ -40,9 +40,9 @@ pub struct EventCounts {
     /// The number of passes of the geometric stage of `hybrid`.
     pub geometric_passes: u64,
     /// The number of detection calls per kind of pair.
-    pub calls: ByKind<u64>,
+    pub calls: PairKindMap<u64>,
     /// The number of calls that found a collision, per kind of pair.
-    pub hits: ByKind<u64>,
+    pub hits: PairKindMap<u64>,
     /// The number of polynomials of all calls.
     pub polynomials: u64,
     /// The number of applied responses.
@@ -56,7 +56,7 @@ pub struct EventCounts {
     /// The largest number of zones after a merge.
     pub most_zones: u64,
     /// The number of calls in a pass.
-    of_pass: ByKind<u64>,
+    of_pass: PairKindMap<u64>,
     /// The number of polynomials in a pass that logs any.
     polynomials_of_pass: u64,
 }
@@ -67,8 +67,8 @@ impl EventCounts {
     pub fn new(scene: &Scene) -> Self {
         let pairs = pairs(scene);
         let counts = pairs.counts();
-        let of_pass = ByKind::from_fn(|kind| counts[kind] as u64);
-        Self { of_pass, polynomials_of_pass: pairs.polynomials() as u64, ..Self::default() }
+        let of_pass = PairKindMap::from_fn(|kind| counts[kind] as u64);
+        Self { of_pass, polynomials_of_pass: pairs.polynomial_count() as u64, ..Self::default() }
     }
 
     /// Returns the number of passes of all stages.
@@ -173,7 +173,8 @@ mod tests {
         counts.end_step(1, &State::default());
         assert_eq!((counts.geometric_passes, counts.geometric_steps, counts.passes()), (2, 1, 2));
         assert_eq!((counts.calls, counts.hits), ([6, 2, 0].into(), [0, 2, 0].into()));
-        let polynomials = 2 * (3 * PairKind::ParticleParticle.polynomials() + PairKind::ParticleEdge.polynomials());
+        let polynomials =
+            2 * (3 * PairKind::ParticleParticle.polynomial_count() + PairKind::ParticleEdge.polynomial_count());
         assert_eq!(counts.polynomials, polynomials as u64);
         assert_eq!((counts.most_zones, counts.failsafes, counts.largest_zone, counts.steps), (1, 1, 3, 1));
     }

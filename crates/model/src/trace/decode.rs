@@ -75,14 +75,14 @@ pub(crate) fn decode_impulses<R: Read>(source: &mut Source<R>, count: usize, out
 /// Returns the size of an ordinary polynomial (0 to 6 coefficients, completely in `bytes`), and the bytes after its
 /// size.
 #[inline(always)]
-fn decode_ordinary(bytes: &[u8]) -> Option<(usize, &[u8])> {
+fn decode_ordinary_size(bytes: &[u8]) -> Option<(usize, &[u8])> {
     let (head, rest) = bytes.split_first_chunk::<4>()?;
     let size = u32::from_le_bytes(*head) as usize;
     (size <= MAX_COEFFICIENTS && 8 * size <= rest.len()).then_some((size, rest))
 }
 
 /// Returns whether the next polynomial is ordinary and completely in the window.
-pub(crate) fn has_ordinary<R: Read>(source: &mut Source<R>) -> bool {
+pub(crate) fn has_ordinary_polynomial<R: Read>(source: &mut Source<R>) -> bool {
     if source.ensure(4) < 4 {
         return false;
     }
@@ -98,10 +98,10 @@ pub(crate) fn decode_polynomials<const TRIM: bool>(
     log: &mut PolynomialLog,
 ) -> (usize, u64, bool) {
     let (mut at, mut done, mut trimmed) = (0, 0, false);
-    let PolynomialLog { coefficients, ends } = log;
+    let PolynomialLog { coefficients, coefficient_ends: ends } = log;
     let mut used = coefficients.len();
     while done < most
-        && let Some((size, rest)) = decode_ordinary(&bytes[at..])
+        && let Some((size, rest)) = decode_ordinary_size(&bytes[at..])
     {
         // A copy of constant length, of which a part counts, is fastest; memory is reserved for many at a time.
         if coefficients.len() < used + MAX_COEFFICIENTS {
@@ -131,10 +131,10 @@ pub(crate) fn decode_polynomials<const TRIM: bool>(
 }
 
 /// Skips ordinary polynomials, and returns the same as [`decode_polynomials`]; nothing is dropped.
-pub(crate) fn skip_ordinary(bytes: &[u8], most: u64) -> (usize, u64, bool) {
+pub(crate) fn skip_ordinary_polynomials(bytes: &[u8], most: u64) -> (usize, u64, bool) {
     let (mut at, mut done) = (0, 0);
     while done < most
-        && let Some((size, _)) = decode_ordinary(&bytes[at..])
+        && let Some((size, _)) = decode_ordinary_size(&bytes[at..])
     {
         at += 4 + 8 * size;
         done += 1;
@@ -144,5 +144,5 @@ pub(crate) fn skip_ordinary(bytes: &[u8], most: u64) -> (usize, u64, bool) {
 
 /// Returns the memory of the log's content, in bytes.
 pub(crate) fn memory_bytes(log: &PolynomialLog) -> usize {
-    8 * log.coefficients.len() + POLYNOMIAL_MEMORY * log.ends.len()
+    8 * log.coefficients.len() + POLYNOMIAL_MEMORY * log.coefficient_ends.len()
 }

@@ -79,7 +79,7 @@ pub struct Digests {
     /// The number of readable records.
     pub records: u64,
     /// The number of bytes after the last record.
-    pub trailing: u64,
+    pub trailing_bytes: u64,
     /// Whether more bytes follow that were not read ([`TRAILING_LIMIT`](super::TRAILING_LIMIT)). `bytes` and `trailing`
     /// then count only the bytes that were read, and the digest is not that of the whole trace.
     pub unread: bool,
@@ -100,8 +100,8 @@ impl Digests {
         layout: Layout,
         frame: &mut dyn FnMut(u64, &Frame, &[TraceError]),
     ) -> Self {
-        let mut all = Hashing { stream, digest: Sha256::new(), bytes: 0 };
-        let mut reader = Reader::new(&mut all, layout).keeping_raw();
+        let mut all = HashingReader { stream, digest: Sha256::new(), bytes: 0 };
+        let mut reader = Reader::new(&mut all, layout).with_raw_bytes();
         let (mut current, mut digest, mut steps) = (Frame::default(), Sha256::new(), Vec::new());
         let stopped = loop {
             match reader.next(&mut current) {
@@ -109,23 +109,23 @@ impl Digests {
                 Ok(false) => break None,
                 Err(error) => break Some(error),
             }
-            let record = reader.records() - 1;
+            let record = reader.record_count() - 1;
             frame(record, &current, reader.notes());
-            digest.update(reader.raw());
-            if !layout.is_mid(record) {
+            digest.update(reader.raw_bytes());
+            if !layout.is_mid_record(record) {
                 steps.push(ShortDigest::from_digest(std::mem::take(&mut digest)));
             }
         };
         let begin = if stopped.is_some() { reader.record_offset() } else { reader.offset() };
-        let records = reader.records();
-        let failed = reader.trailing().err();
+        let records = reader.record_count();
+        let failed = reader.count_trailing_bytes().err();
         let unread = matches!(&failed, Some(TraceError { what: Malformation::Endless { .. }, .. }));
         let end = reader.offset();
-        let Hashing { digest, bytes, .. } = all;
+        let HashingReader { digest, bytes, .. } = all;
         // The buffer may contain a few more bytes than were read, depending on the stream.
         let bytes = if unread { end } else { bytes };
         let (sha256, trailing, stopped) = (finish(digest), bytes - begin, stopped.or(failed));
-        Self { steps, sha256, bytes, records, trailing, unread, stopped }
+        Self { steps, sha256, bytes, records, trailing_bytes: trailing, unread, stopped }
     }
 }
 
@@ -145,13 +145,13 @@ impl fmt::Display for Digests {
 }
 
 /// A stream that digests its bytes as they are read.
-struct Hashing<R> {
+struct HashingReader<R> {
     stream: R,
     digest: Sha256,
     bytes: u64,
 }
 
-impl<R: Read> Read for Hashing<R> {
+impl<R: Read> Read for HashingReader<R> {
     fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
         let count = self.stream.read(out)?;
         self.digest.update(&out[..count]);
@@ -170,7 +170,7 @@ mod tests {
     fn a_changed_step_changes_its_digest_only() {
         let mut bytes = [0; 96];
         let sound = Digests::from_stream(&bytes[..], LAYOUT);
-        assert_eq!((sound.steps.len(), sound.bytes, sound.records, sound.trailing), (3, 96, 3, 0));
+        assert_eq!((sound.steps.len(), sound.bytes, sound.records, sound.trailing_bytes), (3, 96, 3, 0));
         assert_eq!(sound.steps[0], sound.steps[1]);
         bytes[70] = 1;
         let changed = Digests::from_stream(&bytes[..], LAYOUT);
@@ -182,12 +182,12 @@ mod tests {
     #[test]
     fn the_whole_digest_is_that_of_the_file() {
         let digests = Digests::from_stream(&[0; 100][..], LAYOUT);
-        assert_eq!(digests.trailing, 4);
+        assert_eq!(digests.trailing_bytes, 4);
         // The output of `head -c 100 /dev/zero | sha256sum`.
         let expected = "cd00e292c5970d3c5e2f0ffa5171e555bc46bfc4faddfb4a418b6840b86e79a3";
         assert_eq!(digests.sha256.to_string(), expected);
         let cut = Digests::from_stream(&[0; 50][..], LAYOUT);
-        assert_eq!((cut.steps.len(), cut.records, cut.trailing, cut.bytes), (1, 1, 18, 50));
+        assert_eq!((cut.steps.len(), cut.records, cut.trailing_bytes, cut.bytes), (1, 1, 18, 50));
         assert!(cut.to_string().contains("byte 32, record 1 (step 1): positions and velocities need 32 bytes"));
     }
 }

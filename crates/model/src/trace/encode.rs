@@ -29,7 +29,7 @@ pub(crate) fn append_state(out: &mut Vec<u8>, state: &State) {
 /// # Panics
 /// Panics if the count exceeds `i32::MAX`.
 #[inline]
-pub(crate) fn count(out: &mut Vec<u8>, count: usize) {
+pub(crate) fn append_count(out: &mut Vec<u8>, count: usize) {
     let count = i32::try_from(count).expect("a list has fewer than 2^31 entries");
     out.extend_from_slice(&count.to_le_bytes());
 }
@@ -49,7 +49,7 @@ pub(crate) fn encode_impulse(out: &mut Vec<u8>, impulse: &LoggedImpulse) {
 
 /// Appends one polynomial, highest power first.
 pub(crate) fn encode_polynomial(out: &mut Vec<u8>, coefficients: &[f64]) {
-    count(out, coefficients.len());
+    append_count(out, coefficients.len());
     append_numbers(out, coefficients);
 }
 

@@ -1,7 +1,7 @@
 //! Faults of a trace's bytes, and their places.
 //!
-//! The strict [`Reader`](super::Reader) stops at a fault. [`Lenient`](super::Lenient) notes it, and continues like the
-//! original.
+//! The strict [`Reader`](super::Reader) stops at a fault. [`LenientReader`](super::LenientReader) notes it, and
+//! continues like the original.
 use super::layout::Layout;
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
@@ -22,7 +22,7 @@ pub struct TraceError {
 
 impl TraceError {
     pub(super) fn new(layout: Layout, frame: u64, offset: u64, what: Malformation) -> Self {
-        Self { frame, step: layout.step_of(frame), offset, what }
+        Self { frame, step: layout.step_of_record(frame), offset, what }
     }
 }
 
@@ -36,14 +36,14 @@ fn record_name(record: u64, step: u32) -> String {
 
 /// One of the two lists of a record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum List {
+pub enum RecordList {
     /// The impulse list.
     Impulses,
     /// The polynomial list.
     Polynomials,
 }
 
-impl List {
+impl RecordList {
     /// Returns the minimum number of bytes of an entry: 36 for an impulse, 4 for an empty polynomial.
     #[must_use]
     pub const fn entry_bytes(self) -> u64 {
@@ -54,7 +54,7 @@ impl List {
     }
 }
 
-impl fmt::Display for List {
+impl fmt::Display for RecordList {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         f.write_str(match self {
             Self::Impulses => "impulse",
@@ -93,7 +93,7 @@ pub enum Malformation {
     #[error("the count of the {list} list is cut: {left} of its 4 bytes are left")]
     CountCut {
         /// The list concerned.
-        list: List,
+        list: RecordList,
         /// The number of remaining bytes, 0 to 3.
         left: u64,
     },
@@ -101,7 +101,7 @@ pub enum Malformation {
     #[error("the {list} list has the negative count {count}; the trace is damaged or of another scene")]
     NegativeCount {
         /// The list concerned.
-        list: List,
+        list: RecordList,
         /// The count.
         count: i32,
     },
@@ -112,7 +112,7 @@ pub enum Malformation {
     )]
     CountBeyondEnd {
         /// The list concerned.
-        list: List,
+        list: RecordList,
         /// The count.
         count: i32,
         /// The minimum number of bytes of `count` entries.
@@ -218,7 +218,7 @@ pub enum Malformation {
 impl Malformation {
     /// Returns the fault of missing or incomplete positions and velocities after `records` records, of which `whole`
     /// were complete. `left` is the number of remaining bytes.
-    pub(super) fn no_state(layout: Layout, records: u64, whole: u64, left: u64) -> Self {
+    pub(super) fn missing_state(layout: Layout, records: u64, whole: u64, left: u64) -> Self {
         match (left, records) {
             (0, 0) => Self::Empty,
             (0, _) => Self::TooFewRecords { records: whole, expected: layout.records() },
@@ -233,7 +233,7 @@ mod tests {
 
     #[test]
     fn errors_name_byte_record_and_step() {
-        let what = Malformation::CountBeyondEnd { list: List::Impulses, count: 7, needs: 252, left: 40 };
+        let what = Malformation::CountBeyondEnd { list: RecordList::Impulses, count: 7, needs: 252, left: 40 };
         let error = TraceError { offset: 72, frame: 4, step: 2, what };
         assert_eq!(
             error.to_string(),

@@ -23,7 +23,7 @@ impl Frame {
             && same_bits(&self.state.velocities, &other.state.velocities)
             && self.impulses.len() == other.impulses.len()
             && self.impulses.iter().zip(&other.impulses).all(|(one, another)| one.is_same(another))
-            && self.polynomials.ends == other.polynomials.ends
+            && self.polynomials.coefficient_ends == other.polynomials.coefficient_ends
             && same_bits(&self.polynomials.coefficients, &other.polynomials.coefficients)
     }
 }
@@ -140,7 +140,7 @@ impl fmt::Display for LoggedImpulse {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let Self { kind, first, second, normal, time } = self;
         match self.kind() {
-            Some(kind) => write!(f, "particle {first} - {} {second}", kind.second())?,
+            Some(kind) => write!(f, "particle {first} - {} {second}", kind.second_name())?,
             None => write!(f, "unknown type {kind} {first} {second}")?,
         }
         write!(f, ", normal ({:?}, {:?}), time {time:?}", normal.x, normal.y)
@@ -153,7 +153,7 @@ pub struct PolynomialLog {
     /// All coefficients, polynomial by polynomial, highest power first, as logged.
     pub coefficients: Vec<f64>,
     /// The end of each polynomial's coefficients in `coefficients`.
-    pub ends: Vec<usize>,
+    pub coefficient_ends: Vec<usize>,
 }
 
 impl PolynomialLog {
@@ -161,26 +161,26 @@ impl PolynomialLog {
     #[inline]
     #[must_use]
     pub fn len(&self) -> usize {
-        self.ends.len()
+        self.coefficient_ends.len()
     }
 
     /// Returns whether there are no polynomials.
     #[inline]
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.ends.is_empty()
+        self.coefficient_ends.is_empty()
     }
 
     /// Empties the log, and keeps its memory.
     pub fn clear(&mut self) {
         self.coefficients.clear();
-        self.ends.clear();
+        self.coefficient_ends.clear();
     }
 
     /// Appends a polynomial.
     pub fn push(&mut self, coefficients: &[f64]) {
         self.coefficients.extend_from_slice(coefficients);
-        self.ends.push(self.coefficients.len());
+        self.coefficient_ends.push(self.coefficients.len());
     }
 
     /// Returns the coefficients of polynomial `index`.
@@ -190,8 +190,8 @@ impl PolynomialLog {
     #[inline]
     #[must_use]
     pub fn get(&self, index: usize) -> &[f64] {
-        let start = if index == 0 { 0 } else { self.ends[index - 1] };
-        &self.coefficients[start..self.ends[index]]
+        let start = if index == 0 { 0 } else { self.coefficient_ends[index - 1] };
+        &self.coefficients[start..self.coefficient_ends[index]]
     }
 
     /// Returns all polynomials in order.

@@ -8,7 +8,7 @@ use crate::{
 
 /// The origin of a polynomial of a step's end record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub struct Label {
+pub struct PolynomialLabel {
     /// The detection pass of the call.
     pub pass: Pass,
     /// The pair of the call.
@@ -21,26 +21,26 @@ pub struct Label {
 /// A submission's list has the same labels as long as it has the same length. Empty if the step has no result, or if
 /// the number of particles in `before` differs from the scene's.
 #[must_use]
-pub fn collect_labels(scene: &Scene, before: &State) -> Vec<Label> {
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+pub fn collect_labels(scene: &Scene, before: &State) -> Vec<PolynomialLabel> {
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let state = simulation.state_mut();
     if state.positions.len() != before.positions.len() || state.velocities.len() != before.velocities.len() {
         return Vec::new();
     }
     state.clone_from(before);
-    let mut labels = Labels(Vec::new());
+    let mut labels = LabelCollector(Vec::new());
     match simulation.step(&mut labels) {
         Ok(()) => labels.0,
         Err(_) => Vec::new(),
     }
 }
 
-struct Labels(Vec<Label>);
+struct LabelCollector(Vec<PolynomialLabel>);
 
-impl Observer for Labels {
+impl Observer for LabelCollector {
     fn observe_detection(&mut self, detection: &Detection<'_>) {
         let &Detection { pass, pair, .. } = detection;
-        self.0.extend((0..detection.polynomials.len()).map(|number| Label { pass, pair, number }));
+        self.0.extend((0..detection.polynomials.len()).map(|number| PolynomialLabel { pass, pair, number }));
     }
 }
 
@@ -57,7 +57,7 @@ mod tests {
             <particle m="1" px="9" py="0" vx="0" vy="0" fixed="0"/>
             <edge i="0" j="1"/></scene>"#;
         let scene = original::read(xml).unwrap().scene;
-        let before = Simulation::new(&scene, RootSearch::WhereNeeded).state().clone();
+        let before = Simulation::new(&scene, RootSearch::OnDemand).state().clone();
         let labels = collect_labels(&scene, &before);
         // Three pairs of particles with two polynomials each, one particle near the edge with four.
         assert_eq!(labels.len(), 10);

@@ -24,7 +24,7 @@ impl Layout {
             particles: scene.particles.len(),
             has_impulses: impulses,
             has_polynomials: polynomials,
-            steps: scene.steps(),
+            steps: scene.step_count(),
         }
     }
 
@@ -56,13 +56,13 @@ impl Layout {
 
     /// Returns the step of record `record`, from 1; 0 for the initial record.
     #[must_use]
-    pub fn step_of(&self, record: u64) -> u32 {
+    pub fn step_of_record(&self, record: u64) -> u32 {
         u32::try_from(record.div_ceil(u64::from(self.records_per_step()))).unwrap_or(u32::MAX)
     }
 
     /// Returns whether record `record` is a mid record, i.e. not the last one of its step.
     #[must_use]
-    pub fn is_mid(&self, record: u64) -> bool {
+    pub fn is_mid_record(&self, record: u64) -> bool {
         self.has_polynomials && record % 2 == 1
     }
 
@@ -80,12 +80,12 @@ mod tests {
     #[test]
     fn records_and_steps_correspond() {
         let layout = Layout { particles: 1, has_impulses: true, has_polynomials: true, steps: 3 };
-        assert_eq!((0..layout.records()).map(|r| layout.step_of(r)).collect::<Vec<_>>(), [0, 1, 1, 2, 2, 3, 3]);
-        assert_eq!((0..3).map(|r| layout.is_mid(r)).collect::<Vec<_>>(), [false, true, false]);
+        assert_eq!((0..layout.records()).map(|r| layout.step_of_record(r)).collect::<Vec<_>>(), [0, 1, 1, 2, 2, 3, 3]);
+        assert_eq!((0..3).map(|r| layout.is_mid_record(r)).collect::<Vec<_>>(), [false, true, false]);
         assert_eq!(layout.end_record(3), 6);
         let layout = Layout { has_polynomials: false, ..layout };
-        assert_eq!((0..layout.records()).map(|r| layout.step_of(r)).collect::<Vec<_>>(), [0, 1, 2, 3]);
-        assert!(!layout.is_mid(1));
+        assert_eq!((0..layout.records()).map(|r| layout.step_of_record(r)).collect::<Vec<_>>(), [0, 1, 2, 3]);
+        assert!(!layout.is_mid_record(1));
         assert!(layout.is_states_only(4 * 32) && !layout.is_states_only(4 * 32 + 8));
         assert!(!Layout { has_impulses: false, ..layout }.is_states_only(4 * 32), "that is all that there should be");
     }

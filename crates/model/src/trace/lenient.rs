@@ -3,13 +3,13 @@
 //!
 //! A stream that has ended stays failed; the bytes of an incomplete value become its low-order bytes; polynomials are
 //! read without any check. The original's crash on nonsense counts is not reproduced: the result is
-//! [`Unreadable::Memory`] instead.
+//! [`ReadFailure::Memory`] instead.
 //!
 //! Memory is bounded by the maximum size of a record of the scene ([`record_memory`]). Polynomials beyond that are
 //! counted and not kept. The reference never logs as many, so their number alone is the finding.
 use super::{
     decode,
-    error::{List, Malformation, TraceError},
+    error::{Malformation, RecordList, TraceError},
     frame::{LoggedImpulse, PolynomialLog},
     layout::Layout,
     source::Source,
@@ -47,11 +47,11 @@ pub fn record_memory(scene: &Scene) -> usize {
     let of_edges = particles.saturating_mul(4 * scene.edges.len());
     let of_half_planes = particles.saturating_mul(2 * scene.half_planes.len());
     let pass = of_particles.saturating_add(of_edges).saturating_add(of_half_planes);
-    pass.saturating_mul(most_passes(scene)).saturating_mul(POLYNOMIAL_MEMORY).clamp(MIN_RECORD_BYTES, MAX_RECORD_BYTES)
+    pass.saturating_mul(max_passes(scene)).saturating_mul(POLYNOMIAL_MEMORY).clamp(MIN_RECORD_BYTES, MAX_RECORD_BYTES)
 }
 
 /// Returns the maximum number of detection passes in a step.
-fn most_passes(scene: &Scene) -> usize {
+fn max_passes(scene: &Scene) -> usize {
     match scene.collision {
         // Two passes of the geometric part, and one more for each change of the zones: every change adds a particle or
         // the half-plane flag to a zone, or joins two zones.
@@ -87,9 +87,9 @@ pub struct LenientFrame {
     /// has none. If the list exceeds the reader's limit, only its beginning is kept.
     pub polynomials: PolynomialLog,
     /// The number of polynomials in the list, including those that are not kept.
-    pub logged: usize,
+    pub logged_polynomials: usize,
     /// Whether the trace's list is identical to `polynomials`: nothing was trimmed, truncated or negative.
-    pub plain: bool,
+    pub is_unchanged: bool,
     /// The first damage in the record that the original ignores.
     pub note: Option<TraceError>,
 }
@@ -98,7 +98,7 @@ impl LenientFrame {
     /// Returns whether only a part of the polynomial list was kept.
     #[must_use]
     pub fn is_cut(&self) -> bool {
-        self.logged > self.polynomials.len()
+        self.logged_polynomials > self.polynomials.len()
     }
 
     /// Frees the memory of lists that are much larger than usual.
@@ -110,26 +110,26 @@ impl LenientFrame {
             self.impulses = Vec::new();
         }
         let log = &self.polynomials;
-        if 8 * log.coefficients.capacity() + size_of::<usize>() * log.ends.capacity() > MAX_REUSED_BYTES {
+        if 8 * log.coefficients.capacity() + size_of::<usize>() * log.coefficient_ends.capacity() > MAX_REUSED_BYTES {
             self.polynomials = PolynomialLog::default();
-            self.logged = 0;
+            self.logged_polynomials = 0;
         }
     }
 }
 
 /// The reason why the original stops reading.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[error("{at}")]
+#[error("{error}")]
 pub struct ReadStop {
     /// The part that could not be read.
-    pub cause: Unreadable,
+    pub cause: ReadFailure,
     /// The damage and its place.
-    pub at: TraceError,
+    pub error: TraceError,
 }
 
 /// The part of a record that could not be read, or the reason. The original has a message for each of the first two.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub enum Unreadable {
+pub enum ReadFailure {
     /// "Failed to load timestep": the bytes end before or inside positions and velocities.
     State,
     /// "Error while trying to deserialize time step impulses": the bytes end inside the impulse list.
@@ -146,20 +146,20 @@ pub enum Unreadable {
 
 /// Reads records like the original.
 #[derive(Debug)]
-pub struct Lenient<R> {
+pub struct LenientReader<R> {
     pub(super) source: Source<R>,
     layout: Layout,
     record: u64,
-    begin: u64,
+    record_start: u64,
     /// Whether a read has found too few bytes; later reads then find none.
-    failed: bool,
+    has_failed: bool,
     notes: Vec<TraceError>,
     limit: usize,
     /// Whether damage stops the reading, and all coefficients are kept, as in [`Reader`](super::Reader).
-    strict: bool,
+    is_strict: bool,
 }
 
-impl<'a> Lenient<&'a [u8]> {
+impl<'a> LenientReader<&'a [u8]> {
     /// Returns a reader of a trace in memory.
     #[must_use]
     pub fn from_slice(trace: &'a [u8], layout: Layout) -> Self {
@@ -169,16 +169,25 @@ impl<'a> Lenient<&'a [u8]> {
     }
 }
 
-impl<R: Read> Lenient<R> {
+impl<R: Read> LenientReader<R> {
     /// Creates a reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
         let (source, notes) = (Source::new(stream), Vec::new());
-        Self { source, layout, record: 0, begin: 0, failed: false, notes, limit: MAX_RECORD_BYTES, strict: false }
+        Self {
+            source,
+            layout,
+            record: 0,
+            record_start: 0,
+            has_failed: false,
+            notes,
+            limit: MAX_RECORD_BYTES,
+            is_strict: false,
+        }
     }
 
     /// Lets the first damage stop the reading.
-    pub(super) fn strict(mut self) -> Self {
-        self.strict = true;
+    pub(super) fn into_strict(mut self) -> Self {
+        self.is_strict = true;
         self
     }
 
@@ -194,15 +203,15 @@ impl<R: Read> Lenient<R> {
     /// # Errors
     /// Fails with the [`ReadStop`] after the last readable record. `frame` is unspecified then.
     pub fn next(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
-        self.begin = self.source.offset();
+        self.record_start = self.source.offset();
         self.notes.clear();
         frame.impulses.clear();
         frame.polynomials.clear();
-        frame.logged = 0;
-        frame.plain = true;
+        frame.logged_polynomials = 0;
+        frame.is_unchanged = true;
         self.read_state(&mut frame.state)?;
         if self.layout.has_impulses {
-            self.impulses(&mut frame.impulses)?;
+            self.read_impulses(&mut frame.impulses)?;
         }
         if self.layout.has_polynomials {
             self.read_polynomials(frame)?;
@@ -214,14 +223,15 @@ impl<R: Read> Lenient<R> {
 
     /// Returns the number of records read.
     #[must_use]
-    pub fn records(&self) -> u64 {
+    pub fn record_count(&self) -> u64 {
         self.record
     }
 
-    /// Returns the byte offset of the last record (of the next record before the first call of [`Lenient::next`]).
+    /// Returns the byte offset of the last record (of the next record before the first call of
+    /// [`LenientReader::next`]).
     #[must_use]
     pub fn record_offset(&self) -> u64 {
-        self.begin
+        self.record_start
     }
 
     /// Returns the byte offset of the next read.
@@ -239,12 +249,12 @@ impl<R: Read> Lenient<R> {
         TraceError::new(self.layout, self.record, offset, what)
     }
 
-    fn stop(&self, cause: Unreadable, offset: u64, what: Malformation) -> ReadStop {
+    fn stop(&self, cause: ReadFailure, offset: u64, what: Malformation) -> ReadStop {
         match self.source.error() {
-            Some(error) if matches!(cause, Unreadable::State | Unreadable::Impulses) => {
-                ReadStop { cause: Unreadable::Io, at: self.error(self.source.offset(), error) }
+            Some(error) if matches!(cause, ReadFailure::State | ReadFailure::Impulses) => {
+                ReadStop { cause: ReadFailure::Io, error: self.error(self.source.offset(), error) }
             }
-            _ => ReadStop { cause, at: self.error(offset, what) },
+            _ => ReadStop { cause, error: self.error(offset, what) },
         }
     }
 
@@ -259,7 +269,7 @@ impl<R: Read> Lenient<R> {
     }
 
     /// Notes damage that no reader stops at.
-    fn note(&mut self, offset: u64, what: Malformation) {
+    fn note_malformation(&mut self, offset: u64, what: Malformation) {
         if self.notes.len() < MAX_NOTES {
             self.notes.push(self.error(offset, what));
         }
@@ -267,57 +277,61 @@ impl<R: Read> Lenient<R> {
 
     /// Notes damage that the original ignores and the strict reader reports.
     fn note_damage(&mut self, offset: u64, what: Malformation) -> Result<(), ReadStop> {
-        if self.strict {
-            return Err(self.stop(Unreadable::State, offset, what));
+        if self.is_strict {
+            return Err(self.stop(ReadFailure::State, offset, what));
         }
-        self.note(offset, what);
+        self.note_malformation(offset, what);
         Ok(())
     }
 
     /// Stops the strict reader at a record whose polynomials take too much memory.
-    fn check_room(&self, frame: &LenientFrame, offset: u64) -> Result<(), ReadStop> {
-        if self.strict && self.is_full(frame) {
+    fn check_memory(&self, frame: &LenientFrame, offset: u64) -> Result<(), ReadStop> {
+        if self.is_strict && self.is_full(frame) {
             let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
-            return Err(self.stop(Unreadable::Limit, offset, what));
+            return Err(self.stop(ReadFailure::Limit, offset, what));
         }
         Ok(())
     }
 
     /// Reads into `value`; if bytes are missing, the high-order bytes stay unchanged.
-    fn bytes<const N: usize>(&mut self, value: &mut [u8; N]) {
-        if !self.failed {
+    fn read_bytes<const N: usize>(&mut self, value: &mut [u8; N]) {
+        if !self.has_failed {
             let there = self.source.ensure(N).min(N);
             value[..there].copy_from_slice(&self.source.window()[..there]);
             self.source.consume(there);
-            self.failed = there < N;
+            self.has_failed = there < N;
         }
     }
 
     /// Reads a count or size.
-    fn integer(&mut self) -> i32 {
+    fn read_integer(&mut self) -> i32 {
         let mut bytes = [0; 4];
-        self.bytes(&mut bytes);
+        self.read_bytes(&mut bytes);
         i32::from_le_bytes(bytes)
     }
 
     fn read_state(&mut self, state: &mut State) -> Result<(), ReadStop> {
         // The original took the previous record for complete, although the bytes ended in it.
-        let whole = self.record - u64::from(self.failed && self.record > 0);
-        self.failed = self.failed || !decode::decode_state(&mut self.source, self.layout.particles, state);
-        if !self.failed {
+        let whole = self.record - u64::from(self.has_failed && self.record > 0);
+        self.has_failed = self.has_failed || !decode::decode_state(&mut self.source, self.layout.particles, state);
+        if !self.has_failed {
             return Ok(());
         }
-        let left = self.source.offset() - self.begin + self.source.ensure(1) as u64;
-        let what = Malformation::no_state(self.layout, self.record, whole, left);
-        Err(self.stop(Unreadable::State, self.begin, what))
+        let left = self.source.offset() - self.record_start + self.source.ensure(1) as u64;
+        let what = Malformation::missing_state(self.layout, self.record, whole, left);
+        Err(self.stop(ReadFailure::State, self.record_start, what))
     }
 
-    fn impulses(&mut self, impulses: &mut Vec<LoggedImpulse>) -> Result<(), ReadStop> {
-        let (list, offset) = (List::Impulses, self.source.offset());
-        let count = self.integer();
+    fn read_impulses(&mut self, impulses: &mut Vec<LoggedImpulse>) -> Result<(), ReadStop> {
+        let (list, offset) = (RecordList::Impulses, self.source.offset());
+        let count = self.read_integer();
         let begin = self.source.offset();
-        if self.failed {
-            return Err(self.stop(Unreadable::Impulses, offset, Malformation::CountCut { list, left: begin - offset }));
+        if self.has_failed {
+            return Err(self.stop(
+                ReadFailure::Impulses,
+                offset,
+                Malformation::CountCut { list, left: begin - offset },
+            ));
         }
         if count < 0 {
             self.note_damage(offset, Malformation::NegativeCount { list, count })?;
@@ -326,12 +340,12 @@ impl<R: Read> Lenient<R> {
         while impulses.len() < entries {
             if impulses.len() * decode::IMPULSE_MEMORY > self.limit {
                 let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
-                return Err(self.stop(Unreadable::Limit, offset, what));
+                return Err(self.stop(ReadFailure::Limit, offset, what));
             }
             if decode::decode_impulses(&mut self.source, entries - impulses.len(), impulses) == 0 {
                 let left = self.source.offset() - begin + self.source.ensure(1) as u64;
                 let needs = entries as u64 * list.entry_bytes();
-                let cause = if entries > STORABLE_IMPULSES { Unreadable::Memory } else { Unreadable::Impulses };
+                let cause = if entries > STORABLE_IMPULSES { ReadFailure::Memory } else { ReadFailure::Impulses };
                 return Err(self.stop(cause, offset, Malformation::CountBeyondEnd { list, count, needs, left }));
             }
         }
@@ -339,36 +353,36 @@ impl<R: Read> Lenient<R> {
     }
 
     fn read_polynomials(&mut self, frame: &mut LenientFrame) -> Result<(), ReadStop> {
-        let (list, offset) = (List::Polynomials, self.source.offset());
-        let count = self.integer();
+        let (list, offset) = (RecordList::Polynomials, self.source.offset());
+        let count = self.read_integer();
         let begin = self.source.offset();
-        if self.failed {
-            frame.plain = false;
+        if self.has_failed {
+            frame.is_unchanged = false;
             self.note_damage(offset, Malformation::CountCut { list, left: begin - offset })?;
         } else if count < 0 {
             self.note_damage(offset, Malformation::NegativeCount { list, count })?;
         }
         let entries = u64::try_from(count).unwrap_or(0);
         let mut done = 0;
-        while done < entries && !self.failed {
+        while done < entries && !self.has_failed {
             let (window, most) = (self.source.window(), entries - done);
             let (used, ordinary, trimmed) = if self.is_full(frame) {
-                decode::skip_ordinary(window, most)
-            } else if self.strict {
+                decode::skip_ordinary_polynomials(window, most)
+            } else if self.is_strict {
                 decode::decode_polynomials::<false>(window, most, &mut frame.polynomials)
             } else {
                 decode::decode_polynomials::<true>(window, most, &mut frame.polynomials)
             };
             self.source.consume(used);
-            self.check_room(frame, offset)?;
-            frame.plain &= !trimmed;
+            self.check_memory(frame, offset)?;
+            frame.is_unchanged &= !trimmed;
             done += ordinary;
             if entries > STORABLE_POLYNOMIALS && self.source.offset() - begin > self.limit as u64 {
                 let what = Malformation::FrameTooLarge { limit: self.limit as u64 };
-                return Err(self.stop(Unreadable::Memory, offset, what));
+                return Err(self.stop(ReadFailure::Memory, offset, what));
             }
-            if done < entries && !decode::has_ordinary(&mut self.source) {
-                self.polynomial(frame, done, count)?;
+            if done < entries && !decode::has_ordinary_polynomial(&mut self.source) {
+                self.read_polynomial(frame, done, count)?;
                 done += 1;
             }
         }
@@ -377,66 +391,66 @@ impl<R: Read> Lenient<R> {
         if missing > 0 && entries > STORABLE_POLYNOMIALS {
             let left = self.source.offset() - begin;
             let what = Malformation::CountBeyondEnd { list, count, needs: 4 * entries, left };
-            return Err(self.stop(Unreadable::Memory, offset, what));
+            return Err(self.stop(ReadFailure::Memory, offset, what));
         }
         let room = self.limit.saturating_sub(decode::memory_bytes(&frame.polynomials)) / size_of::<usize>();
         let log = &mut frame.polynomials;
         let empty = usize::try_from(missing).unwrap_or(usize::MAX).min(room);
-        log.ends.resize(log.ends.len() + empty, log.coefficients.len());
-        frame.logged = usize::try_from(entries).unwrap_or(usize::MAX);
+        log.coefficient_ends.resize(log.coefficient_ends.len() + empty, log.coefficients.len());
+        frame.logged_polynomials = usize::try_from(entries).unwrap_or(usize::MAX);
         Ok(())
     }
 
     /// Reads one polynomial without the fast path: of any size, and the stream may end anywhere.
-    fn polynomial(&mut self, frame: &mut LenientFrame, number: u64, count: i32) -> Result<(), ReadStop> {
+    fn read_polynomial(&mut self, frame: &mut LenientFrame, number: u64, count: i32) -> Result<(), ReadStop> {
         let offset = self.source.offset();
-        let written = self.integer();
-        if self.failed {
+        let written = self.read_integer();
+        if self.has_failed {
             self.note_damage(offset, Malformation::PolynomialCut { polynomial: number, count })?;
         } else if written < 0 {
-            self.note(offset, Malformation::NegativeSize { polynomial: number, size: written });
+            self.note_malformation(offset, Malformation::NegativeSize { polynomial: number, size: written });
         }
         let size = usize::try_from(written).unwrap_or(0);
-        if self.strict && size > MAX_COEFFICIENTS {
-            self.note(offset, Malformation::OversizedPolynomial { polynomial: number, size: written });
+        if self.is_strict && size > MAX_COEFFICIENTS {
+            self.note_malformation(offset, Malformation::OversizedPolynomial { polynomial: number, size: written });
         } else if size > STORABLE_COEFFICIENTS {
             let what = Malformation::FrameTooLarge { limit: 8 * STORABLE_COEFFICIENTS as u64 };
-            return Err(self.stop(Unreadable::Memory, offset, what));
+            return Err(self.stop(ReadFailure::Memory, offset, what));
         }
-        let whole = !self.failed;
+        let whole = !self.has_failed;
         let begin = self.source.offset();
         let keeps = !self.is_full(frame);
         let start = frame.polynomials.coefficients.len();
-        let most = if self.strict { usize::MAX } else { start + if keeps { MAX_KEPT_COEFFICIENTS } else { 0 } };
-        let mut is_leading = !self.strict;
+        let most = if self.is_strict { usize::MAX } else { start + if keeps { MAX_KEPT_COEFFICIENTS } else { 0 } };
+        let mut is_leading = !self.is_strict;
         // The bytes of each coefficient that were read, as the original keeps them.
         let mut value = [0; 8];
         for read in 0..size {
-            self.bytes(&mut value);
-            if self.strict {
-                self.check_room(frame, offset)?;
-                if self.failed {
+            self.read_bytes(&mut value);
+            if self.is_strict {
+                self.check_memory(frame, offset)?;
+                if self.has_failed {
                     break;
                 }
             }
             let coefficient = f64::from_le_bytes(value);
             is_leading &= coefficient.abs() < LEADING_COEFFICIENT;
-            frame.plain &= !is_leading;
+            frame.is_unchanged &= !is_leading;
             // Once the stream has failed, all other coefficients repeat this one.
-            let times = if self.failed { size - read } else { 1 };
+            let times = if self.has_failed { size - read } else { 1 };
             if !is_leading {
                 let log = &mut frame.polynomials;
                 log.coefficients.resize((log.coefficients.len() + times).min(most), coefficient);
             }
-            if self.failed {
+            if self.has_failed {
                 break;
             }
         }
         if keeps {
-            frame.polynomials.ends.push(frame.polynomials.coefficients.len());
+            frame.polynomials.coefficient_ends.push(frame.polynomials.coefficients.len());
         }
-        frame.plain &= !self.failed && written >= 0;
-        if whole && self.failed {
+        frame.is_unchanged &= !self.has_failed && written >= 0;
+        if whole && self.has_failed {
             let left = self.source.offset() - begin;
             self.note_damage(offset, Malformation::SizeBeyondEnd { polynomial: number, size: written, left })?;
         }

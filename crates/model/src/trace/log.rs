@@ -21,13 +21,13 @@ impl Log {
     /// Begins a step with empty lists.
     pub(super) fn begin_step(&mut self) {
         self.polynomials.clear();
-        self.begin_step_behind();
+        self.begin_next_step();
     }
 
     /// Begins a step, and keeps the polynomials of earlier steps.
-    pub(super) fn begin_step_behind(&mut self) {
+    pub(super) fn begin_next_step(&mut self) {
         self.impulses.clear();
-        self.polynomials.begin();
+        self.polynomials.begin_list();
         self.logs_impulses = false;
     }
 
@@ -37,19 +37,19 @@ impl Log {
     }
 
     /// Appends the polynomials of one call.
-    pub(super) fn detection(&mut self, detection: &Detection<'_>) {
+    pub(super) fn append_detection(&mut self, detection: &Detection<'_>) {
         detection.polynomials.iter().for_each(|polynomial| self.polynomials.push(polynomial.coefficients()));
     }
 
     /// Appends an impulse, if the trace logs it.
-    pub(super) fn impulse(&mut self, impulse: &Impulse) {
+    pub(super) fn append_impulse(&mut self, impulse: &Impulse) {
         if self.logs_impulses {
             encode::encode_impulse(&mut self.impulses, &LoggedImpulse::from(*impulse));
         }
     }
 
     /// Returns the number of impulses.
-    pub(super) fn impulses(&self) -> usize {
+    pub(super) fn impulse_count(&self) -> usize {
         self.impulses.len() / IMPULSE_BYTES
     }
 
@@ -57,11 +57,11 @@ impl Log {
     pub(super) fn write_head(&self, out: &mut Vec<u8>, layout: Layout, state: &State) {
         encode::append_state(out, state);
         if layout.has_impulses {
-            encode::count(out, self.impulses());
+            encode::append_count(out, self.impulse_count());
             out.extend_from_slice(&self.impulses);
         }
         if layout.has_polynomials {
-            encode::count(out, self.polynomials.count());
+            encode::append_count(out, self.polynomials.count());
         }
     }
 }

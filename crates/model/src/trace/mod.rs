@@ -21,11 +21,11 @@ mod writer;
 
 pub use counts::EventCounts;
 pub use digest::{Digests, Sha, ShortDigest};
-pub use error::{List, Malformation, TraceError};
+pub use error::{Malformation, RecordList, TraceError};
 pub use frame::{Frame, ImpulsePair, LoggedImpulse, PolynomialLog};
-pub use labels::{Label, collect_labels};
+pub use labels::{PolynomialLabel, collect_labels};
 pub use layout::Layout;
-pub use lenient::{Lenient, LenientFrame, ReadStop, Unreadable, record_memory};
+pub use lenient::{LenientFrame, LenientReader, ReadFailure, ReadStop, record_memory};
 pub use reader::{Reader, TRAILING_LIMIT};
 pub use recorder::Recorder;
 pub use summary::Summary;

@@ -1,11 +1,11 @@
-//! The strict reader, which is a [`Lenient`] that stops at the first damage.
+//! The strict reader, which is a [`LenientReader`] that stops at the first damage.
 //!
 //! For traces of any size, memory is bounded by one frame, and grows only with bytes that arrive.
 use super::{
-    error::{List, Malformation, TraceError},
+    error::{Malformation, RecordList, TraceError},
     frame::{Frame, LoggedImpulse},
     layout::Layout,
-    lenient::{Lenient, LenientFrame, MAX_NOTES},
+    lenient::{LenientFrame, LenientReader, MAX_NOTES},
 };
 use crate::{scene::Scene, sim::PairKind};
 use std::{io::Read, mem::swap};
@@ -32,13 +32,13 @@ pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
 /// ```
 #[derive(Debug)]
 pub struct Reader<R> {
-    records: Lenient<R>,
-    read: LenientFrame,
+    records: LenientReader<R>,
+    frame: LenientFrame,
     layout: Layout,
     /// The numbers of edges and half-planes of the scene, if known.
     objects: Option<(usize, usize)>,
     notes: Vec<TraceError>,
-    stopped: Option<TraceError>,
+    stop_error: Option<TraceError>,
     keeps_raw: bool,
     raw: Vec<u8>,
 }
@@ -47,24 +47,24 @@ impl<'a> Reader<&'a [u8]> {
     /// Returns a reader of a trace in memory.
     #[must_use]
     pub fn from_slice(trace: &'a [u8], layout: Layout) -> Self {
-        Self::from_records(Lenient::from_slice(trace, layout), layout)
+        Self::from_lenient(LenientReader::from_slice(trace, layout), layout)
     }
 }
 
 impl<R: Read> Reader<R> {
     /// Creates a reader at the beginning of `stream`, which needs no buffer of its own.
     pub fn new(stream: R, layout: Layout) -> Self {
-        Self::from_records(Lenient::new(stream, layout), layout)
+        Self::from_lenient(LenientReader::new(stream, layout), layout)
     }
 
-    fn from_records(records: Lenient<R>, layout: Layout) -> Self {
+    fn from_lenient(records: LenientReader<R>, layout: Layout) -> Self {
         Self {
-            records: records.strict(),
-            read: LenientFrame::default(),
+            records: records.into_strict(),
+            frame: LenientFrame::default(),
             layout,
             objects: None,
             notes: Vec::new(),
-            stopped: None,
+            stop_error: None,
             keeps_raw: false,
             raw: Vec::new(),
         }
@@ -77,9 +77,9 @@ impl<R: Read> Reader<R> {
         self
     }
 
-    /// Keeps each record's bytes for [`Reader::raw`].
+    /// Keeps each record's bytes for [`Reader::raw_bytes`].
     #[must_use]
-    pub fn keeping_raw(mut self) -> Self {
+    pub fn with_raw_bytes(mut self) -> Self {
         self.keeps_raw = true;
         self
     }
@@ -89,27 +89,27 @@ impl<R: Read> Reader<R> {
     /// # Errors
     /// Fails with a [`TraceError`] if the trace is invalid. Every later call returns the same error.
     pub fn next(&mut self, frame: &mut Frame) -> Result<bool, TraceError> {
-        if let Some(error) = &self.stopped {
+        if let Some(error) = &self.stop_error {
             return Err(error.clone());
         }
         self.notes.clear();
-        if self.records() == self.layout.records() {
+        if self.record_count() == self.layout.records() {
             return Ok(false);
         }
         if self.keeps_raw {
-            self.records.source.start_tape(std::mem::take(&mut self.raw));
+            self.records.source.start_capture(std::mem::take(&mut self.raw));
         }
-        let read = self.records.next(&mut self.read);
+        let read = self.records.next(&mut self.frame);
         if self.keeps_raw {
-            self.raw = self.records.source.stop_tape();
+            self.raw = self.records.source.stop_capture();
         }
         if let Err(stop) = read {
-            self.stopped = Some(stop.at.clone());
-            return Err(stop.at);
+            self.stop_error = Some(stop.error.clone());
+            return Err(stop.error);
         }
-        swap(&mut frame.state, &mut self.read.state);
-        swap(&mut frame.impulses, &mut self.read.impulses);
-        swap(&mut frame.polynomials, &mut self.read.polynomials);
+        swap(&mut frame.state, &mut self.frame.state);
+        swap(&mut frame.impulses, &mut self.frame.impulses);
+        swap(&mut frame.polynomials, &mut self.frame.polynomials);
         self.note_impulses(&frame.impulses);
         self.notes.extend_from_slice(self.records.notes());
         self.notes.truncate(MAX_NOTES);
@@ -123,16 +123,16 @@ impl<R: Read> Reader<R> {
         &self.notes
     }
 
-    /// Returns the bytes of the last record, with [`Reader::keeping_raw`].
+    /// Returns the bytes of the last record, with [`Reader::with_raw_bytes`].
     #[must_use]
-    pub fn raw(&self) -> &[u8] {
+    pub fn raw_bytes(&self) -> &[u8] {
         &self.raw
     }
 
     /// Returns the number of records read.
     #[must_use]
-    pub fn records(&self) -> u64 {
-        self.records.records()
+    pub fn record_count(&self) -> u64 {
+        self.records.record_count()
     }
 
     /// Returns the byte offset of the last record (of the next record before the first call of [`Reader::next`]).
@@ -157,8 +157,8 @@ impl<R: Read> Reader<R> {
     ///
     /// # Errors
     /// Fails if the stream fails, or with [`Malformation::Endless`] if more than [`TRAILING_LIMIT`] bytes follow.
-    pub fn trailing(&mut self) -> Result<u64, TraceError> {
-        let (offset, record) = (self.offset(), self.records());
+    pub fn count_trailing_bytes(&mut self) -> Result<u64, TraceError> {
+        let (offset, record) = (self.offset(), self.record_count());
         let source = &mut self.records.source;
         match (source.drain(TRAILING_LIMIT), source.error()) {
             (_, Some(what)) => Err(TraceError::new(self.layout, record, source.offset(), what)),
@@ -173,9 +173,9 @@ impl<R: Read> Reader<R> {
 
     /// Notes the odd impulses of the last record.
     fn note_impulses(&mut self, impulses: &[LoggedImpulse]) {
-        let (record, list) = (self.records() - 1, self.record_offset() + self.layout.state_bytes() as u64 + 4);
+        let (record, list) = (self.record_count() - 1, self.record_offset() + self.layout.state_bytes() as u64 + 4);
         let odd = (0..).zip(impulses).filter_map(|(number, impulse)| {
-            let offset = list + number * List::Impulses.entry_bytes();
+            let offset = list + number * RecordList::Impulses.entry_bytes();
             Some(TraceError::new(self.layout, record, offset, self.find_malformation(number, impulse)?))
         });
         let odd: Vec<_> = odd.take(MAX_NOTES).collect();
@@ -188,7 +188,7 @@ impl<R: Read> Reader<R> {
         let Some(kind) = impulse.kind() else {
             return Some(Malformation::UnknownKind { impulse: number, kind: impulse.kind });
         };
-        let object = kind.second();
+        let object = kind.second_name();
         let count = match kind {
             PairKind::ParticleParticle => Some(particles),
             PairKind::ParticleEdge => self.objects.map(|(edges, _)| edges),

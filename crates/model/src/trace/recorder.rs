@@ -26,14 +26,14 @@ impl<W: Write> Recorder<W> {
     pub fn start(stream: W, layout: Layout, initial: &State) -> Self {
         let mut writer = Writer::new(stream, layout);
         let log = Log::default();
-        writer.record(initial, &log);
+        writer.write_record(initial, &log);
         Self { writer, layout, log }
     }
 
     /// Returns the bytes and records written so far, including those in the buffer.
     #[must_use]
-    pub fn written_so_far(&self) -> WrittenTrace {
-        self.writer.written_so_far()
+    pub fn written_trace(&self) -> WrittenTrace {
+        self.writer.written_trace()
     }
 
     /// Returns whether writing has failed, so further steps are pointless.
@@ -47,7 +47,7 @@ impl<W: Write> Recorder<W> {
     /// # Errors
     /// Fails with the first error that the stream reported, now or earlier.
     pub fn finish(mut self) -> io::Result<(W, WrittenTrace)> {
-        self.writer.write_collected(self.log.polynomials.all());
+        self.writer.write_collected(self.log.polynomials.all_bytes());
         self.writer.finish()
     }
 }
@@ -56,10 +56,10 @@ impl<W: Write> Observer for Recorder<W> {
     fn begin_step(&mut self, _step: u32) {
         // Between steps, because the records of one step borrow the same list.
         if self.writer.is_full() {
-            self.writer.write_collected(self.log.polynomials.all());
+            self.writer.write_collected(self.log.polynomials.all_bytes());
         }
         if self.writer.has_unwritten() {
-            self.log.begin_step_behind();
+            self.log.begin_next_step();
         } else {
             self.log.begin_step();
         }
@@ -75,28 +75,28 @@ impl<W: Write> Observer for Recorder<W> {
     }
 
     fn observe_detection(&mut self, detection: &Detection<'_>) {
-        self.log.detection(detection);
+        self.log.append_detection(detection);
     }
 
     fn observe_impulse(&mut self, impulse: &Impulse) {
-        self.log.impulse(impulse);
+        self.log.append_impulse(impulse);
     }
 
     fn observe_synchronization(&mut self, state: &State) {
         if self.layout.records_per_step() == 2 {
-            self.writer.record(state, &self.log);
+            self.writer.write_record(state, &self.log);
         }
     }
 
     fn end_step(&mut self, _step: u32, state: &State) {
-        self.writer.record(state, &self.log);
+        self.writer.write_record(state, &self.log);
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::{Decision, Pair, PairKind, Stage, Time};
+    use crate::sim::{Decision, ImpactTime, Pair, PairKind, Stage};
     use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
     const PAIR: Pair = Pair { kind: PairKind::ParticleHalfPlane, first: 0, second: 3 };
@@ -115,7 +115,7 @@ mod tests {
         let pass = Pass { stage, index: 0 };
         recorder.begin_pass(pass);
         let polynomials = [Polynomial::trimmed(&[1.0, 2.0, 3.0]), Polynomial::trimmed(&[])];
-        let decision = Decision::Miss { time: Time::Excluded };
+        let decision = Decision::Miss { time: ImpactTime::Excluded };
         recorder.observe_detection(&Detection {
             pass,
             pair: PAIR,
@@ -178,12 +178,12 @@ mod tests {
                     [1.0, 2.0, 3.0].iter().for_each(|c: &f64| list.extend(c.to_le_bytes()));
                 }
                 let state = state(x * f64::from(step));
-                recorder.writer.record(&state, &recorder.log);
+                recorder.writer.write_record(&state, &recorder.log);
                 state.positions.iter().chain(&state.velocities).for_each(|c| expected.extend(c.to_le_bytes()));
                 expected.extend([0; 4]);
                 expected.extend((list.len() as u32 / 28).to_le_bytes());
                 expected.extend(&list);
-                assert_eq!(recorder.written_so_far().bytes, expected.len() as u64);
+                assert_eq!(recorder.written_trace().bytes, expected.len() as u64);
             }
         }
         let (bytes, written) = recorder.finish().unwrap();
@@ -202,7 +202,7 @@ mod tests {
             (0..polynomials).for_each(|_| recorder.log.polynomials.push(&[1.0, 2.0, 3.0]));
             recorder.observe_synchronization(&state(1.0));
             recorder.end_step(step, &state(1.0));
-            let kept = recorder.log.polynomials.all().len();
+            let kept = recorder.log.polynomials.all_bytes().len();
             assert!(kept < 400_000, "{kept} bytes are kept in step {step}");
         }
     }

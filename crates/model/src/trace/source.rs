@@ -18,17 +18,17 @@ pub(crate) struct Source<R> {
     offset: u64,
     /// The length of the whole stream, if known. Nothing after it is read.
     length: Option<u64>,
-    ended: bool,
+    has_ended: bool,
     error: Option<Malformation>,
-    /// The bytes consumed since `start_tape`.
-    tape: Option<Vec<u8>>,
+    /// The bytes consumed since `start_capture`.
+    captured_bytes: Option<Vec<u8>>,
 }
 
 impl<R: Read> Source<R> {
     /// Creates a source at the beginning of `stream`.
     pub(crate) fn new(stream: R) -> Self {
         let (buffer, length, error, tape) = (Vec::new(), None, None, None);
-        Self { stream, buffer, start: 0, end: 0, offset: 0, length, ended: false, error, tape }
+        Self { stream, buffer, start: 0, end: 0, offset: 0, length, has_ended: false, error, captured_bytes: tape }
     }
 
     /// Returns the source with a known length of the whole stream.
@@ -38,14 +38,14 @@ impl<R: Read> Source<R> {
     }
 
     /// Starts keeping consumed bytes in `buffer`, whose old content is dropped.
-    pub(crate) fn start_tape(&mut self, mut buffer: Vec<u8>) {
+    pub(crate) fn start_capture(&mut self, mut buffer: Vec<u8>) {
         buffer.clear();
-        self.tape = Some(buffer);
+        self.captured_bytes = Some(buffer);
     }
 
     /// Stops keeping bytes, and returns those consumed since the start; empty without a start.
-    pub(crate) fn stop_tape(&mut self) -> Vec<u8> {
-        self.tape.take().unwrap_or_default()
+    pub(crate) fn stop_capture(&mut self) -> Vec<u8> {
+        self.captured_bytes.take().unwrap_or_default()
     }
 
     /// Returns the absolute offset of the next byte.
@@ -72,7 +72,7 @@ impl<R: Read> Source<R> {
     /// Panics if `wanted` exceeds [`WINDOW_BYTES`] bytes.
     pub(crate) fn ensure(&mut self, wanted: usize) -> usize {
         assert!(wanted <= WINDOW_BYTES, "the window is smaller");
-        if self.end - self.start < wanted && !self.ended {
+        if self.end - self.start < wanted && !self.has_ended {
             self.fill(wanted);
         }
         self.end - self.start
@@ -81,7 +81,7 @@ impl<R: Read> Source<R> {
     /// Skips `count` bytes of the window.
     #[inline]
     pub(crate) fn consume(&mut self, count: usize) {
-        if let Some(tape) = &mut self.tape {
+        if let Some(tape) = &mut self.captured_bytes {
             tape.extend_from_slice(&self.buffer[self.start..self.start + count]);
         }
         self.start += count;
@@ -123,21 +123,21 @@ impl<R: Read> Source<R> {
         }
         self.end -= self.start;
         self.start = 0;
-        while self.end < wanted && !self.ended {
+        while self.end < wanted && !self.has_ended {
             let there = self.offset + self.end as u64;
             let allowed = self.length.map_or(u64::MAX, |length| length.saturating_sub(there));
             let room = (self.buffer.len() - self.end).min(usize::try_from(allowed).unwrap_or(usize::MAX));
             if room == 0 {
-                self.ended = true;
+                self.has_ended = true;
                 break;
             }
             match self.stream.read(&mut self.buffer[self.end..self.end + room]) {
-                Ok(0) => self.ended = true,
+                Ok(0) => self.has_ended = true,
                 Ok(count) => self.end += count,
                 Err(error) if error.kind() == io::ErrorKind::Interrupted => {}
                 Err(error) => {
                     self.error = Some(Malformation::Io { message: error.to_string() });
-                    self.ended = true;
+                    self.has_ended = true;
                 }
             }
         }
@@ -199,11 +199,11 @@ mod tests {
         let mut source = Source::new(&bytes[..]);
         source.ensure(30);
         source.consume(10);
-        source.start_tape(vec![1, 2, 3]);
+        source.start_capture(vec![1, 2, 3]);
         source.consume(5);
         source.consume(5);
-        assert_eq!(source.stop_tape(), &bytes[10..20]);
+        assert_eq!(source.stop_capture(), &bytes[10..20]);
         source.consume(5);
-        assert_eq!(source.stop_tape(), [0; 0]);
+        assert_eq!(source.stop_capture(), [0; 0]);
     }
 }

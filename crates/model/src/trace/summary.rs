@@ -86,24 +86,24 @@ impl Summary {
             layout,
             edges: scene.edges.len(),
             half_planes: scene.half_planes.len(),
-            polynomials_per_pass: if layout.has_polynomials { pairs(scene).polynomials() as u64 } else { 0 },
+            polynomials_per_pass: if layout.has_polynomials { pairs(scene).polynomial_count() as u64 } else { 0 },
             ..Self::default()
         };
-        let mut visit = |record, frame: &Frame, notes: &[TraceError]| summary.record(record, frame, notes);
+        let mut visit = |record, frame: &Frame, notes: &[TraceError]| summary.add_record(record, frame, notes);
         summary.trace = Digests::walk(&mut trace, layout, &mut visit);
         summary
     }
 
     /// Adds a record.
-    fn record(&mut self, record: u64, frame: &Frame, notes: &[TraceError]) {
+    fn add_record(&mut self, record: u64, frame: &Frame, notes: &[TraceError]) {
         self.notes.0 += notes.len() as u64;
         if self.notes.1.is_none() {
             self.notes.1 = notes.first().cloned();
         }
-        if record == 0 || self.layout.is_mid(record) {
+        if record == 0 || self.layout.is_mid_record(record) {
             return;
         }
-        let step = self.layout.step_of(record);
+        let step = self.layout.step_of_record(record);
         self.impulses += frame.impulses.len() as u64;
         self.polynomials += frame.polynomials.len() as u64;
         let room = MAX_COLLISIONS - self.collisions.len();
@@ -124,7 +124,7 @@ impl fmt::Display for Summary {
         let (edges, planes) =
             (format_count(self.edges as u64, "edge"), format_count(self.half_planes as u64, "half-plane"));
         writeln!(f, "scene          {}, {steps}, {particles}, {edges}, {planes}", self.collision)?;
-        let Digests { bytes, records, trailing, unread, stopped, sha256, .. } = &self.trace;
+        let Digests { bytes, records, trailing_bytes: trailing, unread, stopped, sha256, .. } = &self.trace;
         let bytes = format_count(*bytes, "byte");
         let more = if *unread { "more than " } else { "" };
         writeln!(f, "trace          {more}{bytes}, {records} of {}", format_count(self.layout.records(), "record"))?;

@@ -38,7 +38,7 @@ pub struct Writer<W: Write> {
     /// The long lists that are not in the buffer: their positions in it, and their ranges among the log's polynomials.
     lists: Vec<(usize, Range<usize>)>,
     /// The number of bytes of the lists.
-    listed: usize,
+    listed_bytes: usize,
     written: WrittenTrace,
     error: Option<io::Error>,
 }
@@ -51,7 +51,7 @@ impl<W: Write> Writer<W> {
             layout,
             buffer: Vec::with_capacity(2 * PIECE_BYTES),
             lists: Vec::with_capacity(MAX_LISTS),
-            listed: 0,
+            listed_bytes: 0,
             written: WrittenTrace::default(),
             error: None,
         }
@@ -61,13 +61,13 @@ impl<W: Write> Writer<W> {
     pub fn write_frame(&mut self, frame: &Frame) {
         encode::append_state(&mut self.buffer, &frame.state);
         if self.layout.has_impulses {
-            encode::count(&mut self.buffer, frame.impulses.len());
+            encode::append_count(&mut self.buffer, frame.impulses.len());
             for impulse in &frame.impulses {
                 encode::encode_impulse(&mut self.buffer, impulse);
             }
         }
         if self.layout.has_polynomials {
-            encode::count(&mut self.buffer, frame.polynomials.len());
+            encode::append_count(&mut self.buffer, frame.polynomials.len());
             frame.polynomials.iter().for_each(|polynomial| encode::encode_polynomial(&mut self.buffer, polynomial));
         }
         self.written.records += 1;
@@ -78,7 +78,7 @@ impl<W: Write> Writer<W> {
 
     /// Writes one record with encoded lists. While the writer [borrows](Self::borrows), the log keeps its polynomials.
     /// Once it is [full](Self::is_full), it takes two more records, then they must be written.
-    pub(super) fn record(&mut self, state: &State, log: &Log) {
+    pub(super) fn write_record(&mut self, state: &State, log: &Log) {
         log.write_head(&mut self.buffer, self.layout, state);
         if self.layout.has_polynomials {
             let polynomials = log.polynomials.bytes();
@@ -86,7 +86,7 @@ impl<W: Write> Writer<W> {
                 self.buffer.extend_from_slice(polynomials);
             } else {
                 self.lists.push((self.buffer.len(), log.polynomials.range()));
-                self.listed += polynomials.len();
+                self.listed_bytes += polynomials.len();
             }
         }
         self.written.records += 1;
@@ -94,7 +94,7 @@ impl<W: Write> Writer<W> {
 
     /// Returns whether enough is collected to be written.
     pub(super) fn is_full(&self) -> bool {
-        self.buffer.len() + self.listed >= PIECE_BYTES || self.lists.len() + 2 > MAX_LISTS
+        self.buffer.len() + self.listed_bytes >= PIECE_BYTES || self.lists.len() + 2 > MAX_LISTS
     }
 
     /// Returns whether polynomials of the log have not been written.
@@ -104,10 +104,10 @@ impl<W: Write> Writer<W> {
 
     /// Returns the bytes and records written so far, including those in the buffer.
     #[must_use]
-    pub fn written_so_far(&self) -> WrittenTrace {
+    pub fn written_trace(&self) -> WrittenTrace {
         WrittenTrace {
             records: self.written.records,
-            bytes: self.written.bytes + (self.buffer.len() + self.listed) as u64,
+            bytes: self.written.bytes + (self.buffer.len() + self.listed_bytes) as u64,
         }
     }
 
@@ -132,7 +132,7 @@ impl<W: Write> Writer<W> {
 
     /// Writes the collected records; `polynomials` are those of the log.
     pub(super) fn write_collected(&mut self, polynomials: &[u8]) {
-        let bytes = (self.buffer.len() + self.listed) as u64;
+        let bytes = (self.buffer.len() + self.listed_bytes) as u64;
         if self.error.is_none() && bytes > 0 {
             let mut parts = [IoSlice::new(&[]); 2 * MAX_LISTS + 1];
             let (mut count, mut begin) = (0, 0);
@@ -149,7 +149,7 @@ impl<W: Write> Writer<W> {
         }
         self.buffer.clear();
         self.lists.clear();
-        self.listed = 0;
+        self.listed_bytes = 0;
     }
 }
 
@@ -200,7 +200,7 @@ mod tests {
         let mut writer = Writer::new(Vec::new(), layout());
         writer.write_frame(&frame());
         writer.write_frame(&frame());
-        assert_eq!(writer.written_so_far(), WrittenTrace { records: 2, bytes: 64 });
+        assert_eq!(writer.written_trace(), WrittenTrace { records: 2, bytes: 64 });
         let (bytes, written) = writer.finish().unwrap();
         assert_eq!(bytes.len(), 64);
         assert_eq!(written, WrittenTrace { records: 2, bytes: 64 });

@@ -55,7 +55,7 @@ impl<'a> CollisionWalk<'a> {
             let report = Overlap { study, scene: "small.xml", trace: None, step: 1, pair, logged: None };
             return Some(format!("{}:\n{}\n", PairWords(pair), report.body(format_short, Style::Plain)));
         }
-        let motion = &PairMotion::between(self.scene, pair, q_start, q_end);
+        let motion = &PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let computation =
             Detect { study: &Study::for_motion(motion).ok()?, place: None }.computation(format_short, Style::Plain);
         let moving = detect::render_motion(motion, format_short, Style::Plain);
@@ -68,7 +68,7 @@ impl Observer for CollisionWalk<'_> {
         self.text += &format!("Pass {}: {}\n", pass.index + 1, PassWords(pass));
     }
 
-    fn pass_positions(&mut self, _: &[f64], q_end: &[f64]) {
+    fn observe_positions(&mut self, _: &[f64], q_end: &[f64]) {
         self.seen.positions = q_end.to_vec();
     }
 

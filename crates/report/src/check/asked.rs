@@ -1,6 +1,6 @@
 //! Properties of an outcome that commands check before they report it.
 use fosssim_findings::{Outcome, Overall, Stop};
-use fosssim_judge::{Unreadable, fair::FairVerdict};
+use fosssim_judge::{ReadFailure, fair::FairVerdict};
 use fosssim_model::sim::StepError;
 
 /// Returns whether there is something to explain; the fair rules decide this.
@@ -27,7 +27,7 @@ pub fn describe_no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
 #[must_use]
 pub fn describe_unread(outcome: &Outcome, trace: &str, why: &str) -> String {
     let place = match &outcome.stop {
-        Some(Stop::Trace { cause: Unreadable::Io, offset, .. }) => format!(" at byte {offset}"),
+        Some(Stop::Trace { cause: ReadFailure::Io, offset, .. }) => format!(" at byte {offset}"),
         _ => String::new(),
     };
     format!("cannot read the trace {trace}{place}: {why}")

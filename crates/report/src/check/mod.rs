@@ -31,7 +31,7 @@ use super::{
 pub(crate) use fair_view::CauseView;
 use fair_view::{CountedView, FairView};
 use fosssim_findings::{Book, BookFindings, Damage, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
-use fosssim_judge::{Unreadable, WithoutResult, fair::find_cause};
+use fosssim_judge::{ReadFailure, WithoutResult, fair::find_cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::SearchCounts;
 use serde::Serialize;
@@ -145,10 +145,10 @@ fn count_messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
         messages.insert("Simulation did not run to completion", 1);
     }
     match outcome.stop {
-        Some(Stop::Trace { cause: Unreadable::State, .. }) => {
+        Some(Stop::Trace { cause: ReadFailure::State, .. }) => {
             messages.insert("Failed to load timestep", 1);
         }
-        Some(Stop::Trace { cause: Unreadable::Impulses, .. }) => {
+        Some(Stop::Trace { cause: ReadFailure::Impulses, .. }) => {
             messages.insert("Error while trying to deserialize", 1);
         }
         _ => {}
@@ -286,11 +286,11 @@ impl From<&Stop> for StopView {
         match stop {
             Stop::Trace { frame, step, cause, offset, what } => {
                 let kind = match cause {
-                    Unreadable::State => StopKind::StateUnreadable,
-                    Unreadable::Impulses => StopKind::ImpulsesUnreadable,
-                    Unreadable::Memory => StopKind::ImpossibleCount,
-                    Unreadable::Limit => StopKind::BeyondLimit,
-                    Unreadable::Io => StopKind::ReadError,
+                    ReadFailure::State => StopKind::StateUnreadable,
+                    ReadFailure::Impulses => StopKind::ImpulsesUnreadable,
+                    ReadFailure::Memory => StopKind::ImpossibleCount,
+                    ReadFailure::Limit => StopKind::BeyondLimit,
+                    ReadFailure::Io => StopKind::ReadError,
                 };
                 let (frame, offset, message) = (Some(*frame), Some(*offset), what.to_string());
                 Self { kind, place: DamageView { step: *step, frame, offset, message } }

@@ -12,7 +12,7 @@ use super::{
     first::{find_first, is_other_scene},
     follows, steps,
 };
-use fosssim_judge::{Book, BookFindings, Outcome, Overall, Ruling, Stop, Unreadable, WithoutResult};
+use fosssim_judge::{Book, BookFindings, Outcome, Overall, ReadFailure, Ruling, Stop, WithoutResult};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use std::{fmt::Display, iter};
@@ -178,7 +178,7 @@ pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
 
 /// Returns whether judging ended at a limit of this program, which is not a fault of the trace.
 const fn is_limit(stop: &Stop) -> bool {
-    matches!(stop, Stop::Trace { cause: Unreadable::Limit, .. } | Stop::Step(StepError::Work { .. }))
+    matches!(stop, Stop::Trace { cause: ReadFailure::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
 /// Describes where and why judging stopped, with advice about the place to check if there is any.
@@ -186,16 +186,16 @@ pub(crate) fn describe_problem(stop: &Stop, outcome: &Outcome) -> (String, Strin
     let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {
             let advice = match cause {
-                Unreadable::Io => "reading the file failed; check the disk, and for other programs that write to it",
-                Unreadable::Limit => LIMIT_ADVICE,
-                Unreadable::Memory => {
+                ReadFailure::Io => "reading the file failed; check the disk, and for other programs that write to it",
+                ReadFailure::Limit => LIMIT_ADVICE,
+                ReadFailure::Memory => {
                     "the trace is damaged, or was made for another scene: compare the scene's number of particles \
                      and its collision type with those of the run"
                 }
-                Unreadable::State | Unreadable::Impulses if outcome.steps_judged == 0 => {
+                ReadFailure::State | ReadFailure::Impulses if outcome.steps_judged == 0 => {
                     "was the trace made for this scene, and did the program that wrote it run at all?"
                 }
-                Unreadable::State | Unreadable::Impulses => {
+                ReadFailure::State | ReadFailure::Impulses => {
                     "did the program that wrote the trace crash, or was it stopped, before its last step?"
                 }
             };

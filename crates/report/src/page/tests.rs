@@ -223,7 +223,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let case = Case { check, scene, evidence: Some(&evidence), what_if: Some(&what_if), hints, has_trace: false };
     let card = Card::for_case(&case, 3).and_then(|card| Card::from_stored(&card.to_stored()));
     let why = Reason::Wrong(WrongTrace::Untold);
-    let mut result = SceneResult::without_run("Group/scene", scene.steps(), Verdict::WrongAnswer, why);
+    let mut result = SceneResult::without_run("Group/scene", scene.step_count(), Verdict::WrongAnswer, why);
     result.disclosure = Some(Disclosure::from_outcome(&outcome, Rules::Fair));
     result.explanations = all;
     (card, result)

@@ -23,7 +23,7 @@ pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
         "bytes": summary.trace.bytes,
         "all_bytes_read": !summary.trace.unread,
         "sha256": (!summary.trace.unread).then(|| summary.trace.sha256.to_string()),
-        "trailing_bytes": summary.trace.trailing,
+        "trailing_bytes": summary.trace.trailing_bytes,
         "damage": summary.trace.stopped.as_ref().map(describe_place),
         "oddities": { "count": summary.notes.0, "first": summary.notes.1.as_ref().map(describe_place) },
         "polynomials_per_pass": summary.polynomials_per_pass,

@@ -6,7 +6,7 @@ use super::super::{
     view::{SCHEMA, numbers},
 };
 use fosssim_judge::{PairWords, PassWords, Role};
-use fosssim_model::trace::{Frame, Label};
+use fosssim_model::trace::{Frame, PolynomialLabel};
 use fosssim_num::printed::format_exact;
 use serde_json::{Value, json};
 
@@ -35,7 +35,7 @@ pub struct ShownStep<'a> {
     /// The step's records.
     pub records: &'a [ShownRecord],
     /// The origins of the reference's polynomials of the step.
-    pub labels: &'a [Label],
+    pub labels: &'a [PolynomialLabel],
 }
 
 impl ShownStep<'_> {

@@ -112,7 +112,7 @@ const fn is_film(form: RenderFormat) -> bool {
 
 /// Returns the steps that are drawn.
 fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<StepRange> {
-    let last = scene.steps();
+    let last = scene.step_count();
     if let Some(step) = arguments.step {
         if step > last {
             bail!("the scene has {}; there is no step {step}", format_count(last.into(), "step"));

@@ -121,7 +121,7 @@ impl<'a> FilmKeeper<'a> {
 /// Fails if it can't be stored.
 pub(super) fn reference(scene: &Scene, picks: StepRange) -> Result<Motion> {
     let mut keeper = FilmKeeper::new(scene, picks);
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     keeper.step(0, &simulation.state().positions)?;
     let mut bar = console::Bar::new(picks.last);
     let mut stopped = None;
@@ -159,8 +159,8 @@ pub(super) fn read_motion(scene: &Scene, name: &Path, picks: StepRange) -> Resul
                 break;
             }
         }
-        let record = reader.records() - 1;
-        let step = layout.step_of(record);
+        let record = reader.record_count() - 1;
+        let step = layout.step_of_record(record);
         if record == layout.end_record(step) {
             keeper.step(step, &frame.state.positions)?;
             if step == picks.last {

@@ -108,7 +108,7 @@ mod tests {
     fn timing_scenes_are_of_the_courses_size() {
         for (made, [particles, edges]) in TIMING_SCENES.iter().zip([[15_004, 4], [4800, 4680]]) {
             let scene = scene::read(made.name, made.xml()).expect("a sound scene").scene;
-            assert_eq!((scene.assignment(), scene.steps()), (Assignment::T2M3, 20));
+            assert_eq!((scene.assignment(), scene.step_count()), (Assignment::T2M3, 20));
             assert_eq!([scene.particles.len(), scene.edges.len()], [particles, edges]);
         }
         assert_eq!([0, -5, 1203, -12_000].map(format_thousandths), ["0.000", "-0.005", "1.203", "-12.000"]);

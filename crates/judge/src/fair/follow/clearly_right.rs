@@ -7,7 +7,7 @@ use crate::fair::{
 use fosssim_model::{
     scene::Scene,
     sim::{
-        ByKind, Pair, PairKind,
+        Pair, PairKind, PairKindMap,
         formulas::{EdgeMotions, particle_edge_and_right_cubic, particle_half_plane, particle_particle},
     },
 };
@@ -23,7 +23,7 @@ use fosssim_num::{
 pub(super) type QuickMatches = [Option<Match>; PairKind::MAX_POLYNOMIALS];
 
 /// For each polynomial of a kind of pair, the sum of moduli above which the polynomial exceeds round-off.
-pub(super) type RoundOffFloors = ByKind<[f64; PairKind::MAX_POLYNOMIALS]>;
+pub(super) type RoundOffFloors = PairKindMap<[f64; PairKind::MAX_POLYNOMIALS]>;
 
 impl Follower<'_> {
     /// Returns the logged polynomials of a call that are clearly right. [`compare`](crate::fair::compare::compare)
@@ -42,7 +42,7 @@ impl Follower<'_> {
             return found;
         }
         let floors = self.floors.get_or_insert_with(|| floors(self.context.scene, q_start, q_end))[pair.kind];
-        let lengths = pair.kind.coefficients();
+        let lengths = pair.kind.coefficient_counts();
         for (number, own) in own.iter().enumerate() {
             let (own, logged) = (own.coefficients(), self.records.end.polynomials.get(index + number));
             if own.len() != logged.len() {
@@ -99,7 +99,7 @@ fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFloors {
             if norm < MAX_SAFE_SUM { 1.01 * most } else { f64::INFINITY }
         })
     };
-    ByKind::from_fn(|kind| match kind {
+    PairKindMap::from_fn(|kind| match kind {
         PairKind::ParticleParticle => {
             let (overlap, approach) = particle_particle(x, d, x, d, radii);
             of([&overlap, &approach, &[], &[]])
@@ -143,7 +143,7 @@ mod tests {
             let &Detection { pair, q_start, q_end, .. } = detection;
             let floors = floors(self.0, q_start, q_end)[pair.kind];
             let expected = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();
-            for (number, floor) in floors.into_iter().enumerate().take(pair.kind.polynomials()) {
+            for (number, floor) in floors.into_iter().enumerate().take(pair.kind.polynomial_count()) {
                 for list in std::iter::once(expected.polynomial(number)).chain(expected.other_form(number)) {
                     let norm: f64 = list.iter().map(|c| c.bound).sum();
                     let round_off = MAX_COEFFICIENTS as f64 * FAIR_UNITS * UNIT_ROUNDOFF * norm;
@@ -159,8 +159,8 @@ mod tests {
     fn what_says_something_is_above_round_off() {
         let scene = scene(CROWD);
         let mut closest = Closest(&scene, f64::INFINITY);
-        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-        (0..scene.steps()).for_each(|_| simulation.step(&mut closest).expect("a step"));
+        let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
+        (0..scene.step_count()).for_each(|_| simulation.step(&mut closest).expect("a step"));
         assert!(closest.1 < 10.0, "{}", closest.1);
     }
 }

@@ -6,7 +6,7 @@ use crate::{
     finding::FindingDetail,
 };
 use fosssim_model::{
-    sim::{Decision, Impulse, Pair, Stage, Time},
+    sim::{Decision, ImpactTime, Impulse, Pair, Stage},
     trace::LoggedImpulse,
 };
 use fosssim_num::vector::Vec2;
@@ -55,11 +55,11 @@ impl Follower<'_> {
     pub(super) fn resolve_dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
         self.call.own = Some(OwnImpact { time, lost: false });
-        if self.searchable_polynomials(self.place(pair).index, pair.kind.polynomials()).is_none() {
+        if self.searchable_polynomials(self.place(pair).index, pair.kind.polynomial_count()).is_none() {
             return by_own;
         }
         (self.call.is_disputed, self.has_disputes) = (true, true);
-        if self.prefers_own { by_own } else { Decision::Miss { time: Time::Excluded } }
+        if self.prefers_own { by_own } else { Decision::Miss { time: ImpactTime::Excluded } }
     }
 
     /// Counts decisions that change because of lost coefficients. Their cause is the factor, not round-off. With some
@@ -85,7 +85,7 @@ impl Follower<'_> {
     /// Returns the opposite of a decision that round-off may change.
     fn opposite(&self, decision: Decision) -> Decision {
         match decision {
-            Decision::Hit { time, .. } => Decision::Miss { time: Time::Found(time) },
+            Decision::Hit { time, .. } => Decision::Miss { time: ImpactTime::Found(time) },
             Decision::Miss { .. } => self.expected_polynomials().as_ref().map_or(decision, |(motion, expected)| {
                 let time = contact::possible_time(expected);
                 let normal = motion.normal(time);
@@ -130,7 +130,7 @@ impl Follower<'_> {
                 if !self.is_borderline(call) {
                     self.add_finding(FindingDetail::MissedCollision { expected: Impulse { pair, normal, time } });
                 }
-                Decision::Miss { time: Time::Found(time) }
+                Decision::Miss { time: ImpactTime::Found(time) }
             }
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {

@@ -23,7 +23,10 @@ use clearly_right::RoundOffFloors;
 use decisions::OwnImpact;
 use fosssim_model::{
     scene::Collision,
-    sim::{ByKind, Decision, Detection, Observer, Pair, PairKind, Pass, Resume, Stage, State, StepController, Zone},
+    sim::{
+        Decision, Detection, Observer, Pair, PairKind, PairKindMap, Pass, ResumeState, Stage, State, StepController,
+        Zone,
+    },
 };
 use fosssim_num::{certificate::exclusion_of, polynomial::Polynomial, vector::same_bits};
 
@@ -58,7 +61,7 @@ pub(super) struct Follower<'a> {
     /// Whether the part before the mid record, or the geometric part, has an error that can explain its result.
     tainted: [bool; 2],
     /// Polynomials that were wrong at known positions in this step.
-    wrong_formulas: ByKind<[bool; PairKind::MAX_POLYNOMIALS]>,
+    wrong_formulas: PairKindMap<[bool; PairKind::MAX_POLYNOMIALS]>,
     /// The pairs of the logged impulses.
     contacts: Contacts,
     /// Logged impulses that a decision has used.
@@ -119,7 +122,7 @@ impl<'a> Follower<'a> {
             moved: vec![false; context.scene.particles.len()],
             moving: Vec::new(),
             tainted: [false; 2],
-            wrong_formulas: ByKind::default(),
+            wrong_formulas: PairKindMap::default(),
             contacts: Contacts::from_impulses(&records.end.impulses),
             used: vec![false; records.end.impulses.len()],
             call: CurrentCall::default(),
@@ -236,7 +239,7 @@ impl Observer for Follower<'_> {
 }
 
 impl StepController for Follower<'_> {
-    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
+    fn adjust_polynomials(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], polynomials: &mut [Polynomial]) {
         self.call = CurrentCall::default();
         let Some(index) = self.next else { return };
         self.next = Some(index + polynomials.len());
@@ -291,15 +294,15 @@ impl StepController for Follower<'_> {
         polynomials.copy_from_slice(&searched[..count]);
     }
 
-    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+    fn adjust_decision(&mut self, pair: Pair, decision: Decision) -> Decision {
         let decision = if self.call.misses_logged { self.resolve_dispute(pair, decision) } else { decision };
         let decision = self.choose_decision(pair, decision);
         self.decisions.push(FollowedDecision { pair, pass: self.pass, decision });
         decision
     }
 
-    fn synchronize(&mut self, state: &mut State) -> Resume {
-        let Some(mid) = self.records.mid else { return Resume::Own };
+    fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
+        let Some(mid) = self.records.mid else { return ResumeState::Own };
         if let Some(logged) = self.logged_passes
             && logged[0] != self.passes[0]
             && !self.tainted[0]
@@ -319,6 +322,6 @@ impl StepController for Follower<'_> {
         if mid.state.is_finite() {
             state.clone_from(&mid.state);
         }
-        Resume::Synchronized
+        ResumeState::Synchronized
     }
 }

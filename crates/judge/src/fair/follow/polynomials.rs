@@ -154,7 +154,7 @@ impl<'a> Follower<'a> {
 
     /// Returns the place of the call's first polynomial.
     pub(super) fn place(&self, pair: Pair) -> PolynomialPlace {
-        let index = self.next.map_or(0, |next| next - pair.kind.polynomials());
+        let index = self.next.map_or(0, |next| next - pair.kind.polynomial_count());
         PolynomialPlace { pass: self.pass, pair, role: Role::Overlap, index }
     }
 }

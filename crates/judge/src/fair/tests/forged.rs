@@ -6,7 +6,7 @@ use crate::{
 };
 use fosssim_model::{
     scene::{Collision, Scene, original},
-    sim::{Decision, Detection, Observer, Pair, PairKind, Steering, StepController, Time},
+    sim::{Decision, Detection, ImpactTime, Observer, Pair, PairKind, SteeringObserver, StepController},
     trace::{Frame, PolynomialLog},
 };
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
@@ -37,7 +37,7 @@ fn fair(scene: &Scene, trace: &[u8]) -> Judgement {
 struct Factors<F>(F, usize);
 
 impl<F: FnMut(usize, usize) -> i32> StepController for Factors<F> {
-    fn solve(&mut self, _: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+    fn adjust_polynomials(&mut self, _: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
         for (number, polynomial) in polynomials.iter_mut().enumerate() {
             let divisor = (0..(self.0)(number, self.1)).fold(1.0, |power, _| 2.0 * power);
             self.1 += 1;
@@ -63,7 +63,7 @@ fn distance(one: &[Frame], other: &[Frame]) -> f64 {
 fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
     let mut changed = 0;
     for (name, scene) in assets() {
-        let frames = run(&scene, Steering(Factors(exponent, 0)));
+        let frames = run(&scene, SteeringObserver(Factors(exponent, 0)));
         let distance = distance(&run(&scene, ()), &frames);
         if distance > 1e-7 {
             changed += 1;
@@ -94,7 +94,7 @@ fn a_factor_of_each_polynomial_must_not_change_what_happens() {
 #[test]
 fn ordinary_factors_are_accepted() {
     for (name, scene) in assets() {
-        let judged = fair(&scene, &write_frames(&scene, &run(&scene, Steering(Factors(|_, _| 1, 0)))));
+        let judged = fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Factors(|_, _| 1, 0)))));
         assert_eq!(judged.verdict, FairVerdict::Accepted, "{name}: {:?}", judged.findings.first_divergence);
     }
 }
@@ -109,7 +109,7 @@ const TOUCH: &str = r#"<scene><duration time="1"/><integrator type="explicit-eul
 struct Answer(Option<Decision>);
 
 impl StepController for Answer {
-    fn decide(&mut self, _: Pair, decision: Decision) -> Decision {
+    fn adjust_decision(&mut self, _: Pair, decision: Decision) -> Decision {
         self.0.take().unwrap_or(decision)
     }
 }
@@ -120,10 +120,10 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     let scene = scene(TOUCH);
     let with = |time, x, y| {
         let hit = Decision::Hit { time, normal: Vec2::new(x, y) };
-        fair(&scene, &write_frames(&scene, &run(&scene, Steering(Answer(Some(hit))))))
+        fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Answer(Some(hit))))))
     };
-    let miss = Decision::Miss { time: Time::None };
-    let without = fair(&scene, &write_frames(&scene, &run(&scene, Steering(Answer(Some(miss))))));
+    let miss = Decision::Miss { time: ImpactTime::None };
+    let without = fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Answer(Some(miss))))));
     let right = with(1.0, -0.06, -0.08);
     assert_eq!(
         (without.verdict, right.verdict),
@@ -328,13 +328,13 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
     ));
     struct Push;
     impl StepController for Push {
-        fn solve(&mut self, _: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+        fn adjust_polynomials(&mut self, _: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
             polynomials[1] = Polynomial::trimmed(&[1.0]);
         }
     }
     let plain = fair(&scene, &write_frames(&scene, &run(&scene, ())));
     assert_eq!(plain.verdict, FairVerdict::Accepted);
-    let forged = fair(&scene, &write_frames(&scene, &run(&scene, Steering(Push))));
+    let forged = fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Push))));
     assert_eq!(forged.refusal, Some(FairRefusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
     assert_eq!(forged.findings.counts.total(), 0, "{:?}", forged.findings.first_divergence);
 }
@@ -410,7 +410,7 @@ const STRETCHED: &str = r#"<scene><duration time="0.4"/><integrator type="explic
 fn what_is_gone_is_no_mixture_of_forms() {
     struct Edges(f64);
     impl StepController for Edges {
-        fn solve(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
+        fn adjust_polynomials(&mut self, pair: Pair, _: &[f64], _: &[f64], polynomials: &mut [Polynomial]) {
             for polynomial in polynomials.iter_mut().filter(|_| pair.kind == PairKind::ParticleEdge) {
                 let scaled: Vec<f64> = polynomial.coefficients().iter().map(|c| self.0 * c).collect();
                 *polynomial = Polynomial::trimmed(&scaled);
@@ -422,7 +422,7 @@ fn what_is_gone_is_no_mixture_of_forms() {
     assert!(run(&stretched, ()).iter().any(|frame| frame.polynomials.iter().any(is_slip)));
     for (name, scene) in assets().into_iter().chain([("stretched".to_owned(), stretched)]) {
         for factor in [1e-2, 1e-4, 1e-6, 1e-8] {
-            let judged = fair(&scene, &write_frames(&scene, &run(&scene, Steering(Edges(factor)))));
+            let judged = fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Edges(factor)))));
             let counts = &judged.findings.counts;
             let lost = counts.get(FindingKind::TrimmedDecision);
             assert_eq!(counts.total(), lost, "{factor} in {name}: {:?}", judged.findings.first_divergence);
@@ -486,10 +486,10 @@ fn fixed_particles_are_not_moved_by_a_response() {
 struct OtherWay;
 
 impl StepController for OtherWay {
-    fn decide(&mut self, pair: Pair, decision: Decision) -> Decision {
+    fn adjust_decision(&mut self, pair: Pair, decision: Decision) -> Decision {
         match decision {
             _ if pair.kind != PairKind::ParticleEdge => decision,
-            Decision::Hit { .. } => Decision::Miss { time: Time::None },
+            Decision::Hit { .. } => Decision::Miss { time: ImpactTime::None },
             // From the ball to its nearest point of the edge.
             Decision::Miss { .. } => Decision::Hit { time: 0.0, normal: Vec2::new(0.6, -0.8) },
         }
@@ -515,7 +515,7 @@ fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
         );
         let scene = scene(&text);
         let contacts = |frames: &[Frame]| frames.last().expect("a record").impulses.len();
-        let mut frames = run(&scene, Steering(OtherWay));
+        let mut frames = run(&scene, SteeringObserver(OtherWay));
         let count = contacts(&frames);
         assert_eq!(contacts(&run(&scene, ())), 1 - count);
         decided[count] += 1;

@@ -42,7 +42,7 @@ fn trace_within(scene: &Scene, reach: f64, times: impl Fn(usize, usize) -> [f64;
         x.iter().chain(v).flatten().for_each(|value| bytes.extend(value.to_le_bytes()));
     };
     write(&x, &v);
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         for second in 0..x.len() {
             for first in 0..second {
                 let n = [x[second][0] - x[first][0], x[second][1] - x[first][1]];

@@ -131,7 +131,7 @@ fn audited_searches_judge_the_same() {
     for scene in [BOUNCE_SCENE, ZONES_SCENE, SPIN].map(scene) {
         for change in changes {
             let trace = changed_trace(&scene, change);
-            let [needed, audited] = [RootSearch::WhereNeeded, RootSearch::Audit].map(|root_search| {
+            let [needed, audited] = [RootSearch::OnDemand, RootSearch::Audit].map(|root_search| {
                 let options = Options { fair: true, threads: 1, root_search, ..Options::default() };
                 let mut outcome = replay::judge(&scene, &trace[..], &options, &mut ());
                 (std::mem::take(&mut outcome.searches), format!("{outcome:?}"))

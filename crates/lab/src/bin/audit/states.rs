@@ -141,14 +141,14 @@ impl<'a> SingleSteps<'a> {
     fn visit(&mut self, after: &State, contacts: &[Contact]) {
         let before = std::mem::replace(&mut self.before, after.clone());
         self.steps += 1;
-        let is_tried = self.steps.is_multiple_of(self.scene.steps().div_ceil(Self::MAX_STEPS).max(1));
+        let is_tried = self.steps.is_multiple_of(self.scene.step_count().div_ceil(Self::MAX_STEPS).max(1));
         if !is_tried || self.scene.particles.len() > 200 {
             return;
         }
         for (index, particle) in self.one.particles.iter_mut().enumerate() {
             (particle.position, particle.velocity) = (vector_at(&before.x, index), vector_at(&before.v, index));
         }
-        let mut simulation = Simulation::new(&self.one, RootSearch::WhereNeeded);
+        let mut simulation = Simulation::new(&self.one, RootSearch::OnDemand);
         if simulation.step(&mut ()).is_err() {
             return;
         }

@@ -3,7 +3,7 @@ use crate::diagnose::written::{is_written, term};
 use fosssim_model::{
     assignments::{ForceKind, Integrator, Part},
     scene::{Collision, Scene},
-    sim::{ByKind, pairs},
+    sim::{PairKindMap, pairs},
 };
 use fosssim_student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows};
 
@@ -44,7 +44,7 @@ pub fn can_show(scene: &Scene, row: &Row) -> bool {
     is_applicable(scene, &pairs(scene).counts(), row)
 }
 
-fn is_applicable(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
+fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
     if is_state_mistake(row) {
         return shows_in_states(scene, counts, row);
     }
@@ -61,7 +61,7 @@ fn is_applicable(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
 }
 
 /// Returns whether mistakes of forces and integrators, and their effects, show.
-fn shows_in_states(scene: &Scene, counts: &ByKind<usize>, row: &Row) -> bool {
+fn shows_in_states(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
     let term = term(row);
     let has = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);
     let is_implicit = matches!(scene.integrator, Integrator::LinearizedImplicitEuler | Integrator::ImplicitEuler);

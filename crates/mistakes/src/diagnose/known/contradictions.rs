@@ -41,13 +41,13 @@ fn right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
     };
     let (mut next, mut kinds) = (0, Vec::new());
     for pair in pairs(scene).iter() {
-        next += pair.kind.polynomials();
+        next += pair.kind.polynomial_count();
         if next > right {
             break;
         }
         // A constant polynomial matches any constant with the same sign, even that of another pair.
         let list = &sample.records.end.polynomials;
-        let says_something = (next - pair.kind.polynomials()..next).any(|index| list.get(index).len() > 1);
+        let says_something = (next - pair.kind.polynomial_count()..next).any(|index| list.get(index).len() > 1);
         if says_something && !kinds.contains(&pair.kind) {
             kinds.push(pair.kind);
         }

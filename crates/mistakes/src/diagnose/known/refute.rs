@@ -33,10 +33,10 @@ pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, w
     let world = World::new(scene.clone(), Student::new(Some(row.mistake)));
     // The fair rules also accept the nearest point of an edge, so a different contact vector proves nothing there.
     let accepted = world.for_student(Student::new(Some(Mistake::ParticleEdgeContactClamped)));
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut capture = Capture::new(&scene.collision);
     let each = step_work(scene);
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         let before = simulation.state().clone();
         if work.get() > MAX_WORK || simulation.step(&mut capture).is_err() {
             return false;

@@ -84,8 +84,8 @@ fn explain_missing(samples: &[Sample]) -> Option<Explanation> {
     for kind in PairKind::ALL {
         let of_kind = || samples.iter().filter(|sample| sample.motion.kind() == kind);
         let logged = of_kind().map(|sample| sample.polynomials.len()).max().unwrap_or(usize::MAX);
-        if logged < kind.polynomials() {
-            details.push(Detail::Polynomial(PolynomialDetail::Logged { logged, of: kind.polynomials() }));
+        if logged < kind.polynomial_count() {
+            details.push(Detail::Polynomial(PolynomialDetail::Logged { logged, of: kind.polynomial_count() }));
             count += of_kind().count() as u64;
         }
         subjects.extend(Subject::all_of_kind(kind).iter().skip(logged));

@@ -98,7 +98,7 @@ impl Observer for Capture {
         mid.state.clone_from(state);
         mid.impulses.clone_from(&end.impulses);
         mid.polynomials.coefficients.clone_from(&end.polynomials.coefficients);
-        mid.polynomials.ends.clone_from(&end.polynomials.ends);
+        mid.polynomials.coefficient_ends.clone_from(&end.polynomials.coefficient_ends);
     }
 
     fn observe_failsafe(&mut self, _round: u32, zone: &Zone<'_>) {

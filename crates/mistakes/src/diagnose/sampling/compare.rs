@@ -84,7 +84,7 @@ impl LoggedNumbers {
     pub fn bytes(&self) -> usize {
         16 * self.state.positions.len()
             + size_of::<LoggedImpulse>() * self.impulses.len()
-            + 8 * (self.polynomials.coefficients.len() + self.polynomials.ends.len())
+            + 8 * (self.polynomials.coefficients.len() + self.polynomials.coefficient_ends.len())
     }
 }
 

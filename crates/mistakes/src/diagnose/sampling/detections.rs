@@ -7,7 +7,10 @@ use super::{reference::Reference, source::StepFrames};
 use fosssim_judge::fair::{compare::compare, formulas};
 use fosssim_model::{
     scene::{Collision, Scene},
-    sim::{ByKind, Decision, Observer, Pair, PairKind, PairMotion, Pass, Resume, Stage, State, StepController, pairs},
+    sim::{
+        Decision, Observer, Pair, PairKind, PairKindMap, PairMotion, Pass, ResumeState, Stage, State, StepController,
+        pairs,
+    },
     trace::{Layout, LenientFrame, PolynomialLog},
 };
 use fosssim_num::polynomial::Polynomial;
@@ -49,7 +52,7 @@ const MAX_RIGHT: usize = 200;
 /// The samples of a trace, collected step by step; scenes without polynomials have none.
 pub struct Detections<'a> {
     scene: &'a Scene,
-    kinds: ByKind<KindSamples>,
+    kinds: PairKindMap<KindSamples>,
 }
 
 #[derive(Default)]
@@ -62,7 +65,7 @@ struct KindSamples {
 impl<'a> Detections<'a> {
     /// Creates the collection for traces of a scene.
     pub fn new(scene: &'a Scene) -> Self {
-        Self { scene, kinds: ByKind::default() }
+        Self { scene, kinds: PairKindMap::default() }
     }
 
     /// Collects the samples of a step. If a step has no result, the rest of the trace is not used, and the samples so
@@ -90,9 +93,9 @@ struct Gatherer<'a> {
     step: u32,
     mid: &'a LenientFrame,
     log: &'a PolynomialLog,
-    kinds: &'a mut ByKind<KindSamples>,
+    kinds: &'a mut PairKindMap<KindSamples>,
     /// The number of logged polynomials of each detection, usually all.
-    sizes: Option<ByKind<usize>>,
+    sizes: Option<PairKindMap<usize>>,
     /// The number of the pass, and the index of its next polynomial in the list; `None` in passes that are not
     /// examined.
     next: Option<(u32, usize)>,
@@ -108,12 +111,12 @@ impl Gatherer<'_> {
 
 /// Returns the number of polynomials that each detection logs, such that the list consists of whole passes: all
 /// polynomials if possible, otherwise as many as possible. `None` if no numbers fit. `pairs` are the pairs of one pass.
-fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize>> {
-    let fits = |sizes: &ByKind<usize>| {
+fn sizes(pairs: PairKindMap<usize>, before: usize, all: usize) -> Option<PairKindMap<usize>> {
+    let fits = |sizes: &PairKindMap<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();
         pass > 0 && before.is_multiple_of(pass) && all.is_multiple_of(pass) && all > 0
     };
-    let full = ByKind::from_fn(PairKind::polynomials);
+    let full = PairKindMap::from_fn(PairKind::polynomial_count);
     if fits(&full) {
         return Some(full);
     }
@@ -121,19 +124,20 @@ fn sizes(pairs: ByKind<usize>, before: usize, all: usize) -> Option<ByKind<usize
     // For kinds without a pair there is only one choice.
     let mut choices = vec![full];
     for &kind in &there {
-        let with =
-            |sizes: ByKind<usize>, size| ByKind::from_fn(|other| if other == kind { size } else { sizes[other] });
+        let with = |sizes: PairKindMap<usize>, size| {
+            PairKindMap::from_fn(|other| if other == kind { size } else { sizes[other] })
+        };
         choices = choices.into_iter().flat_map(|sizes| (0..=full[kind]).map(move |size| with(sizes, size))).collect();
     }
-    let changes = |sizes: &ByKind<usize>| there.iter().filter(|kind| sizes[**kind] != full[**kind]).count();
-    let is_empty = |sizes: &ByKind<usize>| there.iter().any(|kind| sizes[*kind] == 0);
+    let changes = |sizes: &PairKindMap<usize>| there.iter().filter(|kind| sizes[**kind] != full[**kind]).count();
+    let is_empty = |sizes: &PairKindMap<usize>| there.iter().any(|kind| sizes[*kind] == 0);
     // The fewest changes come first, because a student may forget a part of one detection, but rarely of two.
     choices.sort_by_key(|sizes| (changes(sizes), std::cmp::Reverse(sizes.values().sum::<usize>())));
     let mut fitting = choices.into_iter().filter(fits);
     let first = fitting.next()?;
     // The numbers alone do not show which of two detections is empty, and a wrong guess would make everything look
     // wrong.
-    let is_rival = |other: ByKind<usize>| changes(&other) == changes(&first) && is_empty(&other);
+    let is_rival = |other: PairKindMap<usize>| changes(&other) == changes(&first) && is_empty(&other);
     let is_open = is_empty(&first) && fitting.any(is_rival);
     (!is_open).then_some(first)
 }
@@ -155,7 +159,7 @@ impl Observer for Gatherer<'_> {
 }
 
 impl StepController for Gatherer<'_> {
-    fn solve(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
+    fn adjust_polynomials(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
         let (Some((pass, index)), Some(sizes)) = (self.next, self.sizes) else { return };
         let size = sizes[pair.kind];
         let lists = index..index + size;
@@ -171,7 +175,7 @@ impl StepController for Gatherer<'_> {
             return;
         }
         let expected = formulas::BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();
-        let is_right = size == pair.kind.polynomials()
+        let is_right = size == pair.kind.polynomial_count()
             && polynomials.iter().enumerate().all(|(number, logged)| {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
                 forms.into_iter().flatten().any(|form| compare(form, logged, &[1.0]).is_ok())
@@ -180,13 +184,13 @@ impl StepController for Gatherer<'_> {
         if if is_right { kind.right >= MAX_RIGHT } else { kind.wrong >= MAX_WRONG } {
             return;
         }
-        let motion = PairMotion::between(self.scene, pair, q_start, q_end);
+        let motion = PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let kind = &mut self.kinds[pair.kind];
         *(if is_right { &mut kind.right } else { &mut kind.wrong }) += 1;
         kind.samples.push(Sample { step: self.step, pass, pair, motion, polynomials });
     }
 
-    fn decide(&mut self, _pair: Pair, decision: Decision) -> Decision {
+    fn adjust_decision(&mut self, _pair: Pair, decision: Decision) -> Decision {
         // Later pairs of a continuous-time pass use positions after the submission's responses, which are not logged.
         if matches!(self.scene.collision, Collision::ContinuousTime { .. }) && matches!(decision, Decision::Hit { .. })
         {
@@ -195,10 +199,10 @@ impl StepController for Gatherer<'_> {
         decision
     }
 
-    fn synchronize(&mut self, state: &mut State) -> Resume {
+    fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         if self.mid.state.positions.iter().chain(&self.mid.state.velocities).all(|value| value.is_finite()) {
             state.clone_from(&self.mid.state);
         }
-        Resume::Synchronized
+        ResumeState::Synchronized
     }
 }

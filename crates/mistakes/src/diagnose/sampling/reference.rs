@@ -22,7 +22,7 @@ const MAX_TRIAL_WORK: u64 = 5_000_000;
 impl<'a> Reference<'a> {
     /// Creates the reference for a trace of a scene.
     pub fn new(scene: &'a Scene) -> Self {
-        let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+        let simulation = Simulation::new(scene, RootSearch::OnDemand);
         Self { simulation, budget: Budget::new(scene, false), trials: Cell::new(MAX_TRIAL_WORK) }
     }
 

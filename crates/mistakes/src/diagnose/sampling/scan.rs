@@ -197,10 +197,10 @@ impl Scanner {
                 let begins = theirs.len() >= kept
                     && previous.polynomials.iter().zip(theirs.iter()).all(|(a, b)| same_polynomial(a, b, &ROUND_OFF));
                 if begins && kept > 0 {
-                    let start = theirs.ends[kept - 1];
+                    let start = theirs.coefficient_ends[kept - 1];
                     theirs.coefficients.drain(..start);
-                    theirs.ends.drain(..kept);
-                    theirs.ends.iter_mut().for_each(|end| *end -= start);
+                    theirs.coefficient_ends.drain(..kept);
+                    theirs.coefficient_ends.iter_mut().for_each(|end| *end -= start);
                 }
                 begins
             }),

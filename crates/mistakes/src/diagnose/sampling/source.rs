@@ -4,7 +4,7 @@ use fosssim_judge::kept::{KeptTrace, MAX_KEPT_BYTES};
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation},
-    trace::{Layout, Lenient, LenientFrame, Unreadable, record_memory},
+    trace::{Layout, LenientFrame, LenientReader, ReadFailure, record_memory},
 };
 use fosssim_num::tolerances::FIRST_RECORD;
 
@@ -63,7 +63,7 @@ impl Outline {
     /// the scene's initial state at most by rounding to single precision.
     pub fn is_of_other_scene(&self, scene: &Scene) -> bool {
         let Some(first) = self.opening.first() else { return false };
-        let simulation = Simulation::new(scene, RootSearch::WhereNeeded);
+        let simulation = Simulation::new(scene, RootSearch::OnDemand);
         let differs = |ours: &[f64], theirs: &[f64]| {
             let largest = ours.iter().fold(1.0_f64, |largest, value| largest.max(value.abs()));
             // All values of a scene are finite.
@@ -75,11 +75,11 @@ impl Outline {
 
     /// Reads a record. Returns `false` after the last undamaged record, because the rest of a damaged trace does not
     /// prove a mistake.
-    fn read(&mut self, reader: &mut Lenient<&[u8]>, frame: &mut LenientFrame) -> bool {
+    fn read(&mut self, reader: &mut LenientReader<&[u8]>, frame: &mut LenientFrame) -> bool {
         match reader.next(frame) {
             Ok(()) if frame.note.is_some() => false,
             Ok(()) => {
-                self.padded += u64::from(!frame.plain);
+                self.padded += u64::from(!frame.is_unchanged);
                 if self.opening.len() < OPENING_RECORDS && self.opening_memory < OPENING_MEMORY {
                     let logged = LoggedNumbers::from(&*frame);
                     self.opening_memory += logged.bytes();
@@ -88,8 +88,8 @@ impl Outline {
                 true
             }
             Err(stop) => {
-                if stop.cause == Unreadable::State {
-                    self.records = Some(reader.records());
+                if stop.cause == ReadFailure::State {
+                    self.records = Some(reader.record_count());
                 }
                 false
             }
@@ -100,7 +100,7 @@ impl Outline {
 /// Reads the steps of a trace's first 64 MiB, up to the first damage.
 pub struct StepReader<'a> {
     layout: Layout,
-    reader: Lenient<&'a [u8]>,
+    reader: LenientReader<&'a [u8]>,
     is_whole: bool,
     /// The number of the next step; `None` after the end.
     next: Option<u32>,
@@ -114,7 +114,7 @@ impl<'a> StepReader<'a> {
     /// Reads the first record.
     pub fn new(scene: &Scene, source: Source<'a>) -> Self {
         let layout = Layout::for_scene(scene);
-        let mut reader = Lenient::from_slice(source.beginning, layout).with_limit(record_memory(scene));
+        let mut reader = LenientReader::from_slice(source.beginning, layout).with_limit(record_memory(scene));
         let (mut frames, mut outline) = (StepFrames::default(), Outline::default());
         let next = outline.read(&mut reader, &mut frames.before).then_some(1);
         Self { layout, reader, is_whole: source.is_whole, next, frames, outline }
@@ -138,7 +138,7 @@ impl<'a> StepReader<'a> {
         if step > self.layout.steps {
             self.outline.is_longer = self.reader.has_more();
             if !self.outline.is_longer {
-                self.outline.records = Some(self.reader.records());
+                self.outline.records = Some(self.reader.record_count());
             }
             return false;
         }

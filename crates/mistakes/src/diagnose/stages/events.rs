@@ -6,7 +6,10 @@ use crate::diagnose::sampling::{
 use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::{
     scene::Scene,
-    sim::{Decision, Detection, Observer, Pair, PairKind, Pass, Stage, State, Steering, StepController, Time, Zone},
+    sim::{
+        Decision, Detection, ImpactTime, Observer, Pair, PairKind, Pass, Stage, State, SteeringObserver,
+        StepController, Zone,
+    },
     trace::PolynomialLog,
 };
 use fosssim_num::{bounded::BoundedValue, vector::Vec2};
@@ -82,7 +85,7 @@ impl Observer for StepEvents<'_> {
         self.heard.passes.push(PassFacts { stage: pass.stage, first, end: Vec::new() });
     }
 
-    fn pass_positions(&mut self, _q_start: &[f64], q_end: &[f64]) {
+    fn observe_positions(&mut self, _q_start: &[f64], q_end: &[f64]) {
         if let Some(pass) = self.heard.passes.last_mut() {
             pass.end = q_end.to_vec();
         }
@@ -112,8 +115,8 @@ const APPROACH_INDEX: usize = 3;
 struct NoCollisions;
 
 impl StepController for NoCollisions {
-    fn decide(&mut self, _pair: Pair, _decision: Decision) -> Decision {
-        Decision::Miss { time: Time::Found(f64::INFINITY) }
+    fn adjust_decision(&mut self, _pair: Pair, _decision: Decision) -> Decision {
+        Decision::Miss { time: ImpactTime::Found(f64::INFINITY) }
     }
 }
 
@@ -138,7 +141,7 @@ pub(super) struct StepFacts {
 impl StepFacts {
     /// Returns the facts about a step; `None` if the reference has no result.
     pub(super) fn for_step(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
-        let prediction = reference.step(kept.step, &kept.before, &mut Steering(NoCollisions))?.clone();
+        let prediction = reference.step(kept.step, &kept.before, &mut SteeringObserver(NoCollisions))?.clone();
         let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
         reference.step(kept.step, &kept.before, &mut observers)?;
         let (capture, StepEvents { heard: events, .. }) = observers;

@@ -3,7 +3,7 @@ use crate::diagnose::{About, Explanation, NanStage, NotFinite, explain, not_fini
 use fosssim_model::{
     assignments::Assignment,
     scene::{Collision, Scene},
-    trace::{Frame, Layout, Lenient, LenientFrame, Writer},
+    trace::{Frame, Layout, LenientFrame, LenientReader, Writer},
 };
 use fosssim_student::{self as student, Student, assignments::probe_scenes};
 
@@ -14,7 +14,7 @@ fn scene(name: &str) -> Scene {
 fn frames(scene: &Scene) -> Vec<LenientFrame> {
     let trace = student::record_trace(scene, Student::default()).expect("it comes to an end");
     let layout = Layout::for_scene(scene);
-    let mut reader = Lenient::new(&trace[..], layout);
+    let mut reader = LenientReader::new(&trace[..], layout);
     let read = |_| {
         let mut frame = LenientFrame::default();
         reader.next(&mut frame).expect("a record");

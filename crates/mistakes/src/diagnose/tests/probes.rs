@@ -7,7 +7,7 @@ use fosssim_judge::{
 use fosssim_model::{
     assignments::Assignment,
     scene::{Scene, original, read, write},
-    sim::{ByKind, Decision, Detection, Observer, PairKind, RootSearch, Simulation},
+    sim::{Decision, Detection, Observer, PairKind, PairKindMap, RootSearch, Simulation},
 };
 use fosssim_student::assignments::probe_scenes;
 use fosssim_student::{self as student, Area, CATALOGUE, Mistake, Row, RowKind, Student};
@@ -29,9 +29,9 @@ fn both_readers_give_the_scenes_back() {
 #[derive(Default)]
 struct Seen {
     /// Per kind and polynomial the greatest modulus per coefficient, from the lowest power.
-    greatest: ByKind<[[f64; 6]; PairKind::MAX_POLYNOMIALS]>,
+    greatest: PairKindMap<[[f64; 6]; PairKind::MAX_POLYNOMIALS]>,
     /// Hits per kind.
-    hits: ByKind<usize>,
+    hits: PairKindMap<usize>,
     /// A coefficient that is no integer, or too great to be exact.
     inexact: Option<f64>,
 }
@@ -53,8 +53,8 @@ impl Observer for Seen {
 
 fn seen(scene: &Scene) -> Seen {
     let mut seen = Seen::default();
-    let mut simulation = Simulation::new(scene, RootSearch::WhereNeeded);
-    for _ in 0..scene.steps() {
+    let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
+    for _ in 0..scene.step_count() {
         simulation.step(&mut seen).expect("an ordinary step");
     }
     seen

@@ -13,7 +13,7 @@ pub(super) struct Item<'e> {
 
 impl<'e> Item<'e> {
     /// Returns all elements with the name `name`; messages call them `kind`.
-    pub(super) fn all(
+    pub(super) fn items_named(
         elements: &'e [Element<'e>],
         name: &'static str,
         kind: &'static str,
@@ -28,7 +28,7 @@ impl<'e> Item<'e> {
     }
 
     /// Returns an element of which only the first counts.
-    pub(super) fn single(element: &'e Element<'e>, kind: &'static str) -> Self {
+    pub(super) fn from_element(element: &'e Element<'e>, kind: &'static str) -> Self {
         Self { element, kind, number: None, exit_code: 1 }
     }
 
@@ -43,44 +43,44 @@ impl<'e> Item<'e> {
 
     /// Reads an integer. The messages for a missing and for an invalid value both contain `value of`.
     pub(super) fn read_integer(&self, name: &str) -> Result<i32, Rejection> {
-        self.require(name, "value of ", "integer", values::integer)
+        self.require(name, "value of ", "integer", values::parse_integer)
     }
 
     /// Returns a scalar; only the message about a bad value contains `value of`.
-    pub(super) fn numeric(&self, name: &str) -> Result<f64, Rejection> {
-        self.require(name, "", "numeric", values::scalar)
+    pub(super) fn read_numeric(&self, name: &str) -> Result<f64, Rejection> {
+        self.require(name, "", "numeric", values::parse_scalar)
     }
 
-    /// Returns two scalars, read like [`Item::numeric`].
-    pub(super) fn numerics(&self, x: &str, y: &str) -> Result<Vec2, Rejection> {
-        Ok(Vec2::new(self.numeric(x)?, self.numeric(y)?))
+    /// Returns two scalars, read like [`Item::read_numeric`].
+    pub(super) fn read_numerics(&self, x: &str, y: &str) -> Result<Vec2, Rejection> {
+        Ok(Vec2::new(self.read_numeric(x)?, self.read_numeric(y)?))
     }
 
     /// Reads two scalars, which messages call real numbers. The messages for a missing and for an invalid value both
     /// contain `value of`.
-    pub(super) fn reals(&self, x: &str, y: &str) -> Result<Vec2, Rejection> {
-        let real = |name| self.require(name, "value of ", "real number", values::scalar);
+    pub(super) fn read_reals(&self, x: &str, y: &str) -> Result<Vec2, Rejection> {
+        let real = |name| self.require(name, "value of ", "real number", values::parse_scalar);
         Ok(Vec2::new(real(x)?, real(y)?))
     }
 
-    pub(super) fn boolean(&self, name: &str) -> Result<bool, Rejection> {
-        self.require(name, "", "boolean", values::boolean)
+    pub(super) fn read_boolean(&self, name: &str) -> Result<bool, Rejection> {
+        self.require(name, "", "boolean", values::parse_boolean)
     }
 
     /// Returns an optional scalar whose message lacks `value of`.
-    pub(super) fn radius(&self, default: f64) -> Result<f64, Rejection> {
-        self.optional("radius", default, "", "scalar")
+    pub(super) fn read_radius(&self, default: f64) -> Result<f64, Rejection> {
+        self.read_optional("radius", default, "", "scalar")
     }
 
-    pub(super) fn optional(&self, name: &str, default: f64, of: &str, what: &str) -> Result<f64, Rejection> {
+    pub(super) fn read_optional(&self, name: &str, default: f64, of: &str, what: &str) -> Result<f64, Rejection> {
         let Some(text) = self.text(name) else { return Ok(default) };
-        values::scalar(text).ok_or_else(|| self.rejection(of, name, &format!("Value must be {what}. Exiting.")))
+        values::parse_scalar(text).ok_or_else(|| self.rejection(of, name, &format!("Value must be {what}. Exiting.")))
     }
 
     /// Returns the color in `r`, `g`, `b`, each checked before the next is read.
-    pub(super) fn color(&self) -> Result<Color, Rejection> {
+    pub(super) fn read_color(&self) -> Result<Color, Rejection> {
         let component = |name: &str| {
-            let value = self.require(name, "value of ", "scalar", values::scalar)?;
+            let value = self.require(name, "value of ", "scalar", values::parse_scalar)?;
             if (0.0..=1.0).contains(&value) {
                 Ok(value)
             } else {
@@ -93,7 +93,7 @@ impl<'e> Item<'e> {
     /// Returns `Failed to parse [value of ]NAME attribute for WHO. END`
     pub(super) fn rejection(&self, of: &str, name: &str, end: &str) -> Rejection {
         let text = format!("Failed to parse {of}{name} attribute for {}. {end}", self.describe());
-        Rejection::message(text.as_bytes(), self.exit_code)
+        Rejection::from_message(text.as_bytes(), self.exit_code)
     }
 
     fn require<T>(

@@ -22,7 +22,7 @@ impl Element<'_> {
 }
 
 /// Joins the lines of a file like the original: line feeds vanish, and a NUL ends the text.
-pub(super) fn join(bytes: &[u8]) -> Vec<u8> {
+pub(super) fn join_lines(bytes: &[u8]) -> Vec<u8> {
     // The original searches for the NUL after joining; the order makes no difference.
     bytes.iter().copied().take_while(|&byte| byte != 0).filter(|&byte| byte != b'\n').collect()
 }
@@ -31,7 +31,7 @@ pub(super) fn join(bytes: &[u8]) -> Vec<u8> {
 /// the original's exception.
 pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static str> {
     let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-    let mut cursor = Cursor { text, at: 0 };
+    let mut cursor = Cursor { text, offset: 0 };
     let mut children: Option<Vec<Element<'_>>> = None;
     let mut inside_scene = false;
     let mut depth = 0_usize;
@@ -41,12 +41,12 @@ pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static st
             (0, 0) => return Ok(children),
             (0, _) => return Err(UNEXPECTED_END),
             (b'<', 1..) if cursor.peek(1) == b'/' => {
-                cursor.close()?;
+                cursor.expect_close()?;
                 depth -= 1;
             }
             (b'<', _) => {
-                cursor.at += 1;
-                let Some((element, opens)) = cursor.node()? else { continue };
+                cursor.offset += 1;
+                let Some((element, opens)) = cursor.read_node()? else { continue };
                 match depth {
                     0 => {
                         inside_scene = children.is_none() && element.name == b"scene";
@@ -61,7 +61,7 @@ pub(super) fn parse(text: &[u8]) -> Result<Option<Vec<Element<'_>>>, &'static st
             }
             (_, 0) => return Err("expected <"),
             // Character references in text are translated as well, although no code reads the result.
-            _ => drop(cursor.value(b'<')?),
+            _ => drop(cursor.read_value(b'<')?),
         }
     }
 }
@@ -79,37 +79,37 @@ fn is_attribute_name(byte: u8) -> bool {
 
 struct Cursor<'t> {
     text: &'t [u8],
-    at: usize,
+    offset: usize,
 }
 
 impl<'t> Cursor<'t> {
     /// Returns the byte at distance `ahead` from the current position; 0 after the end (the text itself contains no
     /// NUL).
     fn peek(&self, ahead: usize) -> u8 {
-        self.text.get(self.at + ahead).copied().unwrap_or(0)
+        self.text.get(self.offset + ahead).copied().unwrap_or(0)
     }
 
     /// Returns the rest of the text, never past the end.
     fn rest(&self) -> &'t [u8] {
-        self.text.get(self.at..).unwrap_or_default()
+        self.text.get(self.offset..).unwrap_or_default()
     }
 
     fn skip(&mut self, wanted: impl Fn(u8) -> bool) -> &'t [u8] {
         let rest = self.rest();
         let length = rest.iter().position(|&byte| !wanted(byte)).unwrap_or(rest.len());
-        self.at += length;
+        self.offset += length;
         &rest[..length]
     }
 
     /// Advances past the next `end`.
     fn skip_past(&mut self, end: &[u8]) -> Result<(), &'static str> {
         let found = self.rest().windows(end.len()).position(|window| window == end).ok_or(UNEXPECTED_END)?;
-        self.at += found + end.len();
+        self.offset += found + end.len();
         Ok(())
     }
 
-    fn close(&mut self) -> Result<(), &'static str> {
-        self.at += 2;
+    fn expect_close(&mut self) -> Result<(), &'static str> {
+        self.offset += 2;
         self.skip(is_element_name);
         self.skip(is_space);
         self.expect(b'>', EXPECTED_CLOSE)
@@ -120,41 +120,41 @@ impl<'t> Cursor<'t> {
         if self.peek(0) != byte {
             return Err(otherwise);
         }
-        self.at += 1;
+        self.offset += 1;
         Ok(())
     }
 
     /// Returns the node that follows a `<`, unless it is a closing tag: an element and whether it has contents, or a
     /// node to ignore.
-    fn node(&mut self) -> Result<Option<(Element<'t>, bool)>, &'static str> {
+    fn read_node(&mut self) -> Result<Option<(Element<'t>, bool)>, &'static str> {
         match self.peek(0) {
             b'?' => {
-                self.at += 1;
+                self.offset += 1;
                 self.skip_past(b"?>").map(|()| None)
             }
             b'!' => self.skip_declaration().map(|()| None),
-            _ => self.element().map(Some),
+            _ => self.read_element().map(Some),
         }
     }
 
     fn skip_declaration(&mut self) -> Result<(), &'static str> {
         let rest = self.rest();
         if rest.starts_with(b"!--") {
-            self.at += 3;
+            self.offset += 3;
             self.skip_past(b"-->")
         } else if rest.starts_with(b"![CDATA[") {
-            self.at += 8;
+            self.offset += 8;
             self.skip_past(b"]]>")
         } else if rest.starts_with(b"!DOCTYPE") && is_space(self.peek(8)) {
-            self.at += 9;
-            self.document_type()
+            self.offset += 9;
+            self.skip_document_type()
         } else {
             self.skip_past(b">")
         }
     }
 
     /// Reads past the `>` that is not in brackets.
-    fn document_type(&mut self) -> Result<(), &'static str> {
+    fn skip_document_type(&mut self) -> Result<(), &'static str> {
         let mut depth = 0_usize;
         loop {
             match self.peek(0) {
@@ -164,13 +164,13 @@ impl<'t> Cursor<'t> {
                 b'>' if depth == 0 => break,
                 _ => {}
             }
-            self.at += 1;
+            self.offset += 1;
         }
-        self.at += 1;
+        self.offset += 1;
         Ok(())
     }
 
-    fn element(&mut self) -> Result<(Element<'t>, bool), &'static str> {
+    fn read_element(&mut self) -> Result<(Element<'t>, bool), &'static str> {
         let name = self.skip(is_element_name);
         if name.is_empty() {
             return Err("expected element name");
@@ -186,8 +186,8 @@ impl<'t> Cursor<'t> {
             if quote != b'\'' && quote != b'"' {
                 return Err("expected ' or \"");
             }
-            self.at += 1;
-            let value = self.value(quote)?;
+            self.offset += 1;
+            let value = self.read_value(quote)?;
             self.expect(quote, "expected ' or \"")?;
             self.skip(is_space);
             attributes.push((name, value));
@@ -198,7 +198,7 @@ impl<'t> Cursor<'t> {
     }
 
     /// Reads text up to `end` (not included) or to the end of the text, with its references translated.
-    fn value(&mut self, end: u8) -> Result<Cow<'t, [u8]>, &'static str> {
+    fn read_value(&mut self, end: u8) -> Result<Cow<'t, [u8]>, &'static str> {
         let plain = self.skip(|byte| byte != end && byte != b'&');
         if self.peek(0) != b'&' {
             return Ok(Cow::Borrowed(plain));
@@ -210,7 +210,7 @@ impl<'t> Cursor<'t> {
                 byte if byte == end || byte == 0 => return Ok(Cow::Owned(value)),
                 byte => {
                     value.push(byte);
-                    self.at += 1;
+                    self.offset += 1;
                 }
             }
         }
@@ -223,7 +223,7 @@ impl<'t> Cursor<'t> {
         let rest = self.rest();
         if let Some((name, byte)) = NAMED_ENTITIES.iter().find(|(name, _)| rest.starts_with(name)) {
             value.push(*byte);
-            self.at += name.len();
+            self.offset += name.len();
             return Ok(());
         }
         let base = match (self.peek(1), self.peek(2)) {
@@ -231,24 +231,24 @@ impl<'t> Cursor<'t> {
             (b'#', _) => 10,
             _ => {
                 value.push(b'&');
-                self.at += 1;
+                self.offset += 1;
                 return Ok(());
             }
         };
-        self.at += if base == 16 { 3 } else { 2 };
+        self.offset += if base == 16 { 3 } else { 2 };
         // Digits up to F count in both bases, and the number wraps: `&#1A;` is 20.
         let mut code = 0_u64;
         while let Some(digit) = char::from(self.peek(0)).to_digit(16) {
             code = code.wrapping_mul(base).wrapping_add(u64::from(digit));
-            self.at += 1;
+            self.offset += 1;
         }
-        encode(code, value)?;
+        encode_utf8(code, value)?;
         self.expect(b';', "expected ;")
     }
 }
 
 /// Writes the UTF-8 form of a code, surrogates included.
-fn encode(code: u64, value: &mut Vec<u8>) -> Result<(), &'static str> {
+fn encode_utf8(code: u64, value: &mut Vec<u8>) -> Result<(), &'static str> {
     let code = u32::try_from(code).ok().filter(|&code| code < 0x11_0000).ok_or("invalid numeric character entity")?;
     let six = |shift: u32| ((code >> shift) & 0x3f) as u8 | 0x80;
     match code {
@@ -265,13 +265,13 @@ mod tests {
     use super::*;
 
     fn names(text: &str) -> Result<Option<Vec<String>>, &'static str> {
-        let text = join(text.as_bytes());
+        let text = join_lines(text.as_bytes());
         let children = parse(&text)?;
         Ok(children.map(|all| all.iter().map(|one| String::from_utf8_lossy(one.name).into_owned()).collect()))
     }
 
     fn value(text: &str) -> Vec<u8> {
-        let text = join(text.as_bytes());
+        let text = join_lines(text.as_bytes());
         let children = parse(&text).expect("parses").expect("has a scene");
         children[0].attribute("a").expect("has the attribute").to_vec()
     }

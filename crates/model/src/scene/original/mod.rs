@@ -10,7 +10,7 @@
 //! is iterative and borrows from the text, so deep nesting and large files are safe.
 //!
 //! A scene for which the original would read out of bounds (an index out of range) has no defined outcome. It is
-//! rejected as [`RefusalKind::Undefined`] with a message of this program.
+//! rejected as [`RejectionKind::Undefined`] with a message of this program.
 
 mod item;
 mod markup;
@@ -39,8 +39,8 @@ pub struct OriginalScene {
 #[error("{explanation}")]
 pub struct Rejection {
     /// The way in which the original ends.
-    pub kind: RefusalKind,
-    /// The bytes on standard error, including escape sequences and the final newline. For [`RefusalKind::Undefined`]
+    pub kind: RejectionKind,
+    /// The bytes on standard error, including escape sequences and the final newline. For [`RejectionKind::Undefined`]
     /// the message is this program's.
     pub stderr: Vec<u8>,
     /// The exit code as a shell shows it: 1, 0 for half-planes, 134 for broken XML.
@@ -51,7 +51,7 @@ pub struct Rejection {
 
 /// The ways in which the original rejects a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum RefusalKind {
+pub enum RejectionKind {
     /// The original prints a message and exits.
     Message,
     /// The original crashes with an uncaught exception (broken XML).
@@ -64,34 +64,34 @@ impl Rejection {
     /// Returns the original's message about a scene file that cannot be opened (scene-format.md 1). The name may hold
     /// any bytes.
     #[must_use]
-    pub fn unreadable(name: &[u8]) -> Self {
+    pub fn from_unreadable_file(name: &[u8]) -> Self {
         let stderr =
             [&b"\x1b[31;1mERROR IN TWODSCENEXMLPARSER:\x1b[m XML scene file "[..], name, b". Failed to read file.\n"]
                 .concat();
         let explanation = format!("XML scene file {}. Failed to read file.", String::from_utf8_lossy(name));
-        Self { kind: RefusalKind::Message, stderr, exit_code: 1, explanation }
+        Self { kind: RejectionKind::Message, stderr, exit_code: 1, explanation }
     }
 
     /// Returns a message of the scene parser. `text` may hold bytes of the scene that are not UTF-8.
-    fn message(text: &[u8], exit_code: u8) -> Self {
+    fn from_message(text: &[u8], exit_code: u8) -> Self {
         let mut stderr = b"\x1b[31;1mERROR IN XMLSCENEPARSER:\x1b[m ".to_vec();
         stderr.extend_from_slice(text);
         stderr.push(b'\n');
         let explanation = String::from_utf8_lossy(text).into_owned();
-        Self { kind: RefusalKind::Message, stderr, exit_code, explanation }
+        Self { kind: RejectionKind::Message, stderr, exit_code, explanation }
     }
 
     /// Returns the crash by an uncaught exception of the XML parser.
-    fn crash(what: &str) -> Self {
+    fn from_crash(what: &str) -> Self {
         let stderr =
             format!("terminate called after throwing an instance of 'rapidxml::parse_error'\n  what():  {what}\n");
         let explanation = format!("the scene is not well-formed XML: {what}");
-        Self { kind: RefusalKind::Crash, stderr: stderr.into_bytes(), exit_code: 134, explanation }
+        Self { kind: RejectionKind::Crash, stderr: stderr.into_bytes(), exit_code: 134, explanation }
     }
 
     /// Returns the rejection of an input without a defined outcome in the original.
-    fn undefined(explanation: String) -> Self {
+    fn from_undefined_input(explanation: String) -> Self {
         let stderr = format!("{explanation}\n").into_bytes();
-        Self { kind: RefusalKind::Undefined, stderr, exit_code: 1, explanation }
+        Self { kind: RejectionKind::Undefined, stderr, exit_code: 1, explanation }
     }
 }

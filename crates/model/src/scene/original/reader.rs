@@ -1,10 +1,10 @@
 //! Converts elements to a scene, in the original's order of evaluation (scene-format.md 3).
 use super::item::Item;
 use super::markup::{self, Element};
-use super::single::Singles;
+use super::single::SingleElements;
 use super::{OriginalScene, Rejection};
 use crate::scene::model::{Color, Display, Edge, Force, HalfPlane, Particle, ParticlePath, Scene};
-use crate::{assignments::ForceKind, scene::forces::Source};
+use crate::{assignments::ForceKind, scene::forces::AttributeSource};
 
 /// Reads a scene like the original.
 ///
@@ -14,38 +14,38 @@ use crate::{assignments::ForceKind, scene::forces::Source};
 /// message if the original would read out of bounds. If there are both, a message of the original comes first, wherever
 /// it is in the file.
 pub fn read(bytes: &[u8]) -> Result<OriginalScene, Rejection> {
-    let text = markup::join(bytes);
-    let elements = markup::parse(&text).map_err(Rejection::crash)?.ok_or_else(|| {
-        Rejection::message(b"Failed to parse xml scene file. Failed to locate root <scene> node. Exiting.", 1)
+    let text = markup::join_lines(bytes);
+    let elements = markup::parse(&text).map_err(Rejection::from_crash)?.ok_or_else(|| {
+        Rejection::from_message(b"Failed to parse xml scene file. Failed to locate root <scene> node. Exiting.", 1)
     })?;
-    let singles = Singles(&elements);
-    let duration = singles.duration()?;
-    let max_frequency = singles.max_frequency()?;
-    let viewport = singles.viewport()?;
-    let background = singles.background()?;
-    let description = singles.description()?;
-    let tag = singles.tag()?;
-    check_type(singles.simulation_type())?;
+    let singles = SingleElements(&elements);
+    let duration = singles.read_duration()?;
+    let max_frequency = singles.read_max_frequency()?;
+    let viewport = singles.read_viewport()?;
+    let background = singles.read_background()?;
+    let description = singles.read_description()?;
+    let tag = singles.read_tag()?;
+    check_type(singles.read_simulation_type())?;
 
     let mut repeated = RepeatedElements { elements: &elements, undefined: None };
-    let particles = repeated.particles()?;
-    let edges = repeated.edges(particles.len())?;
-    let half_planes = repeated.half_planes()?;
-    let forces = repeated.forces(particles.len(), edges.len())?;
-    let (integrator, time_step) = singles.integrator()?;
-    let collision = singles.collision()?;
+    let particles = repeated.read_particles()?;
+    let edges = repeated.read_edges(particles.len())?;
+    let half_planes = repeated.read_half_planes()?;
+    let forces = repeated.read_forces(particles.len(), edges.len())?;
+    let (integrator, time_step) = singles.read_integrator()?;
+    let collision = singles.read_collision()?;
     let display = Display {
         max_frequency,
         viewport,
         background,
-        tag: tag.map(lossy),
-        particle_colors: repeated.colors("particlecolor", "particle", particles.len())?,
-        edge_colors: repeated.colors("edgecolor", "edge", edges.len())?,
-        half_plane_colors: repeated.colors("halfplanecolor", "half-plane", half_planes.len())?,
-        paths: repeated.paths(particles.len())?,
+        tag: tag.map(decode_lossily),
+        particle_colors: repeated.read_colors("particlecolor", "particle", particles.len())?,
+        edge_colors: repeated.read_colors("edgecolor", "edge", edges.len())?,
+        half_plane_colors: repeated.read_colors("halfplanecolor", "half-plane", half_planes.len())?,
+        paths: repeated.read_paths(particles.len())?,
     };
     if let Some(explanation) = repeated.undefined {
-        return Err(Rejection::undefined(explanation));
+        return Err(Rejection::from_undefined_input(explanation));
     }
     let scene = Scene {
         duration,
@@ -56,27 +56,27 @@ pub fn read(bytes: &[u8]) -> Result<OriginalScene, Rejection> {
         edges,
         half_planes,
         forces,
-        description: description.map(lossy),
+        description: description.map(decode_lossily),
         display,
     };
     Ok(OriginalScene { scene, description: description.unwrap_or(b"No description specified.").to_vec() })
 }
 
-fn lossy(text: &[u8]) -> String {
+fn decode_lossily(text: &[u8]) -> String {
     String::from_utf8_lossy(text).into_owned()
 }
 
 fn check_type(written: &[u8]) -> Result<(), Rejection> {
     match written {
         b"" | b"particle-system" => Ok(()),
-        b"rigid-body" => Err(Rejection::undefined(
+        b"rigid-body" => Err(Rejection::from_undefined_input(
             "simtype 'rigid-body' is an unfinished stub of the original: it makes no step and gives no verdict".into(),
         )),
         _ => {
             let mut text = b"Invalid simtype '".to_vec();
             text.extend_from_slice(written);
             text.extend_from_slice(b"' specified. Valid options are 'particle-system' and 'rigid-body'. Exiting.");
-            Err(Rejection::message(&text, 1))
+            Err(Rejection::from_message(&text, 1))
         }
     }
 }
@@ -88,8 +88,8 @@ struct RepeatedElements<'e> {
 }
 
 impl<'e> RepeatedElements<'e> {
-    fn all(&self, name: &'static str) -> impl Iterator<Item = Item<'e>> + use<'e> {
-        Item::all(self.elements, name, name)
+    fn items(&self, name: &'static str) -> impl Iterator<Item = Item<'e>> + use<'e> {
+        Item::items_named(self.elements, name, name)
     }
 
     /// Returns `index` if it is below `count`. Otherwise returns 0, and the scene is rejected later.
@@ -109,24 +109,24 @@ impl<'e> RepeatedElements<'e> {
         }
     }
 
-    fn particles(&self) -> Result<Vec<Particle>, Rejection> {
+    fn read_particles(&self) -> Result<Vec<Particle>, Rejection> {
         let read = |item: Item<'_>| {
             Ok(Particle {
-                position: item.numerics("px", "py")?,
-                velocity: item.numerics("vx", "vy")?,
-                mass: item.numeric("m")?,
-                fixed: item.boolean("fixed")?,
-                radius: item.radius(0.1)?,
-                tag: item.text("tag").map(lossy),
+                position: item.read_numerics("px", "py")?,
+                velocity: item.read_numerics("vx", "vy")?,
+                mass: item.read_numeric("m")?,
+                fixed: item.read_boolean("fixed")?,
+                radius: item.read_radius(0.1)?,
+                tag: item.text("tag").map(decode_lossily),
             })
         };
-        self.all("particle").map(read).collect()
+        self.items("particle").map(read).collect()
     }
 
-    fn edges(&mut self, particles: usize) -> Result<Vec<Edge>, Rejection> {
+    fn read_edges(&mut self, particles: usize) -> Result<Vec<Edge>, Rejection> {
         let mut edges = Vec::new();
-        for item in self.all("edge") {
-            let (i, j, radius) = (item.read_integer("i")?, item.read_integer("j")?, item.radius(0.015)?);
+        for item in self.items("edge") {
+            let (i, j, radius) = (item.read_integer("i")?, item.read_integer("j")?, item.read_radius(0.015)?);
             let first = self.check_index(&item, "particle", i, particles);
             let second = self.check_index(&item, "particle", j, particles);
             edges.push(Edge { first, second, radius });
@@ -134,18 +134,20 @@ impl<'e> RepeatedElements<'e> {
         Ok(edges)
     }
 
-    fn half_planes(&self) -> Result<Vec<HalfPlane>, Rejection> {
-        let read = |item: Item<'_>| Ok(HalfPlane { point: item.reals("px", "py")?, normal: item.reals("nx", "ny")? });
-        self.all("halfplane").map(read).collect()
+    fn read_half_planes(&self) -> Result<Vec<HalfPlane>, Rejection> {
+        let read = |item: Item<'_>| {
+            Ok(HalfPlane { point: item.read_reals("px", "py")?, normal: item.read_reals("nx", "ny")? })
+        };
+        self.items("halfplane").map(read).collect()
     }
 
     /// Returns all forces, in the order in which they act.
-    fn forces(&mut self, particles: usize, edges: usize) -> Result<Vec<Force>, Rejection> {
+    fn read_forces(&mut self, particles: usize, edges: usize) -> Result<Vec<Force>, Rejection> {
         let mut forces = Vec::new();
         for kind in ForceKind::ALL {
             // The original's messages call simple gravity a constant force as well.
             let called = if kind == ForceKind::SimpleGravity { ForceKind::Constant } else { kind };
-            for item in Item::all(self.elements, kind.element(), called.element()) {
+            for item in Item::items_named(self.elements, kind.element(), called.element()) {
                 forces.push(kind.read(&mut ForceItem {
                     item,
                     scene: self,
@@ -159,10 +161,10 @@ impl<'e> RepeatedElements<'e> {
 
     /// Returns the colors of one kind of object. The original's check accepts an edge or half-plane whose index equals
     /// the count.
-    fn colors(&mut self, name: &'static str, what: &str, count: usize) -> Result<Vec<(usize, Color)>, Rejection> {
+    fn read_colors(&mut self, name: &'static str, what: &str, count: usize) -> Result<Vec<(usize, Color)>, Rejection> {
         let slack = usize::from(what != "particle");
         let mut colors = Vec::new();
-        for item in self.all(name) {
+        for item in self.items(name) {
             let index = item.read_integer("i")?;
             if usize::try_from(index).ok().is_none_or(|index| index >= count + slack) {
                 // A count of zero wraps around in the original.
@@ -170,21 +172,22 @@ impl<'e> RepeatedElements<'e> {
                 let end = format!("Invalid {what} specified. Valid range is 0...{last}");
                 return Err(item.rejection("value of ", "i", &end));
             }
-            let color = item.color()?;
+            let color = item.read_color()?;
             colors.push((self.check_index(&item, what, index, count), color));
         }
         Ok(colors)
     }
 
     /// Returns the trails. A trail of a particle that does not exist has no effect in the original and is left out.
-    fn paths(&self, particles: usize) -> Result<Vec<ParticlePath>, Rejection> {
+    fn read_paths(&self, particles: usize) -> Result<Vec<ParticlePath>, Rejection> {
         let mut paths = Vec::new();
-        for item in self.all("particlepath") {
+        for item in self.items("particlepath") {
             let index = item.read_integer("i")?;
-            let duration = item.text("duration").and_then(super::values::scalar).filter(|&duration| duration >= 0.0);
+            let duration =
+                item.text("duration").and_then(super::values::parse_scalar).filter(|&duration| duration >= 0.0);
             let duration =
                 duration.ok_or_else(|| item.rejection("value of ", "duration", "Value must be positive scalar."))?;
-            let color = item.color()?;
+            let color = item.read_color()?;
             if let Some(particle) = usize::try_from(index).ok().filter(|&index| index < particles) {
                 paths.push(ParticlePath { particle, duration, color });
             }
@@ -201,7 +204,7 @@ struct ForceItem<'e, 's> {
     edge_count: usize,
 }
 
-impl Source for ForceItem<'_, '_> {
+impl AttributeSource for ForceItem<'_, '_> {
     type Error = Rejection;
 
     fn edge(&mut self, name: &'static str) -> Result<usize, Rejection> {
@@ -216,8 +219,8 @@ impl Source for ForceItem<'_, '_> {
 
     fn number(&mut self, name: &'static str, default: Option<f64>, _: Option<&str>) -> Result<f64, Rejection> {
         default.map_or_else(
-            || self.item.numeric(name),
-            |default| self.item.optional(name, default, "value of ", "numeric"),
+            || self.item.read_numeric(name),
+            |default| self.item.read_optional(name, default, "value of ", "numeric"),
         )
     }
 }

@@ -1,5 +1,5 @@
 //! The original's words about every kind of problem, and what it lets pass.
-use super::{OriginalScene, RefusalKind, Rejection, read};
+use super::{OriginalScene, Rejection, RejectionKind, read};
 use crate::assignments::Integrator;
 use crate::scene::model::{Collision, CollisionDetection, Force};
 use fosssim_num::vector::Vec2;
@@ -20,7 +20,7 @@ fn accepted(inner: &str) -> OriginalScene {
 fn refused(result: Result<OriginalScene, Rejection>, text: &str, exit_code: u8) {
     let stderr = format!("\u{1b}[31;1mERROR IN XMLSCENEPARSER:\u{1b}[m {text}\n").into_bytes();
     let refusal = result.expect_err(text);
-    let expected = Rejection { kind: RefusalKind::Message, stderr, exit_code, explanation: text.to_owned() };
+    let expected = Rejection { kind: RejectionKind::Message, stderr, exit_code, explanation: text.to_owned() };
     assert_eq!(refusal, expected);
 }
 
@@ -266,17 +266,17 @@ fn foreign_memory_is_refused() {
         ("<edgecolor i='0' r='0' g='0' b='0'/>", "edgecolor 0 names edge 0, but the scene has 0"),
     ] {
         let refusal = scene(&format!("{TWO}{inner}")).expect_err(inner);
-        assert_eq!((refusal.kind, refusal.exit_code), (RefusalKind::Undefined, 1));
+        assert_eq!((refusal.kind, refusal.exit_code), (RejectionKind::Undefined, 1));
         assert_eq!(refusal.to_string(), format!("{text}; the original would read memory that is not its own"));
     }
     let stub = scene("<simtype type='rigid-body'/>").expect_err("refused");
-    assert_eq!(stub.kind, RefusalKind::Undefined);
+    assert_eq!(stub.kind, RejectionKind::Undefined);
 }
 
 #[test]
 fn broken_xml_is_a_crash() {
     let refusal = read(b"<scene>").expect_err("refused");
-    assert_eq!((refusal.kind, refusal.exit_code), (RefusalKind::Crash, 134));
+    assert_eq!((refusal.kind, refusal.exit_code), (RejectionKind::Crash, 134));
     assert_eq!(
         String::from_utf8_lossy(&refusal.stderr),
         "terminate called after throwing an instance of 'rapidxml::parse_error'\n  what():  unexpected end of data\n"
@@ -287,7 +287,7 @@ fn broken_xml_is_a_crash() {
 #[test]
 fn an_unreadable_file_has_its_own_message() {
     assert_eq!(
-        String::from_utf8_lossy(&Rejection::unreadable(b"a.xml").stderr),
+        String::from_utf8_lossy(&Rejection::from_unreadable_file(b"a.xml").stderr),
         "\u{1b}[31;1mERROR IN TWODSCENEXMLPARSER:\u{1b}[m XML scene file a.xml. Failed to read file.\n"
     );
 }

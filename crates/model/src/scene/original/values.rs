@@ -1,15 +1,15 @@
 //! Reads numbers like a C++ stream: the longest prefix counts, the rest is ignored (scene-format.md 2).
-use crate::scene::numbers::{digits, mantissa};
+use crate::scene::numbers::{count_digits, mantissa_end};
 
 /// Returns a 64-bit float, correctly rounded. Fails without digits, with an exponent without digits, and on overflow;
 /// underflow gives zero.
-pub(super) fn scalar(text: &[u8]) -> Option<f64> {
-    let text = trim(text);
-    let mut end = mantissa(text)?;
+pub(super) fn parse_scalar(text: &[u8]) -> Option<f64> {
+    let text = trim_start(text);
+    let mut end = mantissa_end(text)?;
     if matches!(text.get(end), Some(b'e' | b'E')) {
         end += 1;
         end += usize::from(matches!(text.get(end), Some(b'+' | b'-')));
-        let exponent = digits(text, end);
+        let exponent = count_digits(text, end);
         if exponent == 0 {
             return None;
         }
@@ -21,13 +21,13 @@ pub(super) fn scalar(text: &[u8]) -> Option<f64> {
 }
 
 /// Returns a 32-bit integer.
-pub(super) fn integer(text: &[u8]) -> Option<i32> {
-    i32::try_from(long(text)?).ok()
+pub(super) fn parse_integer(text: &[u8]) -> Option<i32> {
+    i32::try_from(parse_long(text)?).ok()
 }
 
 /// Returns a truth value: an integer that is 0 or 1.
-pub(super) fn boolean(text: &[u8]) -> Option<bool> {
-    match long(text)? {
+pub(super) fn parse_boolean(text: &[u8]) -> Option<bool> {
+    match parse_long(text)? {
         0 => Some(false),
         1 => Some(true),
         _ => None,
@@ -46,15 +46,15 @@ pub(super) fn truncate(value: f64) -> i32 {
     }
 }
 
-fn long(text: &[u8]) -> Option<i64> {
-    let text = trim(text);
+fn parse_long(text: &[u8]) -> Option<i64> {
+    let text = trim_start(text);
     let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
-    let end = sign + digits(text, sign);
+    let end = sign + count_digits(text, sign);
     std::str::from_utf8(&text[..end]).ok()?.parse().ok()
 }
 
 /// Removes the white space of the C locale at the start.
-fn trim(text: &[u8]) -> &[u8] {
+fn trim_start(text: &[u8]) -> &[u8] {
     let start = text.iter().position(|byte| !matches!(byte, b' ' | b'\t'..=b'\r')).unwrap_or(text.len());
     &text[start..]
 }
@@ -82,32 +82,32 @@ mod tests {
             ("179769313486231570000000000000000000000000e267", f64::MAX),
             ("0.1000000000000000055511151231257827021181583404541015625", 0.1),
         ] {
-            assert_eq!(scalar(text.as_bytes()), Some(value), "{text}");
+            assert_eq!(parse_scalar(text.as_bytes()), Some(value), "{text}");
         }
-        assert_eq!(scalar(b"-0").map(f64::to_bits), Some((-0.0_f64).to_bits()));
+        assert_eq!(parse_scalar(b"-0").map(f64::to_bits), Some((-0.0_f64).to_bits()));
     }
 
     #[test]
     fn what_is_not_a_scalar_fails() {
         for text in ["", " ", "x", "+", "-", ".", ".e5", "+-1", "inf", "nan", "1e", "1e+", "1ex", "1e400", "-1e400"] {
-            assert_eq!(scalar(text.as_bytes()), None, "{text}");
+            assert_eq!(parse_scalar(text.as_bytes()), None, "{text}");
         }
     }
 
     #[test]
     fn integers_and_truth_values() {
-        assert_eq!(integer(b" 0.7"), Some(0));
-        assert_eq!(integer(b"-2147483648"), Some(i32::MIN));
-        assert_eq!(integer(b"+12abc"), Some(12));
-        assert_eq!(integer(b"0x10"), Some(0));
+        assert_eq!(parse_integer(b" 0.7"), Some(0));
+        assert_eq!(parse_integer(b"-2147483648"), Some(i32::MIN));
+        assert_eq!(parse_integer(b"+12abc"), Some(12));
+        assert_eq!(parse_integer(b"0x10"), Some(0));
         for text in ["", "x", "-", "2147483648", "99999999999999999999999"] {
-            assert_eq!(integer(text.as_bytes()), None, "{text}");
+            assert_eq!(parse_integer(text.as_bytes()), None, "{text}");
         }
-        assert_eq!(boolean(b"01"), Some(true));
-        assert_eq!(boolean(b"1.5"), Some(true));
-        assert_eq!(boolean(b"-0"), Some(false));
+        assert_eq!(parse_boolean(b"01"), Some(true));
+        assert_eq!(parse_boolean(b"1.5"), Some(true));
+        assert_eq!(parse_boolean(b"-0"), Some(false));
         for text in ["2", "-1", "true", ""] {
-            assert_eq!(boolean(text.as_bytes()), None, "{text}");
+            assert_eq!(parse_boolean(text.as_bytes()), None, "{text}");
         }
     }
 

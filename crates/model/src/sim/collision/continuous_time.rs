@@ -4,14 +4,14 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Impulse, Observer, Pass, Stage, synchronize},
+        observer::{Impulse, Observer, Pass, Stage, pass_on_synchronization},
         pair::PairKind,
         state::State,
         step_error::StepError,
     },
     particle_edge, particle_half_plane, particle_particle,
     pass::{Detector, Reaction},
-    response::{Law, Response, Setting},
+    response::{Response, ResponseConstants, ResponseInput},
 };
 
 /// Handles the impacts of a step, then reaches the synchronization point.
@@ -20,26 +20,26 @@ use super::{
 /// Fails with [`StepError::RootSearch`] if a root search would never end.
 pub(super) fn handle<O: Observer>(
     bodies: &Bodies,
-    law: &Law,
+    law: &ResponseConstants,
     detector: &mut Detector,
     q_start: &[f64],
     state: &mut State,
     observer: &mut O,
 ) -> Result<(), StepError> {
     let State { positions, velocities } = state;
-    let pass = Pass { stage: Stage::ContinuousTime, index: detector.passes() };
+    let pass = Pass { stage: Stage::ContinuousTime, index: detector.pass_count() };
     detector.run(bodies, pass, q_start, positions, observer, |observer, impulse, q_end| {
-        let response = respond(&Setting { bodies, law, q_start, q_end }, impulse);
+        let response = respond(&ResponseInput { bodies, law, q_start, q_end }, impulse);
         response.apply(q_end, velocities);
         observer.observe_impulse(impulse);
         Reaction::Moved
     })?;
-    synchronize(observer, state);
+    pass_on_synchronization(observer, state);
     Ok(())
 }
 
 /// Returns the response to an impact (collisions.md 3).
-pub(super) fn respond(setting: &Setting<'_>, impulse: &Impulse) -> Response {
+pub(super) fn respond(setting: &ResponseInput<'_>, impulse: &Impulse) -> Response {
     let Impulse { pair, normal, time } = *impulse;
     let (first, second) = (pair.first as usize, pair.second as usize);
     match pair.kind {

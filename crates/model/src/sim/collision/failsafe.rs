@@ -53,13 +53,13 @@ pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::samples::{Numbers, fix, particle, scene};
+    use crate::sim::samples::{NumberSource, fixed_copy, particle, scene};
     use fosssim_num::vector::length;
 
     /// Distances within the zone equal those at the start, and the mean displacement is kept.
     #[test]
     fn a_zone_moves_rigidly_and_keeps_its_momentum() {
-        let mut numbers = Numbers(17);
+        let mut numbers = NumberSource(17);
         for _ in 0..500 {
             let masses: [f64; 4] = std::array::from_fn(|_| 1.5 + numbers.next());
             let start: [f64; 8] = std::array::from_fn(|_| numbers.next());
@@ -85,8 +85,10 @@ mod tests {
 
     #[test]
     fn a_zone_with_a_fixed_particle_or_a_half_plane_stands_still() {
-        let scene =
-            scene(vec![particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1), fix(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1))]);
+        let scene = scene(vec![
+            particle((0.0, 0.0), (0.0, 0.0), 1.0, 0.1),
+            fixed_copy(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
+        ]);
         let bodies = Bodies::new(&scene);
         let start = [0.0, 0.0, 1.0, 0.0];
         for zone in [Zone { particles: &[0, 1], half_plane: false }, Zone { particles: &[0], half_plane: true }] {

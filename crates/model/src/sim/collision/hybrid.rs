@@ -3,15 +3,15 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Impulse, Observer, Pass, Resume, Stage, Zone, synchronize},
+        observer::{Impulse, Observer, Pass, ResumeState, Stage, Zone, pass_on_synchronization},
         state::State,
         step_error::StepError,
     },
     continuous_time::respond,
     failsafe,
     pass::{Detector, Reaction},
-    response::{Law, Setting},
-    zones::{Builder, Zones},
+    response::{ResponseConstants, ResponseInput},
+    zones::{ZoneBuilder, Zones},
 };
 
 /// Memory that the handler reuses from step to step: O(particles + hits).
@@ -21,10 +21,10 @@ pub(super) struct HybridScratch {
     round_start: Vec<f64>,
     /// The state of the geometric part so far.
     state: State,
-    builder: Builder,
+    builder: ZoneBuilder,
     zones: Zones,
-    merged: Zones,
-    shown: Vec<Zone<'static>>,
+    merged_zones: Zones,
+    zone_views: Vec<Zone<'static>>,
 }
 
 /// Handles the impacts of a step. The synchronization point is after the impulses.
@@ -35,7 +35,7 @@ pub(super) struct HybridScratch {
 #[expect(clippy::too_many_arguments, reason = "the parts of Handler, borrowed one by one")]
 pub(super) fn handle<O: Observer>(
     bodies: &Bodies,
-    law: &Law,
+    law: &ResponseConstants,
     max_iterations: i32,
     detector: &mut Detector,
     scratch: &mut HybridScratch,
@@ -60,7 +60,7 @@ pub(super) fn handle<O: Observer>(
         } else {
             // All responses of a round are computed from the positions at its start.
             scratch.round_start.clone_from(&state.positions);
-            let setting = Setting { bodies, law, q_start, q_end: &scratch.round_start };
+            let setting = ResponseInput { bodies, law, q_start, q_end: &scratch.round_start };
             for impulse in &scratch.hits {
                 respond(&setting, impulse).apply(&mut state.positions, &mut state.velocities);
                 observer.observe_impulse(impulse);
@@ -69,12 +69,12 @@ pub(super) fn handle<O: Observer>(
         }
     }
     if done {
-        synchronize(observer, state);
+        pass_on_synchronization(observer, state);
         return Ok(());
     }
     // The geometric part continues with these values, unless a caller sets others.
     scratch.state.clone_from(state);
-    if synchronize(observer, state) == Resume::Synchronized {
+    if pass_on_synchronization(observer, state) == ResumeState::Synchronized {
         scratch.state.clone_from(state);
     }
     move_zones(bodies, law, detector, scratch, q_start, observer)?;
@@ -86,19 +86,19 @@ pub(super) fn handle<O: Observer>(
 /// half-plane to a zone, so there are at most about 3N rounds.
 fn move_zones<O: Observer>(
     bodies: &Bodies,
-    law: &Law,
+    law: &ResponseConstants,
     detector: &mut Detector,
     scratch: &mut HybridScratch,
     q_start: &[f64],
     observer: &mut O,
 ) -> Result<(), StepError> {
-    let HybridScratch { hits, state, builder, zones, merged, shown, .. } = scratch;
+    let HybridScratch { hits, state, builder, zones, merged_zones: merged, zone_views: shown, .. } = scratch;
     let mut round = 0;
     detect(bodies, detector, Stage::Geometric { round }, q_start, &mut state.positions, hits, observer)?;
-    builder.begin(bodies.particles());
+    builder.begin(bodies.particle_count());
     builder.add_hits(bodies, hits);
     builder.finish(zones);
-    zones.show(shown, |zones| observer.observe_zones(round, zones));
+    zones.visit_all(shown, |zones| observer.observe_zones(round, zones));
     loop {
         round += 1;
         for zone in zones.iter() {
@@ -106,11 +106,11 @@ fn move_zones<O: Observer>(
             failsafe::apply(bodies, law.time_step, zone, q_start, &mut state.positions, &mut state.velocities);
         }
         detect(bodies, detector, Stage::Geometric { round }, q_start, &mut state.positions, hits, observer)?;
-        builder.begin(bodies.particles());
+        builder.begin(bodies.particle_count());
         builder.add_zones(zones);
         builder.add_hits(bodies, hits);
         builder.finish(merged);
-        merged.show(shown, |zones| observer.observe_zones(round, zones));
+        merged.visit_all(shown, |zones| observer.observe_zones(round, zones));
         if zones == merged {
             return Ok(());
         }
@@ -129,7 +129,7 @@ fn detect<O: Observer>(
     observer: &mut O,
 ) -> Result<(), StepError> {
     hits.clear();
-    let pass = Pass { stage, index: detector.passes() };
+    let pass = Pass { stage, index: detector.pass_count() };
     detector.run(bodies, pass, q_start, q_end, observer, |_, impulse, _| {
         hits.push(*impulse);
         Reaction::Kept
@@ -164,8 +164,8 @@ mod tests {
         let xml = include_bytes!("../../../../../assets/t2m2/GeometricTests/rows-collected-over-many-rounds.xml");
         let scene = original::read(xml).expect("a scene").scene;
         let mut rounds = Rounds::default();
-        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-        (0..scene.steps()).for_each(|_| simulation.step(&mut rounds).expect("a step"));
+        let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
+        (0..scene.step_count()).for_each(|_| simulation.step(&mut rounds).expect("a step"));
         let longest = rounds.0.iter().max_by_key(|step| step.len()).expect("a step");
         assert!(longest.len() > 4, "{longest:?}");
         let [.., before, last] = &longest[..] else { panic!("{longest:?}") };

@@ -1,6 +1,6 @@
 //! Computes a pair's time of impact, if it is needed.
 use super::super::{
-    observer::Time,
+    observer::ImpactTime,
     pair::Pair,
     search::{RootSearch, SearchCounts},
     step_error::StepError,
@@ -18,13 +18,13 @@ pub(super) fn time_of_impact(
     step: u32,
     pair: Pair,
     polynomials: &[Polynomial],
-) -> Result<Time, StepError> {
+) -> Result<ImpactTime, StepError> {
     counts.calls += 1;
     let excluded = search != RootSearch::Always && excludes_unit_interval(polynomials);
     if excluded {
         counts.excluded += 1;
-        if search == RootSearch::WhereNeeded {
-            return Ok(Time::Excluded);
+        if search == RootSearch::OnDemand {
+            return Ok(ImpactTime::Excluded);
         }
     }
     counts.searched += 1;
@@ -32,5 +32,5 @@ pub(super) fn time_of_impact(
     if excluded && time <= 1.0 {
         counts.disagreements += 1;
     }
-    Ok(Time::Found(time))
+    Ok(ImpactTime::Found(time))
 }

@@ -42,13 +42,13 @@ use crate::scene::{Collision, Scene};
 use hybrid::HybridScratch;
 pub use motion::{PairMotion, PointMotion};
 use pass::Detector;
-use response::Law;
+use response::ResponseConstants;
 
 /// The scene's collision handling with its scratch memory.
 #[derive(Debug, Clone)]
 pub(super) struct Handler {
     kind: Collision,
-    law: Law,
+    constants: ResponseConstants,
     detector: Detector,
     /// The broad phase of `simple`, which omits pairs that are apart.
     nearby: Option<NearbyPairs>,
@@ -61,9 +61,9 @@ impl Handler {
         let is_simple = matches!(scene.collision, Collision::Simple { .. });
         Self {
             kind: scene.collision,
-            law: Law::new(scene.collision.restitution(), scene.time_step),
-            detector: Detector::new(search, scene.steps()),
-            nearby: is_simple.then(|| NearbyPairs::for_many(scene, 0.0)).flatten(),
+            constants: ResponseConstants::new(scene.collision.restitution(), scene.time_step),
+            detector: Detector::new(search, scene.step_count()),
+            nearby: is_simple.then(|| NearbyPairs::for_large_scene(scene, 0.0)).flatten(),
             hybrid: HybridScratch::default(),
         }
     }
@@ -86,15 +86,24 @@ impl Handler {
         match self.kind {
             Collision::None | Collision::Penalty { .. } => Ok(()),
             Collision::Simple { .. } => {
-                simple::handle(bodies, &self.law, self.nearby.as_mut(), q_start, state, observer);
+                simple::handle(bodies, &self.constants, self.nearby.as_mut(), q_start, state, observer);
                 Ok(())
             }
             Collision::ContinuousTime { .. } => {
-                continuous_time::handle(bodies, &self.law, &mut self.detector, q_start, state, observer)
+                continuous_time::handle(bodies, &self.constants, &mut self.detector, q_start, state, observer)
             }
             Collision::Hybrid { max_iterations, .. } => {
                 let detector = &mut self.detector;
-                hybrid::handle(bodies, &self.law, max_iterations, detector, &mut self.hybrid, q_start, state, observer)
+                hybrid::handle(
+                    bodies,
+                    &self.constants,
+                    max_iterations,
+                    detector,
+                    &mut self.hybrid,
+                    q_start,
+                    state,
+                    observer,
+                )
             }
         }
     }

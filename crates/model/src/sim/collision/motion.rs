@@ -28,7 +28,7 @@ pub struct PointMotion {
 impl PointMotion {
     /// Returns the motion of particle `index` between two arrays of positions in trace order.
     #[must_use]
-    pub fn between(q_start: &[f64], q_end: &[f64], index: usize) -> Self {
+    pub fn from_positions(q_start: &[f64], q_end: &[f64], index: usize) -> Self {
         let start = vector_at(q_start, index);
         Self { start, shift: vector_at(q_end, index) - start }
     }
@@ -78,9 +78,9 @@ impl PairMotion {
     /// # Panics
     /// Panics if the scene or an array lacks one of the objects.
     #[must_use]
-    pub fn between(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
+    pub fn from_positions(scene: &Scene, pair: Pair, q_start: &[f64], q_end: &[f64]) -> Self {
         let (first, second) = (pair.first as usize, pair.second as usize);
-        let point = |index| PointMotion::between(q_start, q_end, index);
+        let point = |index| PointMotion::from_positions(q_start, q_end, index);
         let radius = scene.particles[first].radius;
         match pair.kind {
             PairKind::ParticleParticle => Self::Particles {
@@ -134,12 +134,12 @@ impl PairMotion {
     /// Returns the detection polynomials in the order of the trace, with nothing dropped (collisions.md 2).
     #[must_use]
     pub fn polynomials(&self) -> Vec<Polynomial> {
-        self.list()[..self.kind().polynomials()].to_vec()
+        self.padded_polynomials()[..self.kind().polynomial_count()].to_vec()
     }
 
     /// Returns the polynomials, followed by empty ones.
     #[inline]
-    pub(super) fn list(&self) -> [Polynomial; PairKind::MAX_POLYNOMIALS] {
+    pub(super) fn padded_polynomials(&self) -> [Polynomial; PairKind::MAX_POLYNOMIALS] {
         let two = |(overlap, approach): ([f64; 3], [f64; 2])| {
             let none = Polynomial::default();
             [Polynomial::untrimmed(&overlap), Polynomial::untrimmed(&approach), none, none]
@@ -215,7 +215,7 @@ mod tests {
 
     impl Observer for Compare<'_> {
         fn observe_detection(&mut self, detection: &Detection<'_>) {
-            let motion = PairMotion::between(self.scene, detection.pair, detection.q_start, detection.q_end);
+            let motion = PairMotion::from_positions(self.scene, detection.pair, detection.q_start, detection.q_end);
             assert_eq!(motion.kind(), detection.pair.kind);
             let own = motion.polynomials();
             assert_eq!(own.len(), detection.polynomials.len());
@@ -235,8 +235,8 @@ mod tests {
     fn a_pair_on_its_own_is_what_a_pass_computes() {
         let scene = original::read(SCENE.as_bytes()).unwrap().scene;
         let mut compare = Compare { scene: &scene, calls: 0, hits: 0 };
-        let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
-        for _ in 0..scene.steps() {
+        let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
+        for _ in 0..scene.step_count() {
             simulation.step(&mut compare).unwrap();
         }
         assert_eq!(compare.calls, 20 * (6 + 2 + 4));

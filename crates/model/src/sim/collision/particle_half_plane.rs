@@ -1,7 +1,7 @@
 //! A particle and a half-plane: detection and responses (collisions.md 2, 3, 6).
 //!
 //! The half-plane is two-sided: only the distance to its boundary counts. A fixed particle is moved as well.
-use super::response::{Change, Response, Setting};
+use super::response::{Change, Response, ResponseInput};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
     lanes::{Number, Plane},
@@ -35,8 +35,8 @@ pub(super) fn normal(x: Vec2, d: Vec2, point: Vec2, normal: Vec2, squared: f64, 
 }
 
 /// Returns the response along normal `n`, from the mean velocity of the step.
-pub(super) fn response(setting: &Setting<'_>, i: usize, n: Vec2) -> Response {
-    let Setting { law, q_start, q_end, .. } = *setting;
+pub(super) fn response(setting: &ResponseInput<'_>, i: usize, n: Vec2) -> Response {
+    let ResponseInput { law, q_start, q_end, .. } = *setting;
     let u = unit(n);
     let speed = law.mean_velocity(q_start, q_end, i).dot(&u);
     let change = Change {
@@ -66,8 +66,8 @@ pub(super) fn simple_response(factor: f64, v: &[f64], i: usize, n: Vec2) -> Resp
 mod tests {
     use super::*;
     use crate::sim::{
-        collision::response::Law,
-        samples::{fix, half_plane, particle, scene},
+        collision::response::ResponseConstants,
+        samples::{fixed_copy, half_plane, particle, scene},
     };
 
     /// The example of trace-format.md 3.
@@ -84,11 +84,12 @@ mod tests {
 
     #[test]
     fn even_a_fixed_particle_bounces() {
-        let mut scene = scene(vec![fix(particle((0.0, 0.5), (0.0, -1.0), 1.0, 0.25))]);
+        let mut scene = scene(vec![fixed_copy(particle((0.0, 0.5), (0.0, -1.0), 1.0, 0.25))]);
         scene.half_planes.push(half_plane((0.0, 0.0), (0.0, 1.0)));
         let bodies = Bodies::new(&scene);
         let (q_start, q_end) = ([0.0, 0.5], [0.0, 0.0]);
-        let setting = Setting { bodies: &bodies, law: &Law::new(1.0, 0.5), q_start: &q_start, q_end: &q_end };
+        let setting =
+            ResponseInput { bodies: &bodies, law: &ResponseConstants::new(1.0, 0.5), q_start: &q_start, q_end: &q_end };
         let (mut q, mut v) = (q_end, [0.0, -1.0]);
         response(&setting, 0, Vec2::new(0.0, -0.25)).apply(&mut q, &mut v);
         assert_eq!((q, v), ([0.0, 1.0], [0.0, 1.0]));

@@ -1,5 +1,5 @@
 //! Two particles: detection and responses (collisions.md 2, 3, 6).
-use super::response::{Change, Response, Setting};
+use super::response::{Change, Response, ResponseInput};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
     lanes::{Number, Plane},
@@ -30,8 +30,8 @@ pub(super) fn normal(x1: Vec2, d1: Vec2, x2: Vec2, d2: Vec2, t: f64) -> Vec2 {
 }
 
 /// Returns the response along normal `n`, from the mean velocities of the step.
-pub(super) fn response(setting: &Setting<'_>, i: usize, j: usize, n: Vec2) -> Response {
-    let Setting { bodies, law, q_start, q_end } = *setting;
+pub(super) fn response(setting: &ResponseInput<'_>, i: usize, j: usize, n: Vec2) -> Response {
+    let ResponseInput { bodies, law, q_start, q_end } = *setting;
     let v1 = law.mean_velocity(q_start, q_end, i);
     let v2 = law.mean_velocity(q_start, q_end, j);
     exchange(bodies, law.factor, law.time_step, i, j, v2 - v1, unit(n))
@@ -67,8 +67,8 @@ fn exchange(bodies: &Bodies, factor: f64, dt: f64, i: usize, j: usize, relative:
 mod tests {
     use super::*;
     use crate::sim::{
-        collision::response::Law,
-        samples::{Numbers, fix, particle, scene},
+        collision::response::ResponseConstants,
+        samples::{NumberSource, fixed_copy, particle, scene},
     };
 
     #[test]
@@ -78,7 +78,8 @@ mod tests {
         let scene =
             scene(vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), particle((1.0, 0.0), (-1.0, 0.0), 2.0, 0.1)]);
         let bodies = Bodies::new(&scene);
-        let setting = Setting { bodies: &bodies, law: &Law::new(1.0, 0.5), q_start: &q_start, q_end: &q_end };
+        let setting =
+            ResponseInput { bodies: &bodies, law: &ResponseConstants::new(1.0, 0.5), q_start: &q_start, q_end: &q_end };
         let (mut q, mut v) = (q_end, [1.0, 0.0, -1.0, 0.0]);
         response(&setting, 0, 1, Vec2::new(0.2, 0.0)).apply(&mut q, &mut v);
         assert_eq!(v, [-1.0, 0.0, 1.0, 0.0]);
@@ -89,10 +90,13 @@ mod tests {
     fn a_fixed_particle_stays_and_the_other_bounces() {
         let q_start = [0.0, 0.0, 1.0, 0.0];
         let q_end = [0.5, 0.0, 1.0, 0.0];
-        let scene =
-            scene(vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), fix(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1))]);
+        let scene = scene(vec![
+            particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1),
+            fixed_copy(particle((1.0, 0.0), (0.0, 0.0), 1.0, 0.1)),
+        ]);
         let bodies = Bodies::new(&scene);
-        let setting = Setting { bodies: &bodies, law: &Law::new(0.0, 0.5), q_start: &q_start, q_end: &q_end };
+        let setting =
+            ResponseInput { bodies: &bodies, law: &ResponseConstants::new(0.0, 0.5), q_start: &q_start, q_end: &q_end };
         let (mut q, mut v) = (q_end, [1.0, 0.0, 0.0, 0.0]);
         response(&setting, 0, 1, Vec2::new(0.2, 0.0)).apply(&mut q, &mut v);
         assert_eq!((v, q), ([0.0; 4], [0.0, 0.0, 1.0, 0.0]));
@@ -101,16 +105,21 @@ mod tests {
     /// Momentum is conserved, and with restitution 1 so is the kinetic energy.
     #[test]
     fn impacts_conserve_momentum_and_energy() {
-        let mut numbers = Numbers(7);
+        let mut numbers = NumberSource(7);
         for _ in 0..1000 {
             let masses = [1.5 + numbers.next(), 1.5 + numbers.next()];
-            let (v1, v2, n) = (numbers.pair(), numbers.pair(), numbers.pair());
+            let (v1, v2, n) = (numbers.next_pair(), numbers.next_pair(), numbers.next_pair());
             let scene = scene(vec![particle((0.0, 0.0), v1, masses[0], 0.1), particle((1.0, 0.0), v2, masses[1], 0.1)]);
             let bodies = Bodies::new(&scene);
             let q_start = [0.0, 0.0, 1.0, 0.0];
             let v = [v1.0, v1.1, v2.0, v2.1];
             let q_end: [f64; 4] = std::array::from_fn(|k| q_start[k] + 0.5 * v[k]);
-            let setting = Setting { bodies: &bodies, law: &Law::new(1.0, 0.5), q_start: &q_start, q_end: &q_end };
+            let setting = ResponseInput {
+                bodies: &bodies,
+                law: &ResponseConstants::new(1.0, 0.5),
+                q_start: &q_start,
+                q_end: &q_end,
+            };
             let (mut q, mut after) = (q_end, v);
             response(&setting, 0, 1, Vec2::new(n.0, n.1)).apply(&mut q, &mut after);
             let momentum = |v: &[f64; 4], axis: usize| masses[0] * v[axis] + masses[1] * v[axis + 2];

@@ -6,13 +6,13 @@
 use super::{
     super::{
         bodies::Bodies,
-        observer::{Decision, Detection, Impulse, Observer, Pass, Time, WantedPairs},
+        observer::{Decision, Detection, ImpactTime, Impulse, Observer, Pass, WantedPairs},
         pair::{Pair, PairKind, pair},
         pairs::{PassCursor, is_end},
         search::{RootSearch, SUBNORMAL_WORK, SearchCounts, have_subnormal_products},
         step_error::StepError,
     },
-    blocks::{Blocks, Setting},
+    blocks::{Blocks, PassInput},
     impact::time_of_impact,
     motion::PairMotion,
 };
@@ -38,9 +38,9 @@ pub(super) struct Detector {
     search: RootSearch,
     counts: SearchCounts,
     /// The maximum work. A pass that exceeds it is the last.
-    most_work: u64,
+    max_work: u64,
     step: u32,
-    passes: u32,
+    pass_count: u32,
     displacements: Vec<f64>,
     /// Whether pairs may be checked in blocks.
     has_lanes: bool,
@@ -53,12 +53,12 @@ impl Detector {
         Self {
             search,
             counts: SearchCounts::default(),
-            most_work: u64::MAX,
+            max_work: u64::MAX,
             step: 0,
-            passes: 0,
+            pass_count: 0,
             displacements: Vec::new(),
             // Other root search modes serve to check the results of lanes.
-            has_lanes: search == RootSearch::WhereNeeded,
+            has_lanes: search == RootSearch::OnDemand,
             blocks: Blocks::new(steps),
         }
     }
@@ -71,17 +71,17 @@ impl Detector {
     /// Resets the number of passes.
     pub fn begin_step(&mut self, step: u32) {
         self.step = step;
-        self.passes = 0;
+        self.pass_count = 0;
     }
 
     /// Returns the number of passes in this step so far, which is the index of the next pass.
-    pub fn passes(&self) -> u32 {
-        self.passes
+    pub fn pass_count(&self) -> u32 {
+        self.pass_count
     }
 
     /// Limits the work of all steps together.
     pub fn limit_work(&mut self, most: u64) {
-        self.most_work = most;
+        self.max_work = most;
     }
 
     /// Counts of root searches, over all steps.
@@ -105,8 +105,8 @@ impl Detector {
         mut react: impl FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     ) -> Result<(), StepError> {
         observer.begin_pass(pass);
-        observer.pass_positions(q_start, q_end);
-        self.passes += 1;
+        observer.observe_positions(q_start, q_end);
+        self.pass_count += 1;
         self.displacements.clear();
         self.displacements.extend(q_end.iter().zip(q_start).map(|(end, start)| end - start));
         let begin = self.counts.work();
@@ -116,9 +116,9 @@ impl Detector {
             hits = self.run_in_blocks(bodies, q_start, q_end, observer, &mut react, &mut place)?;
         }
         let mut context = PassContext { pass, bodies, q_start, q_end, observer, react, hits };
-        while place.first < bodies.particles() {
+        while place.first < bodies.particle_count() {
             let first = place.first;
-            for (kind, seconds) in PairKind::ALL.into_iter().zip(bodies.objects().row(place)) {
+            for (kind, seconds) in PairKind::ALL.into_iter().zip(bodies.object_counts().remaining_row(place)) {
                 for second in seconds {
                     if kind != PairKind::ParticleEdge || !is_end(bodies.edges[second], first) {
                         self.detect(pair(kind, first, second), &mut context)?;
@@ -131,7 +131,7 @@ impl Detector {
         if is_slow {
             self.counts.subnormal += (SUBNORMAL_WORK - 1) * (self.counts.work() - begin);
         }
-        if self.counts.work() > self.most_work {
+        if self.counts.work() > self.max_work {
             return Err(StepError::Work { step: self.step });
         }
         Ok(())
@@ -148,20 +148,20 @@ impl Detector {
         place: &mut PassCursor,
     ) -> Result<usize, StepError> {
         let step = self.step;
-        let mut is_on = self.blocks.prepare(Setting { bodies, step, q_start, displacements: &self.displacements });
+        let mut is_on = self.blocks.prepare(PassInput { bodies, step, q_start, displacements: &self.displacements });
         let mut hits = 0;
         while is_on {
-            let setting = Setting { bodies, step, q_start, displacements: &self.displacements };
+            let setting = PassInput { bodies, step, q_start, displacements: &self.displacements };
             let bytes = match observer.wanted_pairs() {
                 WantedPairs::Bytes(bytes) => Some(bytes),
                 WantedPairs::Calls | WantedPairs::Nothing => None,
             };
-            let Some(impulse) = self.blocks.next_hit(setting, place, &mut self.counts, bytes)? else { break };
+            let Some(impulse) = self.blocks.find_next_hit(setting, place, &mut self.counts, bytes)? else { break };
             hits += 1;
             observer.observe_hit(impulse.pair);
             if react(observer, &impulse, q_end) == Reaction::Moved {
                 let moved = self.displace(bodies, impulse.pair, q_start, q_end);
-                let setting = Setting { bodies, step, q_start, displacements: &self.displacements };
+                let setting = PassInput { bodies, step, q_start, displacements: &self.displacements };
                 is_on = self.blocks.refresh(setting, moved);
             }
         }
@@ -175,24 +175,24 @@ impl Detector {
         R: FnMut(&mut O, &Impulse, &mut [f64]) -> Reaction,
     {
         let motion = PairMotion::from_bodies(context.bodies, pair, context.q_start, &self.displacements);
-        let mut polynomials = motion.list();
-        let polynomials = &mut polynomials[..pair.kind.polynomials()];
+        let mut polynomials = motion.padded_polynomials();
+        let polynomials = &mut polynomials[..pair.kind.polynomial_count()];
         polynomials.iter_mut().for_each(Polynomial::trim);
         if let Some(steer) = context.observer.as_controller() {
-            steer.solve(pair, context.q_start, context.q_end, polynomials);
+            steer.adjust_polynomials(pair, context.q_start, context.q_end, polynomials);
         }
         let time = time_of_impact(self.search, &mut self.counts, self.step, pair, polynomials)?;
         let decision = match time {
-            Time::Found(time) if time <= 1.0 => match motion.normal(time) {
+            ImpactTime::Found(time) if time <= 1.0 => match motion.normal(time) {
                 Some(normal) => Decision::Hit { time, normal },
-                None => Decision::Miss { time: Time::Found(time) },
+                None => Decision::Miss { time: ImpactTime::Found(time) },
             },
             time => Decision::Miss { time },
         };
         let PassContext { pass, bodies, q_start, ref q_end, ref mut observer, .. } = *context;
         let decision = match observer.wanted_pairs() {
             WantedPairs::Calls => {
-                let decision = observer.as_controller().map_or(decision, |steer| steer.decide(pair, decision));
+                let decision = observer.as_controller().map_or(decision, |steer| steer.adjust_decision(pair, decision));
                 observer.observe_detection(&Detection {
                     pass,
                     pair,
@@ -221,7 +221,7 @@ impl Detector {
 
     /// Copies the current end positions of a pair's particles. Returns the particles, possibly with repetitions.
     fn displace(&mut self, bodies: &Bodies, pair: Pair, q_start: &[f64], q_end: &[f64]) -> [usize; 3] {
-        let moved = bodies.particles_of(pair);
+        let moved = bodies.pair_particles(pair);
         for particle in moved {
             set_vector(&mut self.displacements, particle, vector_at(q_end, particle) - vector_at(q_start, particle));
         }

@@ -4,7 +4,7 @@ use fosssim_num::vector::{Vec2, set_vector, vector_at};
 
 /// The constants of every response of a scene.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Law {
+pub(super) struct ResponseConstants {
     /// The time step `dt`.
     pub time_step: f64,
     /// The factor `1/dt` that turns displacements into mean velocities.
@@ -13,7 +13,7 @@ pub(super) struct Law {
     pub factor: f64,
 }
 
-impl Law {
+impl ResponseConstants {
     /// Creates the law for a coefficient of restitution and a time step.
     pub fn new(restitution: f64, time_step: f64) -> Self {
         Self { time_step, rate: 1.0 / time_step, factor: (1.0 + restitution) / 2.0 }
@@ -29,11 +29,11 @@ impl Law {
 
 /// The input of a response.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Setting<'a> {
+pub(super) struct ResponseInput<'a> {
     /// The constants of the scene.
     pub bodies: &'a Bodies,
     /// The law of impact.
-    pub law: &'a Law,
+    pub law: &'a ResponseConstants,
     /// The positions at the start of the step.
     pub q_start: &'a [f64],
     /// The positions at the end of the step, before this response (hybrid: before all responses of the round).
@@ -66,16 +66,16 @@ pub(super) struct Response {
 impl Response {
     /// Applies the response to velocities and end positions.
     pub fn apply(&self, q: &mut [f64], v: &mut [f64]) {
-        self.change(q, |change| change.position);
+        self.change_entries(q, |change| change.position);
         self.apply_velocities(v);
     }
 
     /// Applies the response to velocities only (`simple`).
     pub fn apply_velocities(&self, v: &mut [f64]) {
-        self.change(v, |change| change.velocity);
+        self.change_entries(v, |change| change.velocity);
     }
 
-    fn change(&self, array: &mut [f64], of: fn(&Change) -> Vec2) {
+    fn change_entries(&self, array: &mut [f64], of: fn(&Change) -> Vec2) {
         if let Some(change) = &self.gain {
             set_vector(array, change.particle, vector_at(array, change.particle) + of(change));
         }
@@ -103,7 +103,7 @@ mod tests {
 
     #[test]
     fn the_factor_is_half_of_one_plus_restitution() {
-        let law = Law::new(0.5, 0.25);
+        let law = ResponseConstants::new(0.5, 0.25);
         assert_eq!((law.factor, law.rate), (0.75, 4.0));
     }
 }

@@ -6,20 +6,20 @@ use super::{
     super::{
         bodies::Bodies,
         nearby::NearbyPairs,
-        observer::{Decision, Detection, Impulse, Observer, Pass, Stage, Time, WantedPairs},
+        observer::{Decision, Detection, ImpactTime, Impulse, Observer, Pass, Stage, WantedPairs},
         pair::{PairKind, pair},
         pairs::{PassCursor, is_end},
         state::State,
     },
     particle_edge, particle_half_plane, particle_particle,
-    response::{Law, Response},
+    response::{Response, ResponseConstants},
 };
 use fosssim_num::vector::Vec2;
 
 /// Handles the overlaps at the end of a step; `nearby` finds pairs without a margin.
 pub(super) fn handle<O: Observer>(
     bodies: &Bodies,
-    law: &Law,
+    law: &ResponseConstants,
     nearby: Option<&mut NearbyPairs>,
     q_start: &[f64],
     state: &mut State,
@@ -33,8 +33,8 @@ pub(super) fn handle<O: Observer>(
         WantedPairs::Bytes(_) | WantedPairs::Nothing => nearby.and_then(|nearby| nearby.find(x)),
     };
     let mut looking = RunningPass { pass, bodies, factor: law.factor, q_start, x, v, observer, hits: 0 };
-    for i in 0..bodies.particles() {
-        let [particles, edges, half_planes] = bodies.objects().row(PassCursor::from_first(i));
+    for i in 0..bodies.particle_count() {
+        let [particles, edges, half_planes] = bodies.object_counts().remaining_row(PassCursor::from_first(i));
         if let Some(found) = &mut found {
             let [particles, edges] = found.next(i);
             particles.for_each(|j| looking.try_particles(i, j));
@@ -64,14 +64,14 @@ struct RunningPass<'a, O> {
 impl<O: Observer> RunningPass<'_, O> {
     fn try_particles(&mut self, i: usize, j: usize) {
         let normal = particle_particle::overlap(self.bodies, self.x, self.v, i, j);
-        self.settle(PairKind::ParticleParticle, i, j, normal, |looking, n| {
+        self.decide_pair(PairKind::ParticleParticle, i, j, normal, |looking, n| {
             particle_particle::simple_response(looking.bodies, looking.factor, looking.v, i, j, n)
         });
     }
 
     fn try_edge(&mut self, i: usize, edge: usize) {
         let normal = particle_edge::overlap(self.bodies, self.x, self.v, i, edge);
-        self.settle(PairKind::ParticleEdge, i, edge, normal, |looking, n| {
+        self.decide_pair(PairKind::ParticleEdge, i, edge, normal, |looking, n| {
             let (bodies, ends) = (looking.bodies, looking.bodies.edges[edge]);
             particle_edge::simple_response(bodies, looking.factor, looking.x, looking.v, i, ends, n)
         });
@@ -79,13 +79,13 @@ impl<O: Observer> RunningPass<'_, O> {
 
     fn try_half_plane(&mut self, i: usize, half_plane: usize) {
         let normal = particle_half_plane::overlap(self.bodies, self.x, self.v, i, half_plane);
-        self.settle(PairKind::ParticleHalfPlane, i, half_plane, normal, |looking, n| {
+        self.decide_pair(PairKind::ParticleHalfPlane, i, half_plane, normal, |looking, n| {
             particle_half_plane::simple_response(looking.factor, looking.v, i, n)
         });
     }
 
     /// Decides a pair, and responds if it collides.
-    fn settle(
+    fn decide_pair(
         &mut self,
         kind: PairKind,
         first: usize,
@@ -94,8 +94,9 @@ impl<O: Observer> RunningPass<'_, O> {
         respond: impl FnOnce(&Self, Vec2) -> Response,
     ) {
         let pair = pair(kind, first, second);
-        let decision = normal.map_or(Decision::Miss { time: Time::None }, |normal| Decision::Hit { time: 0.0, normal });
-        let decision = self.observer.as_controller().map_or(decision, |steer| steer.decide(pair, decision));
+        let decision =
+            normal.map_or(Decision::Miss { time: ImpactTime::None }, |normal| Decision::Hit { time: 0.0, normal });
+        let decision = self.observer.as_controller().map_or(decision, |steer| steer.adjust_decision(pair, decision));
         let (pass, q_start, q_end, velocities) = (self.pass, self.q_start, self.x, &*self.v);
         self.observer.observe_detection(&Detection {
             pass,
@@ -121,7 +122,7 @@ mod tests {
         scene::Collision,
         sim::{
             Observer, RootSearch, Simulation,
-            samples::{Numbers, edge, half_plane, particle, scene},
+            samples::{NumberSource, edge, half_plane, particle, scene},
         },
     };
 
@@ -132,10 +133,10 @@ mod tests {
     /// Omitting pairs that are apart changes no bit.
     #[test]
     fn who_asks_about_no_pair_gets_the_same_velocities() {
-        let mut numbers = Numbers(3);
+        let mut numbers = NumberSource(3);
         let mut balls = Vec::new();
         for _ in 0..80 {
-            let ((x, y), (vx, vy)) = (numbers.pair(), numbers.pair());
+            let ((x, y), (vx, vy)) = (numbers.next_pair(), numbers.next_pair());
             balls.push(particle((2.0 * x, 2.0 * y), (0.1 * vx, 0.1 * vy), 1.0, 0.1));
         }
         let mut scene = scene(balls);

@@ -13,24 +13,24 @@ use super::super::{
 #[derive(Debug, Clone, Default)]
 pub(super) struct Zones {
     particles: Vec<u32>,
-    ends: Vec<usize>,
-    half_planes: Vec<bool>,
-    /// The zone of each particle of the scene, or [`NONE`].
-    zone_of: Vec<u32>,
+    particle_ends: Vec<usize>,
+    has_half_plane: Vec<bool>,
+    /// The zone of each particle of the scene, or [`NO_ZONE`].
+    zone_by_particle: Vec<u32>,
 }
 
-const NONE: u32 = u32::MAX;
+const NO_ZONE: u32 = u32::MAX;
 
 impl Zones {
     /// Returns the number of zones.
     pub fn len(&self) -> usize {
-        self.ends.len()
+        self.particle_ends.len()
     }
 
     /// Returns zone number `index`.
     pub fn get(&self, index: usize) -> Zone<'_> {
-        let start = if index == 0 { 0 } else { self.ends[index - 1] };
-        Zone { particles: &self.particles[start..self.ends[index]], half_plane: self.half_planes[index] }
+        let start = if index == 0 { 0 } else { self.particle_ends[index - 1] };
+        Zone { particles: &self.particles[start..self.particle_ends[index]], half_plane: self.has_half_plane[index] }
     }
 
     /// Returns all zones in order.
@@ -39,7 +39,7 @@ impl Zones {
     }
 
     /// Calls `visit` with the list of all zones; the list is built in `memory`.
-    pub fn show(&self, memory: &mut Vec<Zone<'static>>, visit: impl FnOnce(&[Zone<'_>])) {
+    pub fn visit_all(&self, memory: &mut Vec<Zone<'static>>, visit: impl FnOnce(&[Zone<'_>])) {
         let mut list: Vec<Zone<'_>> = std::mem::take(memory);
         list.extend(self.iter());
         visit(&list);
@@ -54,22 +54,22 @@ impl PartialEq for Zones {
     fn eq(&self, other: &Self) -> bool {
         self.len() == other.len()
             && other.iter().all(|zone| {
-                let here = zone.particles.first().map_or(NONE, |&particle| self.zone_of[particle as usize]);
-                here != NONE && self.get(here as usize) == zone
+                let here = zone.particles.first().map_or(NO_ZONE, |&particle| self.zone_by_particle[particle as usize]);
+                here != NO_ZONE && self.get(here as usize) == zone
             })
     }
 }
 
 /// Joins zones and hits into connected components; memory O(particles + hits).
 #[derive(Debug, Clone, Default)]
-pub(super) struct Builder {
+pub(super) struct ZoneBuilder {
     /// The union-find structure of the scene's particles.
     parents: Vec<u32>,
     /// One particle and the half-plane flag of each set so far, in order.
     sets: Vec<(u32, bool)>,
 }
 
-impl Builder {
+impl ZoneBuilder {
     /// Starts with no sets among `particles` particles.
     pub fn begin(&mut self, particles: usize) {
         self.sets.clear();
@@ -91,7 +91,7 @@ impl Builder {
     /// Appends one zone per hit: the particles of the pair, and the half-plane flag.
     pub fn add_hits(&mut self, bodies: &Bodies, hits: &[Impulse]) {
         for Impulse { pair, .. } in hits {
-            for particle in bodies.particles_of(*pair) {
+            for particle in bodies.pair_particles(*pair) {
                 #[expect(clippy::cast_possible_truncation, reason = "particle indices fit into 32 bits")]
                 self.join(pair.first, particle as u32);
             }
@@ -102,17 +102,18 @@ impl Builder {
     /// Writes the components into `zones`, ordered by the first set of each.
     pub fn finish(&mut self, zones: &mut Zones) {
         let particles = self.parents.len();
-        let Zones { particles: members, ends, half_planes, zone_of } = zones;
+        let Zones { particles: members, particle_ends: ends, has_half_plane: half_planes, zone_by_particle: zone_of } =
+            zones;
         members.clear();
         ends.clear();
         half_planes.clear();
         zone_of.clear();
-        zone_of.resize(particles, NONE);
+        zone_of.resize(particles, NO_ZONE);
         // Roots get their numbers in the order of the sets.
         for index in 0..self.sets.len() {
             let (particle, half_plane) = self.sets[index];
             let root = self.find_root(particle) as usize;
-            if zone_of[root] == NONE {
+            if zone_of[root] == NO_ZONE {
                 #[expect(clippy::cast_possible_truncation, reason = "at most one zone per particle")]
                 let number = half_planes.len() as u32;
                 zone_of[root] = number;
@@ -127,7 +128,7 @@ impl Builder {
             #[expect(clippy::cast_possible_truncation, reason = "particle indices fit into 32 bits")]
             let root = self.find_root(particle as u32) as usize;
             zone_of[particle] = zone_of[root];
-            if zone_of[particle] != NONE {
+            if zone_of[particle] != NO_ZONE {
                 ends[zone_of[particle] as usize] += 1;
             }
         }
@@ -140,7 +141,7 @@ impl Builder {
         }
         members.resize(start, 0);
         for (particle, &zone) in zone_of.iter().enumerate() {
-            if zone != NONE {
+            if zone != NO_ZONE {
                 let end = &mut ends[zone as usize];
                 #[expect(clippy::cast_possible_truncation, reason = "particle indices fit into 32 bits")]
                 let particle = particle as u32;
@@ -171,7 +172,7 @@ mod tests {
     use super::*;
     use crate::sim::{
         pair::Pair,
-        samples::{Numbers, edge, particle, scene},
+        samples::{NumberSource, edge, particle, scene},
     };
     use fosssim_num::vector::Vec2;
 
@@ -186,8 +187,8 @@ mod tests {
     }
 
     fn merged(bodies: &Bodies, before: &Zones, hits: &[Impulse]) -> Zones {
-        let (mut builder, mut zones) = (Builder::default(), Zones::default());
-        builder.begin(bodies.particles());
+        let (mut builder, mut zones) = (ZoneBuilder::default(), Zones::default());
+        builder.begin(bodies.particle_count());
         builder.add_zones(before);
         builder.add_hits(bodies, hits);
         builder.finish(&mut zones);
@@ -253,7 +254,7 @@ mod tests {
 
     #[test]
     fn components_come_in_the_order_of_the_literal_merge() {
-        let mut numbers = Numbers(5);
+        let mut numbers = NumberSource(5);
         let mut below = |bound: u32| ((numbers.next() + 1.0) * 0.5 * f64::from(bound)) as u32;
         for _ in 0..500 {
             let edges: Vec<[usize; 2]> = (0..4).map(|_| [below(12) as usize, below(12) as usize]).collect();

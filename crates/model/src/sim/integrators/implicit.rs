@@ -2,7 +2,7 @@
 //!
 //! The original iterates without limit and hangs if Newton's method does not converge; this step returns
 //! [`StepError::Newton`] instead.
-use super::{Effort, ImplicitScratch, system::System};
+use super::{ImplicitScratch, NewtonWork, system::System};
 use crate::sim::{state::State, step_error::StepError};
 use fosssim_num::{
     tolerances::{NEWTON_ITERATIONS, NEWTON_UPDATE},
@@ -18,7 +18,7 @@ pub(super) fn advance(
     system: &mut System<'_>,
     rhs: &mut [f64],
     scratch: &mut ImplicitScratch,
-    effort: &mut Effort,
+    effort: &mut NewtonWork,
     state: &mut State,
 ) -> Result<(), StepError> {
     let (bodies, h) = (system.bodies, system.h);
@@ -39,7 +39,7 @@ pub(super) fn advance(
         if !effort.iterate() {
             return Err(StepError::Work { step });
         }
-        let ImplicitScratch { x, v, dx, dv, earlier, .. } = &mut *scratch;
+        let ImplicitScratch { x, v, dx, dv, previous_update: earlier, .. } = &mut *scratch;
         if iteration.is_power_of_two() {
             earlier.copy_from_slice(dv);
         } else if iteration > 1 && same_bits(earlier, dv) {

@@ -24,23 +24,23 @@ pub(super) struct Stepper {
     minus_one: f64,
     gradient: Vec<f64>,
     implicit: Option<Box<ImplicitScratch>>,
-    effort: Effort,
+    newton_work: NewtonWork,
 }
 
 /// The work of Newton's method over all steps, in the unit of
 /// [`SearchCounts::work`](super::search::SearchCounts::work). Methods with constant work per step are not counted.
 #[derive(Debug, Clone, Copy)]
-struct Effort {
-    done: u64,
-    most: u64,
-    each: u64,
+struct NewtonWork {
+    performed: u64,
+    limit: u64,
+    per_iteration: u64,
 }
 
-impl Effort {
+impl NewtonWork {
     /// Counts an iteration. Returns whether more are allowed.
     fn iterate(&mut self) -> bool {
-        self.done += self.each;
-        self.done <= self.most
+        self.performed += self.per_iteration;
+        self.performed <= self.limit
     }
 }
 
@@ -48,7 +48,7 @@ impl Effort {
 /// [`SearchCounts::work`](super::search::SearchCounts::work): an iteration of Newton's method, if that is used.
 /// Elimination takes n³ / 3 operations; a detection call takes a few hundred.
 #[must_use]
-pub fn least_work(scene: &Scene) -> u64 {
+pub fn min_work(scene: &Scene) -> u64 {
     if scene.integrator == Integrator::ImplicitEuler { 1 + (2 * scene.particles.len() as u64).pow(3) / 64 } else { 0 }
 }
 
@@ -61,7 +61,7 @@ struct ImplicitScratch {
     v: Vec<f64>,
     dx: Vec<f64>,
     dv: Vec<f64>,
-    earlier: Vec<f64>,
+    previous_update: Vec<f64>,
 }
 
 impl Stepper {
@@ -75,7 +75,7 @@ impl Stepper {
             v: vec![0.0; entries],
             dx: vec![0.0; entries],
             dv: vec![0.0; entries],
-            earlier: vec![0.0; entries],
+            previous_update: vec![0.0; entries],
         };
         let implicit = scene.integrator.is_implicit().then(|| Box::new(scratch()));
         Self {
@@ -86,18 +86,18 @@ impl Stepper {
             minus_one: std::hint::black_box(-1.0),
             gradient: vec![0.0; entries],
             implicit,
-            effort: Effort { done: 0, most: u64::MAX, each: least_work(scene) },
+            newton_work: NewtonWork { performed: 0, limit: u64::MAX, per_iteration: min_work(scene) },
         }
     }
 
     /// Returns the work of all steps so far.
     pub fn work(&self) -> u64 {
-        self.effort.done
+        self.newton_work.performed
     }
 
     /// Sets the maximum work over all steps.
     pub fn limit_work(&mut self, most: u64) {
-        self.effort.most = most;
+        self.newton_work.limit = most;
     }
 
     /// Returns whether the method needs the Hessians of the forces.
@@ -121,11 +121,11 @@ impl Stepper {
         let h = self.time_step;
         match (self.kind, self.implicit.as_deref_mut()) {
             (Integrator::ImplicitEuler, Some(scratch)) => {
-                let mut system = System { bodies, forces, h, steer };
-                implicit::advance(step, &mut system, &mut self.gradient, scratch, &mut self.effort, state)?;
+                let mut system = System { bodies, forces, h, controller: steer };
+                implicit::advance(step, &mut system, &mut self.gradient, scratch, &mut self.newton_work, state)?;
             }
             (Integrator::LinearizedImplicitEuler, Some(scratch)) => {
-                let mut system = System { bodies, forces, h, steer };
+                let mut system = System { bodies, forces, h, controller: steer };
                 linearized::advance(&mut system, self.minus_one, &mut self.gradient, scratch, state);
             }
             (Integrator::ExplicitEuler, _) => {
@@ -175,7 +175,7 @@ mod tests {
     use super::*;
     use crate::{
         scene::{Force, Particle},
-        sim::samples::{fix, particle, scene},
+        sim::samples::{fixed_copy, particle, scene},
     };
     use fosssim_num::vector::Vec2;
 
@@ -191,7 +191,7 @@ mod tests {
     #[test]
     fn positions_use_the_old_velocity_and_a_fixed_particle_keeps_moving() {
         let particles =
-            vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), fix(particle((5.0, 0.0), (0.0, 3.0), 1.0, 0.1))];
+            vec![particle((0.0, 0.0), (1.0, 0.0), 2.0, 0.1), fixed_copy(particle((5.0, 0.0), (0.0, 3.0), 1.0, 0.1))];
         let state = advanced(Integrator::ExplicitEuler, particles);
         assert_eq!(state.positions, [0.5, 0.0, 5.0, 1.5]);
         assert_eq!(state.velocities, [2.0, 0.0, 0.0, 3.0]);

@@ -13,7 +13,7 @@ pub(super) struct System<'a> {
     /// The time step.
     pub h: f64,
     /// Receives each matrix before it is solved, and may replace it.
-    pub steer: Option<&'a mut dyn StepController>,
+    pub controller: Option<&'a mut dyn StepController>,
 }
 
 impl System<'_> {
@@ -21,7 +21,7 @@ impl System<'_> {
     pub fn solve(&mut self, scratch: &mut ImplicitScratch, rhs: &mut [f64]) {
         let ImplicitScratch { matrix, workspace, x, v, .. } = scratch;
         assemble(matrix, self.bodies, self.forces, self.h, x, v);
-        if let Some(steer) = &mut self.steer {
+        if let Some(steer) = &mut self.controller {
             steer.observe_system(matrix.as_mut_slice());
         }
         linear::solve(matrix.as_mut_slice(), rhs, workspace);
@@ -56,13 +56,15 @@ mod tests {
     use super::*;
     use crate::{
         scene::Force,
-        sim::samples::{fix, particle, scene},
+        sim::samples::{fixed_copy, particle, scene},
     };
 
     #[test]
     fn drag_and_mass_stand_on_the_diagonal_and_a_fixed_particle_has_the_identity() {
-        let mut scene =
-            scene(vec![particle((0.0, 0.0), (0.0, 0.0), 2.0, 0.1), fix(particle((1.0, 0.0), (0.0, 0.0), 3.0, 0.1))]);
+        let mut scene = scene(vec![
+            particle((0.0, 0.0), (0.0, 0.0), 2.0, 0.1),
+            fixed_copy(particle((1.0, 0.0), (0.0, 0.0), 3.0, 0.1)),
+        ]);
         scene.forces.push(Force::Drag { coefficient: 0.5 });
         let (bodies, forces) = (Bodies::new(&scene), Forces::new(&scene));
         let mut matrix = DMatrix::zeros(4, 4);

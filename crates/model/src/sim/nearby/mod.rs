@@ -29,24 +29,24 @@ const MIN_PAIRS: usize = 1 << 10;
 pub(super) struct NearbyPairs {
     radii: Vec<f64>,
     /// The strips, by descending size.
-    sizes: Vec<Strips>,
+    size_classes: Vec<Strips>,
     edges: Vec<Edge>,
     margin: f64,
-    most: usize,
-    particles: Vec<Numbers>,
-    edge_pairs: Vec<Numbers>,
-    tested: u64,
+    max_pairs: usize,
+    particles: Vec<IndexPair>,
+    edge_pairs: Vec<IndexPair>,
+    tested_count: u64,
 }
 
 /// Two 32-bit numbers in one, with the first in the high bits, so that lists sort by the first.
-type Numbers = u64;
+type IndexPair = u64;
 
-const fn numbers(first: u32, second: u32) -> Numbers {
+const fn pack_indices(first: u32, second: u32) -> IndexPair {
     (first as u64) << 32 | second as u64
 }
 
 /// Returns both numbers.
-fn differ_by(numbers: Numbers) -> [usize; 2] {
+fn unpack_indices(numbers: IndexPair) -> [usize; 2] {
     [(numbers >> 32) as usize, (numbers & u64::from(u32::MAX)) as usize]
 }
 
@@ -54,24 +54,25 @@ fn differ_by(numbers: Numbers) -> [usize; 2] {
 /// margin.
 #[derive(Debug)]
 pub(super) struct NearRows<'a> {
-    particles: &'a [Numbers],
-    edges: &'a [Numbers],
+    particles: &'a [IndexPair],
+    edges: &'a [IndexPair],
 }
 
 impl<'a> NearRows<'a> {
     /// Returns the later particles, and the edges, near a particle. Must be called for particles in order.
     pub fn next(&mut self, particle: usize) -> [impl Iterator<Item = usize> + use<'a>; 2] {
         [&mut self.particles, &mut self.edges].map(|list| {
-            let (own, later) = list.split_at(list.iter().take_while(|&&pair| differ_by(pair)[0] <= particle).count());
+            let (own, later) =
+                list.split_at(list.iter().take_while(|&&pair| unpack_indices(pair)[0] <= particle).count());
             *list = later;
-            own.iter().map(|&pair| differ_by(pair)[1])
+            own.iter().map(|&pair| unpack_indices(pair)[1])
         })
     }
 }
 
 impl NearbyPairs {
     /// Creates the search for the particles and edges of a scene, if it is cheaper than a check of all pairs.
-    pub fn for_many(scene: &Scene, margin: f64) -> Option<Self> {
+    pub fn for_large_scene(scene: &Scene, margin: f64) -> Option<Self> {
         let particles = scene.particles.len();
         (particles * (particles / 2 + scene.edges.len()) >= MIN_PAIRS).then(|| Self::new(scene, margin))
     }
@@ -94,38 +95,56 @@ impl NearbyPairs {
         }
         let most = MAX_PAIRS_PER_OBJECT * (scene.particles.len() + scene.edges.len());
         let (particles, edge_pairs) = (Vec::new(), Vec::new());
-        Self { radii, sizes, edges: scene.edges.clone(), margin, most, particles, edge_pairs, tested: 0 }
+        Self {
+            radii,
+            size_classes: sizes,
+            edges: scene.edges.clone(),
+            margin,
+            max_pairs: most,
+            particles,
+            edge_pairs,
+            tested_count: 0,
+        }
     }
 
     /// Finds the pairs at positions `x` (2N). Returns `None` if there are too many to keep; the caller then checks all
     /// pairs.
     pub fn find(&mut self, x: &[f64]) -> Option<NearRows<'_>> {
-        let Self { radii, sizes, edges, margin, most, particles, edge_pairs, tested } = self;
+        let Self {
+            radii,
+            size_classes: sizes,
+            edges,
+            margin,
+            max_pairs: most,
+            particles,
+            edge_pairs,
+            tested_count: tested,
+        } = self;
         particles.clear();
         edge_pairs.clear();
         sizes.iter_mut().for_each(|size| size.update(x));
         let mut keep = |one: &PlacedParticle, other: &PlacedParticle| {
             let [first, second] = [one, other].map(|entry| radii[entry.particle as usize]);
-            if !is_beyond(other.place - one.place, (first + second) + *margin) {
+            if !is_beyond(other.position - one.position, (first + second) + *margin) {
                 let (one, other) = (one.particle, other.particle);
-                particles.push(numbers(one.min(other), one.max(other)));
+                particles.push(pack_indices(one.min(other), one.max(other)));
             }
             particles.len() <= *most
         };
         for (index, size) in sizes.iter().enumerate() {
-            *tested += size.pairs(&mut keep);
+            *tested += size.visit_pairs(&mut keep);
             for smaller in &sizes[index + 1..] {
                 for one in size.entries() {
                     let reach = (radii[one.particle as usize] + smaller.radius()) + *margin;
-                    if let Some(rectangle) = enclosing([one.place; 2], reach) {
-                        *tested += smaller.within(rectangle, everywhere, |other| keep(one, other));
+                    if let Some(rectangle) = enclosing_rectangle([one.position; 2], reach) {
+                        *tested += smaller.visit_rectangle(rectangle, full_range, |other| keep(one, other));
                     }
                 }
             }
         }
         for (index, &edge) in edges.iter().enumerate() {
             for size in sizes.iter() {
-                *tested += near_edge(size, radii, index, edge, *margin, x, edge_pairs);
+                *tested += add_particles_near_edge(size, radii, index, edge, *margin, x, edge_pairs);
             }
             if edge_pairs.len() > *most {
                 return None;
@@ -142,7 +161,7 @@ impl NearbyPairs {
     /// Returns the number of tested pairs so far, which is the work of all searches.
     #[cfg(test)]
     pub fn tested(&self) -> u64 {
-        self.tested
+        self.tested_count
     }
 }
 
@@ -157,7 +176,7 @@ pub(super) fn is_beyond(n: Vec2, reach: f64) -> bool {
 }
 
 /// Returns a range that includes every part of a row.
-fn everywhere(_: [f64; 2]) -> [f64; 2] {
+fn full_range(_: [f64; 2]) -> [f64; 2] {
     [f64::NEG_INFINITY, f64::INFINITY]
 }
 
@@ -172,7 +191,7 @@ const MIN_REACH: f64 = 1e-150;
 
 /// Returns the rectangle of all points that are at most `reach` from the line between two points; `None` if it is
 /// empty.
-fn enclosing(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
+fn enclosing_rectangle(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
     if !(reach > 0.0) {
         return None;
     }
@@ -184,18 +203,18 @@ fn enclosing(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
 }
 
 /// Adds the particles of a size class that an edge may reach.
-fn near_edge(
+fn add_particles_near_edge(
     size: &Strips,
     radii: &[f64],
     index: usize,
     edge: Edge,
     margin: f64,
     x: &[f64],
-    found: &mut Vec<Numbers>,
+    found: &mut Vec<IndexPair>,
 ) -> u64 {
     let ends = [vector_at(x, edge.first), vector_at(x, edge.second)];
     let reach = (size.radius() + edge.radius) + margin;
-    let Some(rectangle) = enclosing(ends, reach) else { return 0 };
+    let Some(rectangle) = enclosing_rectangle(ends, reach) else { return 0 };
     let [x2, x3] = ends;
     let x32 = x3 - x2;
     let (squared, room) = (x32.dot(&x32), widen(reach, ends));
@@ -210,13 +229,13 @@ fn near_edge(
         }
     };
     #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
-    size.within(rectangle, narrow, |entry| {
-        let (particle, x1) = (entry.particle, entry.place);
+    size.visit_rectangle(rectangle, narrow, |entry| {
+        let (particle, x1) = (entry.particle, entry.position);
         if edge.first != particle as usize && edge.second != particle as usize {
             // Computed like the forces do; NaN is kept.
             let alpha = ((x1 - x2).dot(&x32) / squared).clamp(0.0, 1.0);
             if !is_beyond((x2 + alpha * x32) - x1, (radii[particle as usize] + edge.radius) + margin) {
-                found.push(numbers(particle, index as u32));
+                found.push(pack_indices(particle, index as u32));
             }
         }
         true

@@ -22,7 +22,7 @@ const LAST_ROW: i64 = i64::MAX - 8;
 #[derive(Debug, Clone, Copy)]
 pub(super) struct PlacedParticle {
     row: i64,
-    pub place: Vec2,
+    pub position: Vec2,
     pub particle: u32,
 }
 
@@ -64,7 +64,7 @@ impl Strips {
         let radius = members.iter().map(|member| member.1).fold(f64::NEG_INFINITY, f64::max);
         let reach = (radius + radius) + margin;
         let zero = Vec2::zeros();
-        let entry = |&(particle, _): &(u32, f64)| PlacedParticle { row: 0, place: zero, particle };
+        let entry = |&(particle, _): &(u32, f64)| PlacedParticle { row: 0, position: zero, particle };
         Self {
             entries: members.iter().map(entry).collect(),
             rows: Vec::new(),
@@ -90,14 +90,14 @@ impl Strips {
     pub fn update(&mut self, x: &[f64]) {
         for entry in &mut self.entries {
             let place = vector_at(x, entry.particle as usize);
-            (entry.row, entry.place) = if place.x.is_finite() && place.y.is_finite() {
+            (entry.row, entry.position) = if place.x.is_finite() && place.y.is_finite() {
                 (row_of(place.y, self.density), place)
             } else {
                 (i64::MAX, Vec2::new(f64::INFINITY, f64::INFINITY))
             };
         }
         sort(&mut self.entries);
-        let placed = self.entries.iter().rposition(|entry| entry.place.x.is_finite()).map_or(0, |last| last + 1);
+        let placed = self.entries.iter().rposition(|entry| entry.position.x.is_finite()).map_or(0, |last| last + 1);
         self.rows.clear();
         for (index, entry) in self.entries[..placed].iter().enumerate() {
             match self.rows.last_mut() {
@@ -109,7 +109,7 @@ impl Strips {
 
     /// Calls `visit` for all pairs that may reach each other, each once, until it returns false. Returns the number of
     /// tested pairs.
-    pub fn pairs(&self, mut visit: impl FnMut(&PlacedParticle, &PlacedParticle) -> bool) -> u64 {
+    pub fn visit_pairs(&self, mut visit: impl FnMut(&PlacedParticle, &PlacedParticle) -> bool) -> u64 {
         // If the reach is negative or NaN, no pair is near.
         if !(self.reach > 0.0) {
             return 0;
@@ -120,7 +120,7 @@ impl Strips {
             for (number, one) in own.iter().enumerate() {
                 for other in &own[number + 1..] {
                     tested += 1;
-                    let n = other.place - one.place;
+                    let n = other.position - one.position;
                     if n.x > self.width {
                         break;
                     }
@@ -134,12 +134,12 @@ impl Strips {
                 let others = &self.entries[above.start..above.end];
                 let mut first = 0;
                 for one in own {
-                    while others.get(first).is_some_and(|other| one.place.x - other.place.x > self.width) {
+                    while others.get(first).is_some_and(|other| one.position.x - other.position.x > self.width) {
                         first += 1;
                     }
                     for other in &others[first..] {
                         tested += 1;
-                        let n = other.place - one.place;
+                        let n = other.position - one.position;
                         if n.x > self.width {
                             break;
                         }
@@ -154,7 +154,7 @@ impl Strips {
     }
 
     /// Returns the lowest and the highest y of a row, slightly widened.
-    fn heights(&self, row: i64) -> [f64; 2] {
+    fn row_bounds(&self, row: i64) -> [f64; 2] {
         let height = |row: i64| match row {
             ..=FIRST_ROW => f64::NEG_INFINITY,
             LAST_ROW.. => f64::INFINITY,
@@ -168,7 +168,7 @@ impl Strips {
     ///
     /// `narrow` may shorten a row: it receives the lowest and the highest y of a row, and returns the part of the
     /// rectangle's width that counts there.
-    pub fn within(
+    pub fn visit_rectangle(
         &self,
         rectangle: Rectangle,
         narrow: impl Fn([f64; 2]) -> [f64; 2],
@@ -180,10 +180,10 @@ impl Strips {
         let mut seen = 0;
         for row in self.rows[first..].iter().take_while(|row| row.number <= highest) {
             let entries = &self.entries[row.start..row.end];
-            let [from, to] = narrow(self.heights(row.number));
+            let [from, to] = narrow(self.row_bounds(row.number));
             let (from, to) = (low.x.max(from), high.x.min(to));
-            let first = entries.partition_point(|entry| entry.place.x < from);
-            for entry in entries[first..].iter().take_while(|entry| entry.place.x <= to) {
+            let first = entries.partition_point(|entry| entry.position.x < from);
+            for entry in entries[first..].iter().take_while(|entry| entry.position.x <= to) {
                 seen += 1;
                 if !visit(entry) {
                     return seen;
@@ -205,7 +205,7 @@ fn row_of(y: f64, density: f64) -> i64 {
 /// library.
 fn sort(entries: &mut [PlacedParticle]) {
     let is_before = |one: &PlacedParticle, other: &PlacedParticle| {
-        one.row < other.row || one.row == other.row && one.place.x < other.place.x
+        one.row < other.row || one.row == other.row && one.position.x < other.position.x
     };
     // In a large scene a few percent of the entries change rows in a step, and pass all entries between.
     let mut moves = 8 * entries.len();
@@ -217,7 +217,7 @@ fn sort(entries: &mut [PlacedParticle]) {
         while place > 0 && is_before(&entry, &entries[place - 1]) {
             if moves == 0 {
                 entries[place] = entry;
-                entries.sort_unstable_by(|a, b| a.row.cmp(&b.row).then(a.place.x.total_cmp(&b.place.x)));
+                entries.sort_unstable_by(|a, b| a.row.cmp(&b.row).then(a.position.x.total_cmp(&b.position.x)));
                 return;
             }
             entries[place] = entries[place - 1];

@@ -5,16 +5,16 @@ use crate::sim::{
     forces::PenaltyPairs,
     pair::{Pair, PairKind, pair},
     pairs,
-    samples::{Numbers, edge, half_plane, particle, scene},
+    samples::{NumberSource, edge, half_plane, particle, scene},
 };
 use fosssim_num::vector::length;
 
 /// Leaving out the square root never changes the outcome of the distance test, at and around equality.
 #[test]
 fn the_early_way_out_agrees_with_the_test_by_length() {
-    let mut numbers = Numbers(1);
+    let mut numbers = NumberSource(1);
     for _ in 0..20_000 {
-        let (x, y) = numbers.pair();
+        let (x, y) = numbers.next_pair();
         let scale = if numbers.next() < 0.0 { 1.0 } else { 1e-160 };
         let n = Vec2::new(x * scale, y * scale);
         let l = length(n);
@@ -26,14 +26,14 @@ fn the_early_way_out_agrees_with_the_test_by_length() {
 
 /// Bodies of many sizes at all scales, some at the same places, some nowhere.
 fn crowd(seed: u64) -> (Scene, f64) {
-    let mut numbers = Numbers(seed);
-    let pick = |numbers: &mut Numbers, count: f64| ((numbers.next() + 1.0) / 2.0 * count) as usize;
+    let mut numbers = NumberSource(seed);
+    let pick = |numbers: &mut NumberSource, count: f64| ((numbers.next() + 1.0) / 2.0 * count) as usize;
     let scale = [1.0, 1e-160, 1e12, 1e150, 1e-9][pick(&mut numbers, 5.0)];
     let origin = [0.0, 0.0, 1e6 * scale][pick(&mut numbers, 3.0)];
     let spread = [1.0, 5.0, 30.0][pick(&mut numbers, 3.0)];
     let mut particles = Vec::new();
     for _ in 0..40 {
-        let (x, y) = numbers.pair();
+        let (x, y) = numbers.next_pair();
         let radius = scale * [0.1, 0.1, 0.1, 0.02, 2.0, 0.0][pick(&mut numbers, 6.0)];
         let grid = |value: f64| if spread > 20.0 { (value * spread).round() * 0.2 } else { value * spread };
         let place = (origin + scale * grid(x), origin + scale * grid(y));
@@ -87,7 +87,7 @@ fn every_pair_that_is_near_is_found_in_the_order_of_its_detection() {
     for seed in 0..600 {
         let (mut scene, margin) = crowd(seed);
         let mut nearby = NearbyPairs::new(&scene, margin);
-        let mut numbers = Numbers(seed);
+        let mut numbers = NumberSource(seed);
         for _ in 0..3 {
             let x = positions(&scene);
             let near: Vec<Pair> = pairs::pairs(&scene).iter().filter(|&pair| is_near(&scene, margin, pair)).collect();
@@ -108,7 +108,7 @@ fn every_pair_that_is_near_is_found_in_the_order_of_its_detection() {
             visited.retain(|&pair| is_near(&scene, margin, pair));
             assert_eq!(visited, near, "{seed}");
             for particle in &mut scene.particles {
-                let (x, y) = numbers.pair();
+                let (x, y) = numbers.next_pair();
                 particle.position += 0.1 * Vec2::new(x * particle.radius, y * particle.radius);
             }
         }
@@ -118,13 +118,13 @@ fn every_pair_that_is_near_is_found_in_the_order_of_its_detection() {
 
 /// Balls of one size at one density, a few large ones, and walls around them.
 fn box_of(balls: u32) -> Scene {
-    let mut numbers = Numbers(u64::from(balls));
+    let mut numbers = NumberSource(u64::from(balls));
     let half = 0.5 * (f64::from(balls) / 150.0).sqrt();
     let corners = [(-1.0, 1.0), (-1.0, -1.0), (1.0, -1.0), (1.0, 1.0)];
     let mut particles = Vec::new();
     particles.extend(corners.map(|(x, y)| particle((x * (half + 0.5), y * (half + 0.5)), (0.0, 0.0), 1.0, 0.5)));
     for _ in 0..balls {
-        let (x, y) = numbers.pair();
+        let (x, y) = numbers.next_pair();
         particles.push(particle((x * half, y * half), (0.0, 0.0), 1.0, 0.02));
     }
     let mut scene = scene(particles);

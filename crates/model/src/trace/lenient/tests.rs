@@ -26,16 +26,16 @@ fn polynomials_beyond_the_limit_are_counted_and_not_kept() {
     let list: Vec<&[f64]> = polynomials.iter().map(Vec::as_slice).collect();
     let bytes = [record(&list), record(&[&[2.0]])].concat();
     for limit in [0, 1, 4096, 100_000] {
-        let mut reader = Lenient::new(&bytes[..], LAYOUT).with_limit(limit);
+        let mut reader = LenientReader::new(&bytes[..], LAYOUT).with_limit(limit);
         let mut frame = LenientFrame::default();
         reader.next(&mut frame).unwrap();
-        assert!(frame.is_cut() && frame.logged == 60_000 && frame.note.is_none(), "{limit}");
+        assert!(frame.is_cut() && frame.logged_polynomials == 60_000 && frame.note.is_none(), "{limit}");
         // The polynomials in the window are decoded at one go.
         assert!(decode::memory_bytes(&frame.polynomials) <= limit + 4 * super::super::source::WINDOW_BYTES);
         let kept: Vec<&[f64]> = frame.polynomials.iter().collect();
         assert_eq!(kept, list[..kept.len()]);
         reader.next(&mut frame).unwrap();
-        assert_eq!((frame.logged, frame.is_cut(), frame.polynomials.get(0)), (1, false, &[2.0][..]));
+        assert_eq!((frame.logged_polynomials, frame.is_cut(), frame.polynomials.get(0)), (1, false, &[2.0][..]));
         assert!(!reader.has_more());
     }
 }
@@ -44,11 +44,11 @@ fn polynomials_beyond_the_limit_are_counted_and_not_kept() {
 fn a_cut_behind_the_limit_leaves_the_count() {
     let bytes = record(&[[1.0; 6].as_slice(); 60_000]);
     for cut in [bytes.len() - 1, bytes.len() - 48, bytes.len() - 60] {
-        let mut reader = Lenient::new(&bytes[..cut], LAYOUT).with_limit(1000);
+        let mut reader = LenientReader::new(&bytes[..cut], LAYOUT).with_limit(1000);
         let mut frame = LenientFrame::default();
         reader.next(&mut frame).unwrap();
-        assert!(frame.note.is_some() && frame.logged == 60_000, "cut at {cut}");
-        assert_eq!(reader.next(&mut frame).unwrap_err().cause, Unreadable::State);
+        assert!(frame.note.is_some() && frame.logged_polynomials == 60_000, "cut at {cut}");
+        assert_eq!(reader.next(&mut frame).unwrap_err().cause, ReadFailure::State);
     }
 }
 
@@ -56,7 +56,7 @@ fn a_cut_behind_the_limit_leaves_the_count() {
 fn a_monstrous_polynomial_is_kept_in_part() {
     let monster = vec![1.0; 1_000_000];
     let (frame, _) = read(&record(&[&[1.0], &monster, &[2.0]]));
-    assert_eq!((frame.logged, frame.is_cut()), (3, false));
+    assert_eq!((frame.logged_polynomials, frame.is_cut()), (3, false));
     assert_eq!(frame.polynomials.get(1).len(), MAX_KEPT_COEFFICIENTS);
     assert_eq!(frame.polynomials.get(2), [2.0]);
 }
@@ -72,7 +72,7 @@ fn record(polynomials: &[&[f64]]) -> Vec<u8> {
 
 /// Reads one record, and gives the frame and what reading another one stops at.
 fn read(bytes: &[u8]) -> (LenientFrame, ReadStop) {
-    let mut reader = Lenient::from_slice(bytes, LAYOUT);
+    let mut reader = LenientReader::from_slice(bytes, LAYOUT);
     let mut frame = LenientFrame::default();
     reader.next(&mut frame).unwrap();
     let stop = reader.next(&mut LenientFrame::default()).unwrap_err();
@@ -85,11 +85,11 @@ fn a_missing_coefficient_repeats_the_one_before() {
     let (frame, stop) = read(&bytes[..8 + 28 + 4 + 16]);
     let read: Vec<&[f64]> = frame.polynomials.iter().collect();
     assert_eq!(read, [&[1.0, 2.0, 3.0][..], &[4.0, 5.0, 5.0], &[]]);
-    assert!(!frame.plain);
+    assert!(!frame.is_unchanged);
     let note = frame.note.unwrap();
     assert_eq!(note.what, Malformation::SizeBeyondEnd { polynomial: 1, size: 3, left: 16 });
     assert_eq!(note.offset, 36);
-    assert_eq!(stop.cause, Unreadable::State, "a failed stream has not even a state of zero bytes");
+    assert_eq!(stop.cause, ReadFailure::State, "a failed stream has not even a state of zero bytes");
 }
 
 #[test]
@@ -119,19 +119,19 @@ fn polynomials_behind_a_cut_are_empty() {
 fn small_leading_coefficients_are_dropped_and_nan_stops_the_dropping() {
     let bytes = record(&[&[1e-13, -1e-13, 2.0, 0.0], &[0.0, 0.0], &[0.0, f64::NAN, 1.0], &[1e-12]]);
     let mut frame = LenientFrame::default();
-    Lenient::from_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
+    LenientReader::from_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
     let log = &frame.polynomials;
     assert_eq!((log.get(0), log.get(1), log.get(3)), (&[2.0, 0.0][..], &[][..], &[1e-12][..]));
     assert!(log.get(2)[0].is_nan() && log.get(2)[1] == 1.0);
-    assert!(!frame.plain && frame.note.is_none());
+    assert!(!frame.is_unchanged && frame.note.is_none());
 }
 
 #[test]
 fn a_sound_list_is_plain() {
     let bytes = record(&[&[1.0, 0.0], &[], &[f64::NAN; 6], &[2.0; 9]]);
     let mut frame = LenientFrame::default();
-    Lenient::from_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
-    assert!(frame.plain);
+    LenientReader::from_slice(&bytes, LAYOUT).next(&mut frame).unwrap();
+    assert!(frame.is_unchanged);
     assert_eq!(frame.polynomials.get(3), [2.0; 9]);
 }
 
@@ -142,22 +142,22 @@ fn negative_counts_and_sizes_are_zero_and_skip_nothing() {
     bytes[8..12].copy_from_slice(&(-1_i32).to_le_bytes());
     let (frame, stop) = read(&bytes);
     assert_eq!(frame.polynomials.iter().collect::<Vec<_>>(), [&[][..], &[1.0]]);
-    assert_eq!(frame.note.unwrap().what, Malformation::NegativeCount { list: List::Impulses, count: -3 });
-    assert!(!frame.plain);
-    assert_eq!(stop.cause, Unreadable::Impulses, "at the end of the file the count is missing");
+    assert_eq!(frame.note.unwrap().what, Malformation::NegativeCount { list: RecordList::Impulses, count: -3 });
+    assert!(!frame.is_unchanged);
+    assert_eq!(stop.cause, ReadFailure::Impulses, "at the end of the file the count is missing");
 }
 
 #[test]
 fn nonsense_counts_cost_no_memory() {
     let count = |count: i32| count.to_le_bytes();
     let cases = [
-        (vec![count(i32::MAX)], Unreadable::Memory),
-        (vec![count(1000)], Unreadable::Impulses),
-        (vec![count(0), count(i32::MAX)], Unreadable::Memory),
-        (vec![count(0), count(1), count(i32::MAX)], Unreadable::Memory),
+        (vec![count(i32::MAX)], ReadFailure::Memory),
+        (vec![count(1000)], ReadFailure::Impulses),
+        (vec![count(0), count(i32::MAX)], ReadFailure::Memory),
+        (vec![count(0), count(1), count(i32::MAX)], ReadFailure::Memory),
     ];
     for (words, cause) in cases {
-        let stop = Lenient::from_slice(&words.concat(), LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
+        let stop = LenientReader::from_slice(&words.concat(), LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
         assert_eq!(stop.cause, cause);
     }
     let (frame, _) = read(&[count(0), count(1_000_000)].concat());
@@ -171,9 +171,9 @@ fn endless_lists_end_at_the_limit() {
     let heads = [vec![count(i32::MAX)], vec![count(0), count(i32::MAX)], vec![count(0), count(i32::MAX), count(99)]];
     for head in heads {
         let head = head.concat();
-        let mut reader = Lenient::new((&head[..]).chain(std::io::repeat(0)), LAYOUT);
+        let mut reader = LenientReader::new((&head[..]).chain(std::io::repeat(0)), LAYOUT);
         reader.limit = 1 << 20;
-        let expected = if head.len() == 4 { Unreadable::Limit } else { Unreadable::Memory };
+        let expected = if head.len() == 4 { ReadFailure::Limit } else { ReadFailure::Memory };
         assert_eq!(reader.next(&mut LenientFrame::default()).unwrap_err().cause, expected);
         assert!(reader.offset() < 1 << 21);
     }
@@ -187,7 +187,7 @@ fn an_error_of_the_stream_is_named() {
             Err(std::io::Error::other("cable unplugged"))
         }
     }
-    let stop = Lenient::new(Broken, LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
-    assert_eq!(stop.cause, Unreadable::Io);
+    let stop = LenientReader::new(Broken, LAYOUT).next(&mut LenientFrame::default()).unwrap_err();
+    assert_eq!(stop.cause, ReadFailure::Io);
     assert!(stop.to_string().ends_with("reading failed: cable unplugged"), "{stop}");
 }

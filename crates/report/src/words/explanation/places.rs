@@ -15,7 +15,7 @@ pub(crate) fn describe_place(place: &ExamplePlace) -> String {
         ExamplePlace::NumberedPolynomial(number) => format!("polynomial {number}"),
         ExamplePlace::PolynomialCount => "number of polynomials".to_owned(),
         ExamplePlace::Contact { kind, first, second } => {
-            let other = kind.map_or("object of unknown kind", PairKind::second);
+            let other = kind.map_or("object of unknown kind", PairKind::second_name);
             format!("contact of particle {first} and {other} {second}, normal and time")
         }
         ExamplePlace::ContactCount => "number of impulses".to_owned(),

@@ -157,7 +157,7 @@ fn forces_that_are_not_cleared_between_steps_are_named() {
         state.x.iter().chain(&state.v).for_each(|value| bytes.extend(value.to_le_bytes()));
     };
     write(&state);
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         let mut right = state.clone();
         step(&world, &mut right, &mut StepLog::default(), &mut |_, _| ()).expect("a step");
         sum.iter_mut().zip(right.v.iter().zip(&state.v)).for_each(|(sum, (new, old))| *sum += new - old);

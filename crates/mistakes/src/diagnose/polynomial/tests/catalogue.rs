@@ -57,9 +57,9 @@ fn scene(numbers: &mut Numbers, style: Style) -> Scene {
 /// The number of polynomials that a student hands over for a pair.
 fn passed_on(row: &Row, kind: PairKind) -> usize {
     match row.id {
-        "handover-position-only" => kind.polynomials() - 1,
+        "handover-position-only" => kind.polynomial_count() - 1,
         "handover-approach-only" => 1,
-        _ => kind.polynomials(),
+        _ => kind.polynomial_count(),
     }
 }
 

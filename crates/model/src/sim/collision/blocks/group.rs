@@ -18,15 +18,15 @@ use std::ops::Range;
 crate::drops_leading!();
 
 /// The numbers per pair with an edge: its coefficients, the known facts ([`OPEN_BIT`]), and padding.
-pub(super) const EDGE_ROW: usize = 20;
+pub(super) const EDGE_ROW_LENGTH: usize = 20;
 
 /// The index of the known facts in the row of a pair with an edge.
-pub(super) const EDGE_KNOWN: usize = 17;
+pub(super) const EDGE_FACTS_INDEX: usize = 17;
 
 /// The numbers per pair of particles or pair with a half-plane: the parabola's coefficients, the known facts, the
 /// line's coefficients, and padding. A polynomial is read soon after it is stored, which is fast if both access it in
 /// the same pieces.
-pub(super) const TWO_ROW: usize = 8;
+pub(super) const SHORT_ROW_LENGTH: usize = 8;
 
 /// The index of the facts in the row.
 pub(super) const FACTS_INDEX: usize = 3;
@@ -48,7 +48,7 @@ const BIT_SUM_BASE: f64 = (1_u64 << 52) as f64;
 
 /// The pairs of a group of particles with edges and half-planes, as rows of numbers.
 #[derive(Debug, Clone, Default)]
-pub(super) struct Group {
+pub(super) struct PairGroup {
     /// The group's particles.
     pub particles: Range<usize>,
     /// The pairs with edges, edge by edge, and for each edge particle by particle, with room for the lanes that reach
@@ -57,15 +57,15 @@ pub(super) struct Group {
     /// The pairs with half-planes, in the same order.
     pub half_planes: Vec<f64>,
     /// The largest modulus of a coefficient.
-    pub largest: f64,
+    pub largest_modulus: f64,
     /// A bit mask of the particles that a response has moved since their pairs were computed.
-    moved: u32,
+    moved_particles: u32,
     /// Whether a response has moved an edge in this pass; a second response would invalidate the results of other
     /// particles.
     has_moved_edges: bool,
 }
 
-impl Group {
+impl PairGroup {
     /// Removes all pairs, at the start of a pass.
     pub fn clear(&mut self) {
         self.particles = 0..0;
@@ -78,7 +78,7 @@ impl Group {
             self.particles = 0..0;
             self.has_moved_edges = true;
         } else if self.particles.contains(&particle) {
-            self.moved |= 1 << (particle - self.particles.start);
+            self.moved_particles |= 1 << (particle - self.particles.start);
         }
     }
 
@@ -90,42 +90,49 @@ impl Group {
         let mut largest = Lanes::splat(simd, 0.0);
         let is_alone = if self.particles.contains(&first) {
             let lane = 1 << (first - self.particles.start);
-            if self.moved & lane == 0 {
+            if self.moved_particles & lane == 0 {
                 return;
             }
-            self.moved &= !lane;
-            largest = Lanes::splat(simd, self.largest);
+            self.moved_particles &= !lane;
+            largest = Lanes::splat(simd, self.largest_modulus);
             true
         } else {
             self.particles = first..first + if self.has_moved_edges { 1 } else { width };
-            self.moved = 0;
-            self.edges.resize((edges + width) * EDGE_ROW * width + ROW_PADDING, 0.0);
-            self.half_planes.resize(bodies.points.len() * TWO_ROW * width, 0.0);
+            self.moved_particles = 0;
+            self.edges.resize((edges + width) * EDGE_ROW_LENGTH * width + ROW_PADDING, 0.0);
+            self.half_planes.resize(bodies.points.len() * SHORT_ROW_LENGTH * width, 0.0);
             self.has_moved_edges
         };
         if is_alone {
-            largest = self.with_edges(simd, lists, first, edge..edges, largest);
+            largest = self.compute_edges(simd, lists, first, edge..edges, largest);
         } else {
             for edge in 0..edges {
-                largest = self.edge(simd, lists, bodies, edge, largest);
+                largest = self.compute_edge(simd, lists, bodies, edge, largest);
             }
         }
-        self.largest = self.with_half_planes(simd, lists, bodies, largest).largest();
+        self.largest_modulus = self.compute_half_planes(simd, lists, bodies, largest).largest();
     }
 
     /// Computes the pairs of all particles with one edge. Returns the largest moduli so far.
     #[inline(always)]
-    fn edge<S: Simd>(&mut self, simd: S, lists: &Lists, bodies: &Bodies, edge: usize, largest: Lanes<S>) -> Lanes<S> {
+    fn compute_edge<S: Simd>(
+        &mut self,
+        simd: S,
+        lists: &Lists,
+        bodies: &Bodies,
+        edge: usize,
+        largest: Lanes<S>,
+    ) -> Lanes<S> {
         let (x, d, radius) = lists.particles(simd, self.particles.start);
         let motion = lists.edge(simd, bodies.edges[edge]);
         let pair = particle_edge::coefficients(x, d, &motion, radius + Lanes::splat(simd, bodies.edge_radii[edge]));
-        let begin = edge * EDGE_ROW * Lanes::<S>::COUNT;
-        store_edges(simd, &pair, EDGE_ROW, &mut self.edges[begin..], largest)
+        let begin = edge * EDGE_ROW_LENGTH * Lanes::<S>::COUNT;
+        store_edges(simd, &pair, EDGE_ROW_LENGTH, &mut self.edges[begin..], largest)
     }
 
     /// Computes the pairs of one particle with several edges.
     #[inline(always)]
-    fn with_edges<S: Simd>(
+    fn compute_edges<S: Simd>(
         &mut self,
         simd: S,
         lists: &Lists,
@@ -140,8 +147,8 @@ impl Group {
         while edge < edges.end {
             let (motions, edge_radii) = lists.edges(simd, edge);
             let pair = particle_edge::coefficients(x, d, &motions, radius + edge_radii);
-            let begin = (edge * width + lane) * EDGE_ROW;
-            largest = store_edges(simd, &pair, EDGE_ROW * width, &mut self.edges[begin..], largest);
+            let begin = (edge * width + lane) * EDGE_ROW_LENGTH;
+            largest = store_edges(simd, &pair, EDGE_ROW_LENGTH * width, &mut self.edges[begin..], largest);
             edge += width;
         }
         largest
@@ -149,7 +156,7 @@ impl Group {
 
     /// Computes the pairs of all particles with all half-planes.
     #[inline(always)]
-    fn with_half_planes<S: Simd>(
+    fn compute_half_planes<S: Simd>(
         &mut self,
         simd: S,
         lists: &Lists,
@@ -157,12 +164,12 @@ impl Group {
         mut largest: Lanes<S>,
     ) -> Lanes<S> {
         let (x, d, radius) = lists.particles(simd, self.particles.start);
-        for (half_plane, rows) in self.half_planes.chunks_exact_mut(TWO_ROW * Lanes::<S>::COUNT).enumerate() {
+        for (half_plane, rows) in self.half_planes.chunks_exact_mut(SHORT_ROW_LENGTH * Lanes::<S>::COUNT).enumerate() {
             let point = splat_plane(simd, bodies.points[half_plane]);
             let normal = splat_plane(simd, bodies.normals[half_plane]);
             let squared = Lanes::splat(simd, lists.squares[half_plane]);
             let (overlap, approach) = particle_half_plane::coefficients(x, d, radius, point, normal, squared);
-            largest = store(simd, overlap, approach, rows, largest);
+            largest = store_short_rows(simd, overlap, approach, rows, largest);
         }
         largest
     }
@@ -186,7 +193,7 @@ pub(super) fn compute_particles<S: Simd>(
     let (x1, d1, r1) = lists.particle(simd, first);
     let (x2, d2, r2) = lists.particles(simd, second);
     let (overlap, approach) = particle_particle::coefficients(x1, d1, x2, d2, r1 + r2);
-    store(simd, overlap, approach, rows, largest)
+    store_short_rows(simd, overlap, approach, rows, largest)
 }
 
 /// Applies the certificate to pairs with edges, and stores the rows, which are `stride` apart for two lanes. Returns
@@ -218,7 +225,7 @@ fn store_edges<S: Simd>(
 
 /// Applies the certificate to a parabola and a line, and stores the rows.
 #[inline(always)]
-fn store<S: Simd>(
+fn store_short_rows<S: Simd>(
     simd: S,
     overlap: [Lanes<S>; 3],
     approach: [Lanes<S>; 2],
@@ -232,7 +239,7 @@ fn store<S: Simd>(
     for lanes in &all {
         largest = largest.max(lanes.abs());
     }
-    Lanes::store_by_lane(&[[a, b, c, known], [d, e, d, e]], TWO_ROW, rows);
+    Lanes::store_by_lane(&[[a, b, c, known], [d, e, d, e]], SHORT_ROW_LENGTH, rows);
     largest
 }
 

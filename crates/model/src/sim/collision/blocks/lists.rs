@@ -1,5 +1,5 @@
 //! The numbers of a pass: one list per quantity of all particles, from which lanes are loaded.
-use super::{super::particle_edge::EdgeMotions, Setting};
+use super::{super::particle_edge::EdgeMotions, PassInput};
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
     lanes::{Lanes, MAX_LANES, Plane, Simd},
@@ -20,14 +20,14 @@ pub(super) struct Lists {
     /// The squared lengths of the half-planes' normals.
     pub squares: Vec<f64>,
     /// The edges that end in each particle, ascending.
-    own_edges: Vec<Vec<usize>>,
+    particle_edges: Vec<Vec<usize>>,
     /// Whether the constants are moderate.
     has_moderate_constants: bool,
 }
 
 /// The effect of a response on the lists.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum RefreshedBody {
+pub(super) enum RefreshResult {
     /// The particle's end position is the same, bit for bit.
     Same,
     /// The particle's end position has changed.
@@ -44,8 +44,8 @@ type MotionLanes<S> = (Plane<Lanes<S>>, Plane<Lanes<S>>, Lanes<S>);
 
 impl Lists {
     /// Fills all lists. Returns false if an input is too large or NaN.
-    pub fn prepare(&mut self, setting: Setting<'_>) -> bool {
-        let Setting { bodies, q_start, displacements, .. } = setting;
+    pub fn prepare(&mut self, setting: PassInput<'_>) -> bool {
+        let PassInput { bodies, q_start, displacements, .. } = setting;
         // Even an empty list has padding after its end.
         if self.particles[4].is_empty() {
             self.fill_constants(bodies);
@@ -57,25 +57,25 @@ impl Lists {
         {
             (*x, *y, *dx, *dy) = (start[0], start[1], shift[0], shift[1]);
         }
-        repeat_last(&mut self.particles[..4], bodies.particles());
+        repeat_last(&mut self.particles[..4], bodies.particle_count());
         self.has_edges = false;
         self.has_moderate_constants && are_moderate(q_start) && are_moderate(displacements)
     }
 
     /// Copies the current displacement of a particle.
-    pub fn refresh(&mut self, setting: Setting<'_>, particle: usize) -> RefreshedBody {
-        let Setting { bodies, displacements, .. } = setting;
+    pub fn refresh(&mut self, setting: PassInput<'_>, particle: usize) -> RefreshResult {
+        let PassInput { bodies, displacements, .. } = setting;
         let shift = vector_at(displacements, particle);
         let [_, _, dx, dy, _] = &self.particles;
         if [dx[particle], dy[particle]].map(f64::to_bits) == [shift.x, shift.y].map(f64::to_bits) {
-            return RefreshedBody::Same;
+            return RefreshResult::Same;
         }
         if !are_moderate(&[shift.x, shift.y]) {
-            return RefreshedBody::TooLarge;
+            return RefreshResult::TooLarge;
         }
-        store_vector(&mut self.particles[2..4], particle, bodies.particles(), shift);
+        store_vector(&mut self.particles[2..4], particle, bodies.particle_count(), shift);
         if std::mem::replace(&mut self.has_edges, true) {
-            for &edge in &self.own_edges[particle] {
+            for &edge in &self.particle_edges[particle] {
                 for (end, lists) in self.edges.chunks_exact_mut(4).enumerate() {
                     if bodies.edges[edge][end] == particle {
                         store_vector(&mut lists[2..4], edge, bodies.edges.len(), shift);
@@ -92,18 +92,18 @@ impl Lists {
             }
             repeat_last(&mut self.edges[..8], bodies.edges.len());
         }
-        RefreshedBody::Moved { is_end: !self.own_edges[particle].is_empty() }
+        RefreshResult::Moved { is_end: !self.particle_edges[particle].is_empty() }
     }
 
     /// Fills the lists of values that do not change while the scene is simulated.
     fn fill_constants(&mut self, bodies: &Bodies) {
-        let (count, edges) = (bodies.particles(), bodies.edges.len());
-        self.own_edges = vec![Vec::new(); count];
+        let (count, edges) = (bodies.particle_count(), bodies.edges.len());
+        self.particle_edges = vec![Vec::new(); count];
         for (edge, ends) in bodies.edges.iter().enumerate() {
             for &end in ends {
                 // Both ends of an edge may be the same particle.
-                if self.own_edges[end].last() != Some(&edge) {
-                    self.own_edges[end].push(edge);
+                if self.particle_edges[end].last() != Some(&edge) {
+                    self.particle_edges[end].push(edge);
                 }
             }
         }
@@ -120,8 +120,8 @@ impl Lists {
 
     /// Returns the edges that end in a particle, from number `from` on.
     #[inline]
-    pub fn own_edges(&self, particle: usize, from: usize) -> &[usize] {
-        let own = &self.own_edges[particle];
+    pub fn edges_from(&self, particle: usize, from: usize) -> &[usize] {
+        let own = &self.particle_edges[particle];
         &own[own.partition_point(|&edge| edge < from)..]
     }
 

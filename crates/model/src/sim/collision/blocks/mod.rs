@@ -8,21 +8,21 @@
 //! order of the trace, and `settle` decides single pairs and writes their polynomials.
 mod group;
 mod lists;
+mod row_decision;
 mod rows;
-mod settle;
 
 use super::super::{
     bodies::Bodies, observer::Impulse, pairs::PassCursor, polynomial_bytes::PolynomialBytes, search::SearchCounts,
     step_error::StepError,
 };
 use fosssim_num::lanes::Instructions;
-use group::Group;
-use lists::{Lists, RefreshedBody};
-use rows::Pairs;
+use group::PairGroup;
+use lists::{Lists, RefreshResult};
+use rows::HitSearch;
 
 /// The inputs of a pass.
 #[derive(Debug, Clone, Copy)]
-pub(super) struct Setting<'a> {
+pub(super) struct PassInput<'a> {
     /// The constants of the scene.
     pub bodies: &'a Bodies,
     /// The number of the step, from 1.
@@ -41,7 +41,7 @@ pub(super) struct Blocks {
     /// The number of steps of the scene.
     steps: u32,
     lists: Lists,
-    group: Group,
+    group: PairGroup,
 }
 
 impl Blocks {
@@ -51,21 +51,21 @@ impl Blocks {
     }
 
     /// Prepares a pass. Returns false if pairs have to be computed one by one.
-    pub fn prepare(&mut self, setting: Setting<'_>) -> bool {
+    pub fn prepare(&mut self, setting: PassInput<'_>) -> bool {
         self.group.clear();
         self.lists.prepare(setting)
     }
 
     /// Copies the displacements of `moved`. Returns false if the remaining pairs must be computed one by one.
-    pub fn refresh(&mut self, setting: Setting<'_>, moved: [usize; 3]) -> bool {
+    pub fn refresh(&mut self, setting: PassInput<'_>, moved: [usize; 3]) -> bool {
         // Fixed particles do not move, so all results about them are kept.
         moved.into_iter().all(|particle| match self.lists.refresh(setting, particle) {
-            RefreshedBody::Same => true,
-            RefreshedBody::Moved { is_end } => {
+            RefreshResult::Same => true,
+            RefreshResult::Moved { is_end } => {
                 self.group.invalidate(particle, is_end);
                 true
             }
-            RefreshedBody::TooLarge => false,
+            RefreshResult::TooLarge => false,
         })
     }
 
@@ -73,17 +73,17 @@ impl Blocks {
     ///
     /// # Errors
     /// Fails with [`StepError::RootSearch`] if a root search would never end.
-    pub fn next_hit(
+    pub fn find_next_hit(
         &mut self,
-        setting: Setting<'_>,
+        setting: PassInput<'_>,
         place: &mut PassCursor,
         counts: &mut SearchCounts,
         bytes: Option<&mut PolynomialBytes>,
     ) -> Result<Option<Impulse>, StepError> {
         let Self { instructions, steps, lists, group } = self;
-        let pairs = || u64::from(*steps).saturating_mul(setting.bodies.pairs() as u64);
+        let pairs = || u64::from(*steps).saturating_mul(setting.bodies.estimate_pair_count() as u64);
         let instructions = instructions.get_or_insert_with(|| Instructions::for_pairs(pairs()));
-        instructions.run(Pairs { lists, group, setting, place, counts, bytes })
+        instructions.run(HitSearch { lists, group, setting, cursor: place, counts, bytes })
     }
 }
 

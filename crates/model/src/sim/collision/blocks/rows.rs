@@ -1,8 +1,10 @@
 //! Processes all pairs in the order of the trace, particle by particle.
 use super::{
-    Group, Lists, Setting,
-    group::{EDGE_KNOWN, EDGE_ROW, FACTS_INDEX, OPEN_BIT, ROW_PADDING, TWO_ROW, compute_particles},
-    settle::{EDGE_BYTES, LoggedRows, TWO_BYTES, decide_edge, decide_two},
+    Lists, PairGroup, PassInput,
+    group::{
+        EDGE_FACTS_INDEX, EDGE_ROW_LENGTH, FACTS_INDEX, OPEN_BIT, ROW_PADDING, SHORT_ROW_LENGTH, compute_particles,
+    },
+    row_decision::{LoggedRows, MAX_EDGE_BYTES, MAX_TWO_POLYNOMIAL_BYTES, decide_edge, decide_two_polynomials},
 };
 use crate::sim::{
     observer::Impulse,
@@ -16,73 +18,82 @@ use fosssim_num::lanes::{Lanes, MAX_LANES, Simd, Work};
 use std::ops::Range;
 
 /// The pairs from a position on, up to the next hit.
-pub(super) struct Pairs<'a> {
+pub(super) struct HitSearch<'a> {
     pub lists: &'a Lists,
-    pub group: &'a mut Group,
-    pub setting: Setting<'a>,
-    pub place: &'a mut PassCursor,
+    pub group: &'a mut PairGroup,
+    pub setting: PassInput<'a>,
+    pub cursor: &'a mut PassCursor,
     pub counts: &'a mut SearchCounts,
     pub bytes: Option<&'a mut PolynomialBytes>,
 }
 
 /// Memory for the rows of a block of particles.
-type Rows = [f64; TWO_ROW * MAX_LANES];
+type Rows = [f64; SHORT_ROW_LENGTH * MAX_LANES];
 
-impl Work for Pairs<'_> {
+impl Work for HitSearch<'_> {
     type Output = Result<Option<Impulse>, StepError>;
 
     #[inline(always)]
     fn run<S: Simd>(mut self, simd: S) -> Self::Output {
         let bodies = self.setting.bodies;
-        let particles = bodies.particles();
-        let mut rows = [0.0; TWO_ROW * MAX_LANES];
-        while self.place.first < particles {
-            let first = self.place.first;
-            let pairs = TWO_BYTES * (particles - first + bodies.points.len()) + EDGE_BYTES * bodies.edges.len();
+        let particles = bodies.particle_count();
+        let mut rows = [0.0; SHORT_ROW_LENGTH * MAX_LANES];
+        while self.cursor.first < particles {
+            let first = self.cursor.first;
+            let pairs = MAX_TWO_POLYNOMIAL_BYTES * (particles - first + bodies.points.len())
+                + MAX_EDGE_BYTES * bodies.edges.len();
             let mut bytes = self.bytes.take();
             let room = bytes.as_mut().map_or(&mut [][..], |bytes| bytes.reserve(pairs));
             let mut output = LoggedRows::new(room);
-            let ends = self.row(simd, &mut rows, &mut output);
-            let LoggedRows { used, polynomials, excluded, largest, found, .. } = output;
+            let ends = self.process_row(simd, &mut rows, &mut output);
+            let LoggedRows {
+                used_bytes: used, polynomial_count: polynomials, excluded, largest, result: found, ..
+            } = output;
             self.counts.calls += excluded;
             self.counts.excluded += excluded;
             if let Some(bytes) = &mut bytes {
                 bytes.count_added(used, polynomials);
-                bytes.raise(largest.max(self.group.largest));
+                bytes.raise_max_modulus(largest.max(self.group.largest_modulus));
             }
             self.bytes = bytes;
             if ends {
                 return found;
             }
-            *self.place = PassCursor::from_first(first + 1);
+            *self.cursor = PassCursor::from_first(first + 1);
         }
         Ok(None)
     }
 }
 
-impl Pairs<'_> {
+impl HitSearch<'_> {
     /// Computes the rest of the pairs of one particle. Returns whether the output contains a result; after a hit the
     /// position is that of the next pair.
     #[inline(always)]
-    fn row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut LoggedRows<'_>) -> bool {
-        let first = self.place.first;
-        let [particles, edges, half_planes] = self.setting.bodies.objects().row(*self.place);
-        if self.particles(simd, first, (particles, rows), output) {
+    fn process_row<S: Simd>(&mut self, simd: S, rows: &mut Rows, output: &mut LoggedRows<'_>) -> bool {
+        let first = self.cursor.first;
+        let [particles, edges, half_planes] = self.setting.bodies.object_counts().remaining_row(*self.cursor);
+        if self.decide_particles(simd, first, (particles, rows), output) {
             return true;
         }
         if edges.is_empty() && half_planes.is_empty() {
             return false;
         }
         self.group.ensure_computed(simd, self.lists, self.setting.bodies, first, edges.start);
-        self.edges(simd, first, edges, output) || self.half_planes(simd, first, half_planes, output)
+        self.decide_edges(simd, first, edges, output) || self.decide_half_planes(simd, first, half_planes, output)
     }
 
     /// Decides the pairs of a particle with the edges `seconds`, except those that end in it.
     #[inline(always)]
-    fn edges<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
+    fn decide_edges<S: Simd>(
+        &mut self,
+        _: S,
+        first: usize,
+        seconds: Range<usize>,
+        output: &mut LoggedRows<'_>,
+    ) -> bool {
         let width = Lanes::<S>::COUNT;
         let lane = first - self.group.particles.start;
-        let mut own = self.lists.own_edges(first, seconds.start);
+        let mut own = self.lists.edges_from(first, seconds.start);
         for edge in seconds {
             if let [skipped, others @ ..] = own
                 && *skipped == edge
@@ -90,9 +101,11 @@ impl Pairs<'_> {
                 own = others;
                 continue;
             }
-            let Some(row) = self.group.edges[(edge * width + lane) * EDGE_ROW..].first_chunk() else { return false };
+            let Some(row) = self.group.edges[(edge * width + lane) * EDGE_ROW_LENGTH..].first_chunk() else {
+                return false;
+            };
             let (pair, with) = (pair(PairKind::ParticleEdge, first, edge), (&self.setting, &mut *self.counts));
-            if compute_edge(pair, row, with, self.place, output) {
+            if compute_edge(pair, row, with, self.cursor, output) {
                 return true;
             }
         }
@@ -101,13 +114,19 @@ impl Pairs<'_> {
 
     /// Decides the pairs of a particle with the half-planes `seconds`.
     #[inline(always)]
-    fn half_planes<S: Simd>(&mut self, _: S, first: usize, seconds: Range<usize>, output: &mut LoggedRows<'_>) -> bool {
+    fn decide_half_planes<S: Simd>(
+        &mut self,
+        _: S,
+        first: usize,
+        seconds: Range<usize>,
+        output: &mut LoggedRows<'_>,
+    ) -> bool {
         let width = Lanes::<S>::COUNT;
         let lane = first - self.group.particles.start;
-        let rows = self.group.half_planes.as_chunks::<TWO_ROW>().0;
+        let rows = self.group.half_planes.as_chunks::<SHORT_ROW_LENGTH>().0;
         for second in seconds {
             let (pair, with) = (pair(PairKind::ParticleHalfPlane, first, second), (&self.setting, &mut *self.counts));
-            if compute_two(pair, &rows[second * width + lane], with, self.place, output) {
+            if compute_two_polynomials(pair, &rows[second * width + lane], with, self.cursor, output) {
                 return true;
             }
         }
@@ -116,7 +135,7 @@ impl Pairs<'_> {
 
     /// Decides the pairs of a particle with the particles `seconds`.
     #[inline(always)]
-    fn particles<S: Simd>(
+    fn decide_particles<S: Simd>(
         &mut self,
         simd: S,
         first: usize,
@@ -132,7 +151,7 @@ impl Pairs<'_> {
             for (row, second) in rows.as_chunks().0[..width].iter().zip(block..seconds.end) {
                 let (pair, with) =
                     (pair(PairKind::ParticleParticle, first, second), (&self.setting, &mut *self.counts));
-                ends = compute_two(pair, row, with, self.place, output);
+                ends = compute_two_polynomials(pair, row, with, self.cursor, output);
                 if ends {
                     break;
                 }
@@ -149,12 +168,12 @@ impl Pairs<'_> {
 #[inline(always)]
 fn compute_edge(
     pair: Pair,
-    row: &[f64; EDGE_ROW + ROW_PADDING],
-    with: (&Setting<'_>, &mut SearchCounts),
+    row: &[f64; EDGE_ROW_LENGTH + ROW_PADDING],
+    with: (&PassInput<'_>, &mut SearchCounts),
     place: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
-    let known = row[EDGE_KNOWN].to_bits();
+    let known = row[EDGE_FACTS_INDEX].to_bits();
     let ends =
         known & OPEN_BIT != 0 && output.decide(with.1, |counts| decide_edge(with.0, counts, pair, row), pair, place);
     if known & OPEN_BIT == 0 {
@@ -167,19 +186,19 @@ fn compute_edge(
 /// Decides a particle-particle or particle-half-plane pair and writes its polynomials. Returns whether the output
 /// contains a result.
 #[inline(always)]
-fn compute_two(
+fn compute_two_polynomials(
     pair: Pair,
-    row: &[f64; TWO_ROW],
-    with: (&Setting<'_>, &mut SearchCounts),
+    row: &[f64; SHORT_ROW_LENGTH],
+    with: (&PassInput<'_>, &mut SearchCounts),
     place: &mut PassCursor,
     output: &mut LoggedRows<'_>,
 ) -> bool {
     let known = row[FACTS_INDEX].to_bits();
-    let ends =
-        known & OPEN_BIT != 0 && output.decide(with.1, |counts| decide_two(with.0, counts, pair, row), pair, place);
+    let ends = known & OPEN_BIT != 0
+        && output.decide(with.1, |counts| decide_two_polynomials(with.0, counts, pair, row), pair, place);
     if known & OPEN_BIT == 0 {
         output.excluded += 1;
     }
-    output.write_two(row, known >> 1);
+    output.write_two_polynomials(row, known >> 1);
     ends
 }

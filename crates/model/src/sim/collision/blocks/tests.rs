@@ -3,7 +3,7 @@ use crate::{
     scene::{Collision, Scene},
     sim::{
         Impulse, Observer, PolynomialBytes, RootSearch, Simulation, State, WantedPairs,
-        samples::{Numbers, edge, fix, half_plane, particle, scene},
+        samples::{NumberSource, edge, fixed_copy, half_plane, particle, scene},
     },
 };
 
@@ -37,10 +37,10 @@ impl Observer for Log {
 
 /// Steps a scene both ways and compares everything that comes of it. Gives the number of pairs.
 fn compare(scene: &Scene) -> u64 {
-    let [mut lanes, mut single] = [(); 2].map(|()| Simulation::new(scene, RootSearch::WhereNeeded));
+    let [mut lanes, mut single] = [(); 2].map(|()| Simulation::new(scene, RootSearch::OnDemand));
     single.disable_lanes();
     let [mut quick, mut slow] = [(); 2].map(|()| Log::default());
-    for _ in 0..scene.steps() {
+    for _ in 0..scene.step_count() {
         let results = [lanes.step(&mut quick), single.step(&mut slow)];
         assert_eq!(results[0], results[1]);
         assert_eq!(lanes.search_counts(), single.search_counts());
@@ -56,19 +56,19 @@ fn compare(scene: &Scene) -> u64 {
 }
 
 /// Some particles, of which some rest, some are fixed and some move together, with edges and half-planes.
-fn crowd(numbers: &mut Numbers, size: f64, collision: Collision) -> Scene {
+fn crowd(numbers: &mut NumberSource, size: f64, collision: Collision) -> Scene {
     let mut drawn = |bound: f64| ((numbers.next() + 1.0) * 0.5 * bound) as usize;
     let count = 1 + drawn(13.0);
     let edges: Vec<_> = (0..drawn(5.0)).map(|_| edge(drawn(count as f64), drawn(count as f64), 0.05 * size)).collect();
     let kinds: Vec<usize> = (0..count).map(|_| drawn(4.0)).collect();
     let planes = drawn(3.0);
     let mut vector = |size: f64| {
-        let (x, y) = numbers.pair();
+        let (x, y) = numbers.next_pair();
         (size * x, size * y)
     };
     let common = vector(size);
     let particles = kinds.iter().map(|kind| match kind {
-        0 => fix(particle(vector(size), (0.0, 0.0), 1.0, 0.1 * size)),
+        0 => fixed_copy(particle(vector(size), (0.0, 0.0), 1.0, 0.1 * size)),
         1 => particle(vector(size), (0.0, 0.0), 1.0, 0.1 * size),
         2 => particle(vector(size), common, 2.0, 0.2 * size),
         _ => particle(vector(size), vector(size), 1.0, 0.1 * size),
@@ -82,7 +82,7 @@ fn crowd(numbers: &mut Numbers, size: f64, collision: Collision) -> Scene {
 
 #[test]
 fn lanes_change_no_bit_and_no_count() {
-    let mut numbers = Numbers(11);
+    let mut numbers = NumberSource(11);
     let hybrid =
         |max_iterations| Collision::Hybrid { restitution: 0.5, max_iterations, stiffness: 0.0, thickness: 0.0 };
     let mut pairs = 0;
@@ -99,7 +99,7 @@ fn lanes_change_no_bit_and_no_count() {
 /// there.
 #[test]
 fn what_is_too_large_for_lanes_is_the_same_as_well() {
-    let mut numbers = Numbers(13);
+    let mut numbers = NumberSource(13);
     for size in [1e47, 1e49, 1e160, f64::NAN] {
         for _ in 0..20 {
             let mut scene = crowd(&mut numbers, 1.0, Collision::ContinuousTime { restitution: 1.0 });

@@ -3,7 +3,7 @@
 //! End caps are not handled. The particles at the ends should be at least as thick as the edge.
 mod polynomials;
 
-use super::response::{Change, Response, Setting, clamp};
+use super::response::{Change, Response, ResponseInput, clamp};
 use crate::sim::bodies::Bodies;
 use fosssim_num::vector::{Vec2, length, unit, vector_at};
 pub use polynomials::{EdgeMotions, EdgePolynomials, coefficients, coefficients_and_right_cubic};
@@ -20,8 +20,14 @@ pub(super) fn normal([x1, x2, x3]: [Vec2; 3], [d1, d2, d3]: [Vec2; 3], t: f64) -
 }
 
 /// Returns the response along normal `n` at time `t`, from the mean velocities of the step.
-pub(super) fn response(setting: &Setting<'_>, i: usize, [first, second]: [usize; 2], n: Vec2, t: f64) -> Response {
-    let Setting { bodies, law, q_start, q_end } = *setting;
+pub(super) fn response(
+    setting: &ResponseInput<'_>,
+    i: usize,
+    [first, second]: [usize; 2],
+    n: Vec2,
+    t: f64,
+) -> Response {
+    let ResponseInput { bodies, law, q_start, q_end } = *setting;
     let v1 = law.mean_velocity(q_start, q_end, i);
     let v2 = law.mean_velocity(q_start, q_end, first);
     let v3 = law.mean_velocity(q_start, q_end, second);
@@ -108,8 +114,8 @@ fn exchange(
 mod tests {
     use super::*;
     use crate::sim::{
-        collision::response::Law,
-        samples::{Numbers, edge, particle, scene},
+        collision::response::ResponseConstants,
+        samples::{NumberSource, edge, particle, scene},
     };
 
     fn vector((x, y): (f64, f64)) -> Vec2 {
@@ -140,7 +146,7 @@ mod tests {
     /// An impact conserves momentum, and with restitution 1 reverses the relative speed at the contact.
     #[test]
     fn impacts_conserve_momentum() {
-        let mut numbers = Numbers(11);
+        let mut numbers = NumberSource(11);
         for _ in 0..1000 {
             let masses: [f64; 3] = std::array::from_fn(|_| 1.5 + numbers.next());
             let start: [f64; 6] = std::array::from_fn(|_| numbers.next());
@@ -150,9 +156,10 @@ mod tests {
             scene.edges.push(edge(1, 2, 0.05));
             let bodies = Bodies::new(&scene);
             let end: [f64; 6] = std::array::from_fn(|k| start[k] + 0.5 * v[k]);
-            let setting = Setting { bodies: &bodies, law: &Law::new(1.0, 0.5), q_start: &start, q_end: &end };
+            let setting =
+                ResponseInput { bodies: &bodies, law: &ResponseConstants::new(1.0, 0.5), q_start: &start, q_end: &end };
             let (mut q, mut after) = (end, v);
-            response(&setting, 0, [1, 2], vector(numbers.pair()), 0.5).apply(&mut q, &mut after);
+            response(&setting, 0, [1, 2], vector(numbers.next_pair()), 0.5).apply(&mut q, &mut after);
             for axis in 0..2 {
                 let momentum = |v: &[f64; 6]| (0..3).map(|p| masses[p] * v[2 * p + axis]).sum::<f64>();
                 assert!((momentum(&v) - momentum(&after)).abs() < 1e-12);

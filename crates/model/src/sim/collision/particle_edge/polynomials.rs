@@ -142,7 +142,7 @@ fn subtract_all<N: Number, const COUNT: usize>(mut number: N, others: [N; COUNT]
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::sim::samples::Numbers;
+    use crate::sim::samples::NumberSource;
     use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 
     fn vector((x, y): (f64, f64)) -> Vec2 {
@@ -207,9 +207,9 @@ mod tests {
     /// Sharing values changes no bit, compared with the fully parenthesized formulas of the specification.
     #[test]
     fn shared_values_are_those_of_the_formulas() {
-        let mut numbers = Numbers(3);
+        let mut numbers = NumberSource(3);
         for round in 0..2000 {
-            let [x1, d1, x2, d2, mut x3, mut d3] = std::array::from_fn(|_| vector(numbers.pair()));
+            let [x1, d1, x2, d2, mut x3, mut d3] = std::array::from_fn(|_| vector(numbers.next_pair()));
             if round % 4 == 0 {
                 d3 = d2;
             }

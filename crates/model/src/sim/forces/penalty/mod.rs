@@ -31,13 +31,13 @@ pub use terms::PenaltyTerms;
 /// The penalty force of a scene, with the memory to find near pairs.
 #[derive(Debug, Clone)]
 pub(super) struct Penalty {
-    law: Law,
+    parameters: PenaltyParameters,
     pairs: PenaltyPairs,
 }
 
 /// The stiffness (force per length) and the thickness (length) of the layer around every body.
 #[derive(Debug, Clone, Copy)]
-struct Law {
+struct PenaltyParameters {
     /// The stiffness `k`.
     stiffness: f64,
     /// The thickness `h`.
@@ -52,7 +52,7 @@ impl Penalty {
     pub fn new(scene: &Scene, stiffness: f64, thickness: f64, detection: CollisionDetection) -> Self {
         let is_contest = detection == CollisionDetection::Contest;
         let pairs = PenaltyPairs::new(scene, thickness, detection);
-        Self { law: Law { stiffness, thickness, is_contest }, pairs }
+        Self { parameters: PenaltyParameters { stiffness, thickness, is_contest }, pairs }
     }
 
     /// Returns the penalty force's pairs.
@@ -62,12 +62,12 @@ impl Penalty {
 
     /// Adds the gradient, pair by pair.
     pub fn add_gradient(&mut self, bodies: &Bodies, x: &[f64], gradient: &mut [f64]) {
-        let law = self.law;
+        let law = self.parameters;
         self.pairs.visit(x, |pair| law.add(bodies, pair, x, gradient));
     }
 }
 
-impl Law {
+impl PenaltyParameters {
     /// Adds the gradient of a pair.
     #[inline]
     fn add(self, bodies: &Bodies, pair: Pair, x: &[f64], gradient: &mut [f64]) {

@@ -9,7 +9,7 @@ use crate::{
     sim::{
         nearby::{NearbyPairs, is_beyond},
         pair::{Pair, PairKind, pair},
-        pairs::{Objects, PassCursor, is_end},
+        pairs::{ObjectCounts, PassCursor, is_end},
     },
 };
 use fosssim_num::vector::{Vec2, vector_at};
@@ -35,14 +35,14 @@ impl PenaltyPairs {
             edges: scene.edges.iter().map(|edge| [edge.first, edge.second]).collect(),
             half_planes: scene.half_planes.len(),
             thickness,
-            nearby: if is_contest { None } else { NearbyPairs::for_many(scene, thickness) },
+            nearby: if is_contest { None } else { NearbyPairs::for_large_scene(scene, thickness) },
             sweep: is_contest.then(|| Box::new(Sweep::new(scene))),
         }
     }
 
     /// Copies the order of a contest's last search into `order`. Returns false for other scenes.
-    pub fn order(&self, order: &mut SweepOrder) -> bool {
-        self.sweep.as_ref().map(|sweep| sweep.order(order)).is_some()
+    pub fn copy_order(&self, order: &mut SweepOrder) -> bool {
+        self.sweep.as_ref().map(|sweep| sweep.copy_order(order)).is_some()
     }
 
     /// Continues from `order`, in a contest.
@@ -57,8 +57,8 @@ impl PenaltyPairs {
     pub fn visit(&mut self, x: &[f64], mut visit: impl FnMut(Pair)) {
         let particles = self.radii.len();
         let edges = &self.edges;
-        let objects = Objects { particles, edges: edges.len(), half_planes: self.half_planes };
-        let row = |i: usize| objects.row(PassCursor::from_first(i));
+        let objects = ObjectCounts { particles, edges: edges.len(), half_planes: self.half_planes };
+        let row = |i: usize| objects.remaining_row(PassCursor::from_first(i));
         let edges_of = |i: usize| (0..edges.len()).filter(move |&edge| !is_end(edges[edge], i));
         if let Some(sweep) = &mut self.sweep {
             sweep.update(x);

@@ -35,7 +35,7 @@ pub(super) struct Sweep {
     /// The lower and upper ends of the particles' boxes on y, in arrays for many comparisons at a time.
     heights: [Vec<f64>; 2],
     /// The memory for sorting boxes.
-    sorting: (Vec<u128>, Vec<BodyExtent>),
+    sort_buffers: (Vec<u128>, Vec<BodyExtent>),
     /// The largest upper end on x of the edges up to each edge.
     furthest: Vec<f64>,
 }
@@ -59,13 +59,13 @@ impl Sweep {
             particle_boxes: Vec::with_capacity(scene.particles.len()),
             edge_boxes: Vec::with_capacity(edges),
             heights: Default::default(),
-            sorting: Default::default(),
+            sort_buffers: Default::default(),
             furthest: Vec::with_capacity(edges),
         }
     }
 
     /// Returns the order of the last search; empty before the first one.
-    pub fn order(&self, order: &mut SweepOrder) {
+    pub fn copy_order(&self, order: &mut SweepOrder) {
         for (list, boxes) in [(&mut order.particles, &self.particle_boxes), (&mut order.edges, &self.edge_boxes)] {
             list.clear();
             list.extend(boxes.iter().map(|one| one.body));
@@ -82,14 +82,15 @@ impl Sweep {
 
     /// Sorts the bodies for positions `x` (2N).
     pub fn update(&mut self, x: &[f64]) {
-        let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, heights, sorting, furthest } = self;
+        let Self { has_four_axes, radii, edges, particle_boxes, edge_boxes, heights, sort_buffers: sorting, furthest } =
+            self;
         let particle = |body: u32| {
             let place = vector_at(x, body as usize);
-            BodyExtent::around(body, [place; 2], radii[body as usize], *has_four_axes)
+            BodyExtent::from_points(body, [place; 2], radii[body as usize], *has_four_axes)
         };
         let edge = |body: u32| {
             let (ends, radius) = edges[body as usize];
-            BodyExtent::around(body, ends.map(|end| vector_at(x, end)), radius, *has_four_axes)
+            BodyExtent::from_points(body, ends.map(|end| vector_at(x, end)), radius, *has_four_axes)
         };
         sort(particle_boxes, radii.len(), sorting, particle);
         sort(edge_boxes, edges.len(), sorting, edge);
@@ -197,7 +198,7 @@ const fn sort_key(number: f64) -> u64 {
 
 impl BodyExtent {
     /// Returns the extent around everything between two points, widened by `radius`.
-    fn around(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
+    fn from_points(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
         let mut own = Self { body, ..Self::default() };
         let mut extend = |axis: usize, one: f64, other: f64, radius: f64| {
             // Like the processor's instructions: if two numbers cannot be compared, the second counts.

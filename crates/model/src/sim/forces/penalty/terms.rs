@@ -32,14 +32,14 @@ impl PenaltyTerms {
 
     /// Calls `visit` for every pair that repels at positions `x` (2N), with the force on each of its particles.
     pub fn visit(&mut self, x: &[f64], mut visit: impl FnMut(Pair, &[(usize, Vec2)])) {
-        let Self { bodies, penalty: Penalty { law, pairs }, gradient } = self;
+        let Self { bodies, penalty: Penalty { parameters: law, pairs }, gradient } = self;
         pairs.visit(x, |pair| {
             let count = match pair.kind {
                 PairKind::ParticleParticle => 2,
                 PairKind::ParticleEdge => 3,
                 PairKind::ParticleHalfPlane => 1,
             };
-            let mut terms = bodies.particles_of(pair).map(|particle| (particle, Vec2::zeros()));
+            let mut terms = bodies.pair_particles(pair).map(|particle| (particle, Vec2::zeros()));
             let terms = &mut terms[..count];
             terms.iter().for_each(|(particle, _)| set_vector(gradient, *particle, Vec2::zeros()));
             law.add(bodies, pair, x, gradient);

@@ -57,7 +57,7 @@ fn the_contest_sums_in_the_order_of_a_sweep() {
         .map(|order| {
             let is_contest = order[0] == 2;
             let mut sum = vec![0.0; x.len()];
-            let law = Law { stiffness: 10.0, thickness: 0.1, is_contest };
+            let law = PenaltyParameters { stiffness: 10.0, thickness: 0.1, is_contest };
             let bodies = Bodies::new(&scene);
             order.into_iter().for_each(|i| law.particle_particle(&bodies, i, 3, &x, &mut sum));
             law.particle_edge(&bodies, 3, 0, &x, &mut sum);
@@ -103,7 +103,7 @@ fn bodies_that_begin_at_the_same_place_keep_the_order_of_the_search_before() {
     let mut pairs = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
     let mut order = SweepOrder::default();
     pairs.visit(&first, |_| {});
-    assert!(pairs.order(&mut order));
+    assert!(pairs.copy_order(&mut order));
     let mut other = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
     other.set_order(&order);
     let mut found = Vec::new();

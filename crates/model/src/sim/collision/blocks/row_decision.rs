@@ -1,11 +1,11 @@
 //! Decides single pairs with known coefficients, and writes their polynomials.
 use super::{
     super::{impact::time_of_impact, motion::PairMotion},
-    Setting,
-    group::{EDGE_ROW, LINE_INDEX, ROW_PADDING, TWO_ROW},
+    PassInput,
+    group::{EDGE_ROW_LENGTH, LINE_INDEX, ROW_PADDING, SHORT_ROW_LENGTH},
 };
 use crate::sim::{
-    observer::{Impulse, Time},
+    observer::{ImpactTime, Impulse},
     pair::Pair,
     pairs::PassCursor,
     search::{RootSearch, SearchCounts},
@@ -16,30 +16,30 @@ use fosssim_num::{lanes::copy_little_endian, polynomial::Polynomial};
 crate::drops_leading!();
 
 /// The maximum number of bytes of a pair with an edge.
-pub(super) const EDGE_BYTES: usize = 4 * 4 + 8 * 17;
-pub(super) const TWO_BYTES: usize = 2 * 4 + 8 * 5;
+pub(super) const MAX_EDGE_BYTES: usize = 4 * 4 + 8 * 17;
+pub(super) const MAX_TWO_POLYNOMIAL_BYTES: usize = 2 * 4 + 8 * 5;
 
 /// The buffer for polynomials, and the number written so far.
 pub(super) struct LoggedRows<'a> {
     /// Memory for all polynomials; empty if they are not needed.
-    pub room: &'a mut [u8],
+    pub buffer: &'a mut [u8],
     /// The number of bytes written.
-    pub used: usize,
+    pub used_bytes: usize,
     /// The number of polynomials written.
-    pub polynomials: usize,
+    pub polynomial_count: usize,
     /// The number of pairs for which the certificate's closed forms have excluded an impact.
     pub excluded: u64,
     /// The largest modulus of a coefficient.
     pub largest: f64,
     /// The hit that was found, or the reason why the search has no end. It is stored here because it is rare and large.
-    pub found: Result<Option<Impulse>, StepError>,
+    pub result: Result<Option<Impulse>, StepError>,
 }
 
 impl<'a> LoggedRows<'a> {
     /// Creates the state before anything is written.
     #[inline(always)]
     pub fn new(room: &'a mut [u8]) -> Self {
-        Self { room, used: 0, polynomials: 0, excluded: 0, largest: 0.0, found: Ok(None) }
+        Self { buffer: room, used_bytes: 0, polynomial_count: 0, excluded: 0, largest: 0.0, result: Ok(None) }
     }
 
     /// Decides a pair. Returns whether there is a result, like [`LoggedRows::record_result`].
@@ -63,43 +63,50 @@ impl<'a> LoggedRows<'a> {
             return false;
         }
         if found.is_err() {
-            self.room = &mut [];
+            self.buffer = &mut [];
         }
-        self.found = found;
-        *place = PassCursor::following(pair.kind, pair.first as usize, pair.second as usize);
+        self.result = found;
+        *place = PassCursor::after_pair(pair.kind, pair.first as usize, pair.second as usize);
         true
     }
 
     /// Writes the polynomials of a pair with an edge without their small leading coefficients, whose bits are set in
     /// `small`.
     #[inline(always)]
-    pub fn write_edge(&mut self, row: &[f64; EDGE_ROW + ROW_PADDING], small: u64) {
-        let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<EDGE_BYTES>) else { return };
+    pub fn write_edge(&mut self, row: &[f64; EDGE_ROW_LENGTH + ROW_PADDING], small: u64) {
+        let Some(room) = self.buffer.get_mut(self.used_bytes..).and_then(<[u8]>::first_chunk_mut::<MAX_EDGE_BYTES>)
+        else {
+            return;
+        };
         let mut used = 0;
-        write_one::<5>(room, &mut used, row, small);
-        write_one::<3>(room, &mut used, &row[5..], small >> 5);
-        write_one::<3>(room, &mut used, &row[8..], small >> 8);
-        write_one::<6>(room, &mut used, &row[11..], small >> 11);
-        self.used += used;
-        self.polynomials += 4;
+        write_polynomial::<5>(room, &mut used, row, small);
+        write_polynomial::<3>(room, &mut used, &row[5..], small >> 5);
+        write_polynomial::<3>(room, &mut used, &row[8..], small >> 8);
+        write_polynomial::<6>(room, &mut used, &row[11..], small >> 11);
+        self.used_bytes += used;
+        self.polynomial_count += 4;
     }
 
     /// Writes the polynomials of a pair with two polynomials.
     #[inline(always)]
-    pub fn write_two(&mut self, row: &[f64; TWO_ROW], small: u64) {
-        let Some(room) = self.room.get_mut(self.used..).and_then(<[u8]>::first_chunk_mut::<TWO_BYTES>) else { return };
+    pub fn write_two_polynomials(&mut self, row: &[f64; SHORT_ROW_LENGTH], small: u64) {
+        let Some(room) =
+            self.buffer.get_mut(self.used_bytes..).and_then(<[u8]>::first_chunk_mut::<MAX_TWO_POLYNOMIAL_BYTES>)
+        else {
+            return;
+        };
         let mut used = 0;
-        write_one::<3>(room, &mut used, row, small);
-        write_one::<2>(room, &mut used, &row[LINE_INDEX..], small >> 3);
-        self.used += used;
-        self.polynomials += 2;
+        write_polynomial::<3>(room, &mut used, row, small);
+        write_polynomial::<2>(room, &mut used, &row[LINE_INDEX..], small >> 3);
+        self.used_bytes += used;
+        self.polynomial_count += 2;
     }
 }
 
 /// Writes a polynomial whose coefficients are at the front. The maximum number is always written, of which fewer may
 /// count.
 #[inline(always)]
-fn write_one<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
+fn write_polynomial<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
     // The number of consecutive small coefficients, at most all of them.
     let dropped = (!small | 1 << LENGTH).trailing_zeros() as usize;
     let Some(kept) = row.get(dropped..).and_then(<[f64]>::first_chunk::<LENGTH>) else { return };
@@ -115,30 +122,30 @@ fn write_one<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64]
 /// Applies the certificate to a pair with an edge, and the root finder if the certificate has no answer.
 #[inline(never)]
 pub(super) fn decide_edge(
-    setting: &Setting<'_>,
+    setting: &PassInput<'_>,
     counts: &mut SearchCounts,
     pair: Pair,
-    row: &[f64; EDGE_ROW + ROW_PADDING],
+    row: &[f64; EDGE_ROW_LENGTH + ROW_PADDING],
 ) -> Result<Option<Impulse>, StepError> {
-    decide(setting, counts, pair, row, [5, 3, 3, 6])
+    decide_polynomials(setting, counts, pair, row, [5, 3, 3, 6])
 }
 
 /// Decides a pair without an edge.
 #[inline(never)]
-pub(super) fn decide_two(
-    setting: &Setting<'_>,
+pub(super) fn decide_two_polynomials(
+    setting: &PassInput<'_>,
     counts: &mut SearchCounts,
     pair: Pair,
-    row: &[f64; TWO_ROW],
+    row: &[f64; SHORT_ROW_LENGTH],
 ) -> Result<Option<Impulse>, StepError> {
     let [a, b, c, _, d, e, ..] = *row;
-    decide(setting, counts, pair, &[a, b, c, d, e], [3, 2])
+    decide_polynomials(setting, counts, pair, &[a, b, c, d, e], [3, 2])
 }
 
 /// Decides polynomials of the given lengths, small leading coefficients included.
 #[inline(always)]
-fn decide<const COUNT: usize>(
-    setting: &Setting<'_>,
+fn decide_polynomials<const COUNT: usize>(
+    setting: &PassInput<'_>,
     counts: &mut SearchCounts,
     pair: Pair,
     coefficients: &[f64],
@@ -151,8 +158,8 @@ fn decide<const COUNT: usize>(
         polynomial.trim();
         begin += length;
     }
-    let time = time_of_impact(RootSearch::WhereNeeded, counts, setting.step, pair, &polynomials)?;
-    let Time::Found(time) = time else { return Ok(None) };
+    let time = time_of_impact(RootSearch::OnDemand, counts, setting.step, pair, &polynomials)?;
+    let ImpactTime::Found(time) = time else { return Ok(None) };
     if !(time <= 1.0) {
         return Ok(None);
     }
