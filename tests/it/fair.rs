@@ -155,6 +155,36 @@ fn the_factor_and_the_form_of_the_polynomials_are_found() {
     assert_eq!(of("scale-3").form, Form::Course);
 }
 
+/// A pair of balls falls side by side, so that its approach is only round-off. A formula with the displacement of one
+/// ball has another value there, which only a program that divides polynomials by their size could have.
+#[test]
+fn a_wrong_approach_where_the_right_one_is_round_off_is_charged() {
+    struct FirstAlone;
+    impl StepController for FirstAlone {
+        fn solve(&mut self, _: Pair, start: &[f64], end: &[f64], polynomials: &mut [Polynomial]) {
+            let [x, y] = [start[0] - start[2], start[1] - start[3]];
+            let [dx, dy] = [end[0] - start[0], end[1] - start[1]];
+            polynomials[1] = Polynomial::trimmed(&[dx * dx + dy * dy, x * dx + y * dy]);
+        }
+    }
+    let text = r#"<scene><duration time="0.4"/><integrator type="symplectic-euler" dt="0.02"/>
+        <collision type="hybrid" COR="1" maxiters="0" k="0" thickness="0"/>
+        <particle m="1" px="0.7" py="0.3" vx="0.1" vy="0" fixed="0" radius="0.3"/>
+        <particle m="1" px="9.67" py="11.81" vx="0.1" vy="0" fixed="0" radius="0.1"/>
+        <simplegravity fx="0" fy="-3.7"/></scene>"#;
+    let scene = scene::read("scene", text.as_bytes()).expect("a scene").scene;
+    let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+    let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
+    for _ in 0..scene.steps() {
+        simulation.step(&mut (Steering(FirstAlone), &mut recorder)).unwrap();
+    }
+    let fair = judged(&scene, &recorder.finish().unwrap().0, 1).1;
+    assert_eq!(fair.findings.wrong_steps, u64::from(scene.steps()), "{fair:?}");
+    let normalized = simulated(&scene, student::find("normalized-norm")).unwrap();
+    let fair = judged(&scene, &normalized, 1).1;
+    assert_eq!(fair.verdict, FairVerdict::Accepted, "{:?}", fair.findings.first_divergence);
+}
+
 /// One polynomial in the right form among others that are the course's bit for bit: its t^3, which the right form
 /// lacks, is lost.
 #[test]

@@ -41,8 +41,8 @@ pub enum Mismatch {
 /// polynomial is too short to show its own.
 ///
 /// If the expected polynomial is zero except for round-off, every finite polynomial is right, because some programs
-/// divide polynomials by their size. If the expected polynomial has NaN because of the trace's own state, the logged
-/// polynomial must have NaN as well.
+/// divide polynomials by their size; [`round_off_factor`] returns the factor that it needs. If the expected polynomial
+/// has NaN because of the trace's own state, the logged polynomial must have NaN as well.
 #[inline]
 pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     match match_if_clear(expected, actual).or_else(|| match_if_right(expected, actual)) {
@@ -394,6 +394,23 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
     let known = held.iter().find(|r| is_significant(r))?;
     let room = UNIT_ROUNDOFF * units(known, norm(expected)) / known.value.abs();
     Some([scale * (1.0 - room), scale * (1.0 + room)])
+}
+
+/// Returns the least factor, more than 1, with which a polynomial would be right that should be zero except for
+/// round-off. `None` if it is round-off without a factor, or should be more, or has the size 1 to which some programs
+/// divide polynomials.
+pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64> {
+    let missing = expected.len().checked_sub(actual.len())?;
+    let norm = norm(expected);
+    if !(norm > 0.0 && norm.is_finite()) || !is_round_off(expected) {
+        return None;
+    }
+    let share = |(r, s): (&BoundedValue, &f64)| s.abs() / (2.0 * UNIT_ROUNDOFF * units(r, norm));
+    let least = expected[missing..].iter().zip(actual).map(share).fold(0.0, f64::max);
+    let largest = actual.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
+    let squares = actual.iter().map(|s| s * s).sum::<f64>();
+    let is_one = |size: f64| (size - 1.0).abs() < 1e-9;
+    (least > 1.0 && !is_one(largest) && !is_one(squares)).then_some(least)
 }
 
 /// Returns the number of coefficients that are wrong with `scale` as the factor.

@@ -1,7 +1,7 @@
 //! The fair verdict on one trace.
 use super::{
     factors::{Factors, Scales},
-    pending::Pending,
+    pending::{Pending, PendingCause},
     step_judgement::StepJudgement,
 };
 use fosssim_findings::{
@@ -82,7 +82,7 @@ impl Judging {
                 *same += if number == approach { calls.min(1) } else { calls };
             }
         }
-        for claim in step.pending.iter().filter(|pending| pending.is_claim) {
+        for claim in step.pending.iter().filter(|pending| pending.cause == PendingCause::Claim) {
             let (kind, number) = claim.place;
             self.claimed[kind][number].take(claim.least.0.midpoint(claim.most.0));
         }
@@ -91,7 +91,10 @@ impl Judging {
             let (kind, number) = pending.place;
             let is_of_other_form = self.said.form != Form::Either && !pending.is_of(self.said.form);
             // While other polynomials may follow, a claimed factor is not confirmed by claims.
-            let is_told = self.scales[kind][number].range().is_some() || self.same[kind][number] > 0;
+            let is_told = match pending.cause {
+                PendingCause::RoundOff => self.factors_of(kind).range().is_some_and(|range| !is_constant(range)),
+                _ => self.scales[kind][number].range().is_some() || self.same[kind][number] > 0,
+            };
             !is_of_other_form && (!is_told || self.finding(pending).is_some())
         };
         let hanging: Vec<PendingOfStep> =
@@ -104,10 +107,24 @@ impl Judging {
     /// polynomials claim, or otherwise 1.
     fn finding(&self, pending: &Pending) -> Option<Finding> {
         let (kind, number) = pending.place;
+        if pending.cause == PendingCause::RoundOff {
+            // Only a program with one factor for all polynomials of this kind cannot have another one here.
+            return pending.finding(self.factors_of(kind).range().filter(|range| is_constant(*range))?);
+        }
         let mut told = self.scales[kind][number];
         told.add_ones(self.same[kind][number]);
         let usual = told.usual().or_else(|| self.claimed[kind][number].usual());
         pending.finding(usual.unwrap_or([1.0; 2]))
+    }
+
+    /// Returns the factors of all polynomials of a kind so far.
+    fn factors_of(&self, kind: PairKind) -> Factors {
+        let mut all = Factors::default();
+        for (factors, same) in self.scales[kind].iter().zip(self.same[kind]) {
+            all.add(factors);
+            all.add_ones(same);
+        }
+        all
     }
 
     /// Adds a finding to the judgement.
@@ -187,6 +204,11 @@ impl Judging {
         };
         said
     }
+}
+
+/// Returns whether factors are one factor, except for its roundings.
+fn is_constant([least, greatest]: [f64; 2]) -> bool {
+    greatest - least <= 1e-9 * least
 }
 
 /// Returns whether a finding is a consequence of the finding about a polynomial.

@@ -5,7 +5,19 @@ use fosssim_model::sim::PairKind;
 /// The empty range of factors, for a polynomial that is right only in the other form.
 pub(super) const NO_FACTORS: [f64; 2] = [f64::INFINITY, 0.0];
 
-/// Polynomials of one kind, form and claim state. The polynomials are right if the program's factor for their kind is
+/// The reason why polynomials are right only with some factors.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum PendingCause {
+    /// The polynomials lack coefficients that the course's library drops with some factors.
+    Missing,
+    /// The polynomials claim factors without showing them.
+    Claim,
+    /// The polynomials are larger than round-off, although the right ones are only round-off. A program that divides
+    /// polynomials by their size has such polynomials, and its factors differ.
+    RoundOff,
+}
+
+/// Polynomials of one kind, form and cause. The polynomials are right if the program's factor for their kind is
 /// within the bounds.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Pending {
@@ -13,8 +25,8 @@ pub(crate) struct Pending {
     pub place: (PairKind, usize),
     /// The form in which the polynomials are right; any form, if there is only one.
     pub form: Form,
-    /// Whether the polynomials claim factors without showing them.
-    pub is_claim: bool,
+    /// The reason why the polynomials depend on factors.
+    pub cause: PendingCause,
     /// The number of polynomials in the step.
     pub count: u64,
     /// The largest lower bound of the factors, and the finding for smaller factors.

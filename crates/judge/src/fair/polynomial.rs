@@ -1,9 +1,12 @@
 //! Collects the evidence of one logged polynomial: the factor and the form of a right one, the fault of a wrong one,
 //! and everything that depends on the factors of other polynomials.
 use super::{
-    compare::{Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors},
+    compare::{
+        Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors,
+        round_off_factor,
+    },
     formulas::ExpectedPolynomials,
-    pending::{NO_FACTORS, Pending},
+    pending::{NO_FACTORS, Pending, PendingCause},
     step_judgement::StepJudgement,
 };
 use crate::finding::{Finding, FindingDetail, PolynomialPlace};
@@ -68,10 +71,19 @@ impl StepJudgement {
         let own = expected.polynomial(number);
         let add_pending = |judged: &mut Self, form: Form, expected: &[BoundedValue], factors: Option<[f64; 2]>| {
             if is_known {
-                judged.add_pending(logged, (form, false), expected, factors.unwrap_or(NO_FACTORS));
+                judged.add_pending(logged, (form, PendingCause::Missing), expected, factors.unwrap_or(NO_FACTORS));
             }
             PolynomialJudgement::Hangs
         };
+        // In each of its forms, the polynomial is larger than the round-off that it has to be.
+        let forms = std::iter::once(own).chain(expected.other_form(number));
+        let least = forms.map(|form| round_off_factor(form, list)).reduce(|one, other| Some(one?.min(other?)));
+        if let Some(least) = least.flatten().filter(|_| first.is_ok()) {
+            if is_known {
+                self.add_pending(logged, (Form::Either, PendingCause::RoundOff), own, [least, f64::INFINITY]);
+            }
+            return PolynomialJudgement::Hangs;
+        }
         // The course's form is already known, so a further right polynomial in this form adds nothing.
         let tells_nothing = first.is_ok() && self.course_form.is_some();
         let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) else {
@@ -125,7 +137,7 @@ impl StepJudgement {
             Some(factors) => {
                 self.shares.coefficient = self.shares.coefficient.max(found.share);
                 if is_known {
-                    self.add_pending(logged, (Form::Either, true), expected, factors);
+                    self.add_pending(logged, (Form::Either, PendingCause::Claim), expected, factors);
                 }
             }
         }
@@ -159,7 +171,7 @@ impl StepJudgement {
     fn add_pending(
         &mut self,
         logged: &LoggedPolynomial<'_>,
-        (form, is_claim): (Form, bool),
+        (form, cause): (Form, PendingCause),
         expected: &[BoundedValue],
         [least, most]: [f64; 2],
     ) {
@@ -169,11 +181,11 @@ impl StepJudgement {
             let detail = wrong_polynomial(logged, expected, mismatch);
             Finding { step: self.step, frame: self.frame, detail }
         };
-        let is_like = |known: &Pending| (known.place, known.form, known.is_claim) == (place, form, is_claim);
+        let is_like = |known: &Pending| (known.place, known.form, known.cause) == (place, form, cause);
         let Some(known) = self.pending.iter().position(is_like) else {
             let finding = finding();
             let (least, most) = ((least, finding), (most, finding));
-            self.pending.push(Pending { place, form, is_claim, count: 1, least, most });
+            self.pending.push(Pending { place, form, cause, count: 1, least, most });
             return;
         };
         let Pending { least: (of_all, _), most: (to_all, _), .. } = self.pending[known];
@@ -234,7 +246,7 @@ mod tests {
         for factors in bounds {
             let expected = [1e-14, 1.0, 2.0].map(BoundedValue::exact);
             let logged = LoggedPolynomial { place, number: 0, list: &[1.0, 2.0] };
-            judged.add_pending(&logged, (Form::Either, false), &expected, *factors);
+            judged.add_pending(&logged, (Form::Either, PendingCause::Missing), &expected, *factors);
         }
         judged.pending.iter().all(|pending| pending.finding([factor, factor]).is_none())
     }
