@@ -161,7 +161,7 @@ fn the_factor_and_the_form_of_the_polynomials_are_found() {
 fn a_wrong_approach_where_the_right_one_is_round_off_is_charged() {
     struct FirstAlone;
     impl StepController for FirstAlone {
-        fn solve(&mut self, _: Pair, start: &[f64], end: &[f64], polynomials: &mut [Polynomial]) {
+        fn adjust_polynomials(&mut self, _: Pair, start: &[f64], end: &[f64], polynomials: &mut [Polynomial]) {
             let [x, y] = [start[0] - start[2], start[1] - start[3]];
             let [dx, dy] = [end[0] - start[0], end[1] - start[1]];
             polynomials[1] = Polynomial::trimmed(&[dx * dx + dy * dy, x * dx + y * dy]);
@@ -173,13 +173,13 @@ fn a_wrong_approach_where_the_right_one_is_round_off_is_charged() {
         <particle m="1" px="9.67" py="11.81" vx="0.1" vy="0" fixed="0" radius="0.1"/>
         <simplegravity fx="0" fy="-3.7"/></scene>"#;
     let scene = scene::read("scene", text.as_bytes()).expect("a scene").scene;
-    let mut simulation = Simulation::new(&scene, RootSearch::WhereNeeded);
+    let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(&scene), simulation.state());
-    for _ in 0..scene.steps() {
-        simulation.step(&mut (Steering(FirstAlone), &mut recorder)).unwrap();
+    for _ in 0..scene.step_count() {
+        simulation.step(&mut (SteeringObserver(FirstAlone), &mut recorder)).unwrap();
     }
     let fair = judged(&scene, &recorder.finish().unwrap().0, 1).1;
-    assert_eq!(fair.findings.wrong_steps, u64::from(scene.steps()), "{fair:?}");
+    assert_eq!(fair.findings.wrong_steps, u64::from(scene.step_count()), "{fair:?}");
     let normalized = simulated(&scene, student::find("normalized-norm")).unwrap();
     let fair = judged(&scene, &normalized, 1).1;
     assert_eq!(fair.verdict, FairVerdict::Accepted, "{:?}", fair.findings.first_divergence);
