@@ -2,7 +2,7 @@
 use chrono::DateTime;
 use std::ops::RangeInclusive;
 
-/// Formats a time, given in milliseconds since 1970; empty if it is beyond the calendar.
+/// Formats a time, given in milliseconds since 1970. Returns an empty text if the calendar does not reach that far.
 fn format(milliseconds: i64, form: &str) -> String {
     DateTime::from_timestamp_millis(milliseconds).map(|moment| moment.format(form).to_string()).unwrap_or_default()
 }
@@ -17,7 +17,7 @@ pub fn format_iso(milliseconds: i64) -> String {
     format(milliseconds, "%Y-%m-%dT%H:%M:%S%.3f+00:00")
 }
 
-/// The ranges of plausible times in milliseconds. A number between the ranges is probably in seconds.
+/// The ranges of plausible times, in milliseconds since 1970. A number between the two ranges is probably in seconds.
 pub const MILLISECOND_RANGES: [RangeInclusive<i64>; 2] = [0..=99_999_999, 100_000_000_000..=253_402_300_799_999];
 
 /// Returns whether a number is a plausible time in milliseconds.

@@ -1,8 +1,8 @@
-//! The parts of a `grade.json` (`schemas/grade.schema.json`) that the service reads.
+//! The parts that the service reads of a `grade.json` (`schemas/grade.schema.json`).
 use serde::Deserialize;
 use serde_json::Number;
 
-/// The content of a `grade.json`.
+/// A `grade.json` as far as this service reads it.
 #[derive(Debug, Deserialize)]
 pub(crate) struct GradeFile {
     pub(crate) schema: u32,
@@ -10,29 +10,29 @@ pub(crate) struct GradeFile {
     pub(crate) grades: Vec<GradeInFile>,
 }
 
-/// The grade of a submission.
+/// The grade of one submission in a `grade.json`.
 #[derive(Debug, Deserialize)]
 pub(crate) struct GradeInFile {
     pub(crate) verdict: String,
     pub(crate) code: String,
     pub(crate) points: Option<Number>,
     pub(crate) max_points: Option<Number>,
-    /// The fault of the whole submission, as a sentence.
+    /// The reason why the submission as a whole could not be graded, as a sentence.
     pub(crate) unfit: Option<String>,
-    /// The mistakes that explain the wrong scenes together, the likeliest first.
+    /// The mistakes that would explain all wrong scenes, the likeliest first.
     #[serde(default)]
     pub(crate) likely_mistakes: Vec<LikelyInFile>,
     #[serde(default)]
     pub(crate) groups: Vec<GroupInFile>,
 }
 
-/// A likely mistake, as a sentence.
+/// A likely mistake in a `grade.json`, as a sentence.
 #[derive(Debug, Deserialize)]
 pub(crate) struct LikelyInFile {
     pub(crate) text: String,
 }
 
-/// A group of scenes.
+/// A group of scenes in a `grade.json`.
 #[derive(Debug, Deserialize)]
 pub(crate) struct GroupInFile {
     #[serde(default)]
@@ -40,13 +40,13 @@ pub(crate) struct GroupInFile {
     pub(crate) visibility: Option<String>,
     pub(crate) points: Option<f64>,
     pub(crate) max_points: Option<f64>,
-    /// Whether the points are extra, so that they count in neither the sum nor the maximum.
+    /// Whether the group's points are extra. Then they count in neither the sum nor the maximum.
     #[serde(default)]
     pub(crate) extra: bool,
     pub(crate) scenes: Vec<SceneInFile>,
 }
 
-/// A scene.
+/// A scene in a `grade.json`.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct SceneInFile {

@@ -1,5 +1,5 @@
-//! The health of workers and suites. A fault of the grader may be caused by the worker or by the suite: a worker that
-//! keeps failing leaves jobs to others, and a suite that keeps failing waits for staff.
+//! The health of workers and suites. If the grader fails, either the worker or the suite may be the cause. Therefore a
+//! worker that keeps failing leaves jobs to other workers, and a suite that keeps failing waits for staff.
 use crate::{
     db::{DbError, Transaction},
     queue::{Claimant, QueuePolicy, millis},
@@ -7,14 +7,14 @@ use crate::{
 };
 use std::time::Duration;
 
-/// The number of consecutive faults after which a worker leaves jobs to workers that had no fault since their last
+/// The number of consecutive faults after which a worker leaves jobs to workers without a fault since their last
 /// result.
 const MAX_FAULTS: i64 = 3;
 
-/// The maximum pause of a worker; it starts at a second and doubles.
+/// The maximum pause of a failing worker. The first pause is one second, and each further one is twice as long.
 const MAX_PAUSE: Duration = Duration::from_secs(60);
 
-/// Returns how long a worker counts as alive after its last report, in milliseconds.
+/// Returns the number of milliseconds for which a worker counts as alive after its last report.
 pub fn recency_millis(policy: &QueuePolicy) -> i64 {
     millis(policy.lease * 2)
 }
@@ -49,8 +49,8 @@ pub async fn note_sign_of_life(
     Ok(())
 }
 
-/// Returns whether a worker may claim a job: it has fewer jobs than its token has slots, and it is not failing while
-/// others succeed.
+/// Returns whether a worker may claim a job. It must have fewer jobs than its token has slots, and must not be failing
+/// while other workers succeed.
 ///
 /// # Errors
 ///
@@ -88,7 +88,7 @@ pub async fn may_claim(
     Ok(better.is_none())
 }
 
-/// Records that the grader failed in a worker that had reported itself able to grade.
+/// Records that the grader failed in a worker that had reported that it can grade.
 pub(crate) async fn note_failure(transaction: &mut Transaction, worker: &str, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE worker SET faults = faults + 1, in_a_row = in_a_row + 1, fault = ?, fault_at = {now}
         WHERE name = ?";
@@ -102,7 +102,7 @@ pub(crate) async fn note_result(transaction: &mut Transaction, worker: &str) -> 
     Ok(())
 }
 
-/// Removes the machine's folders from a message: absolute paths are reduced to their last part.
+/// Removes the machine's folders from a message. Of each absolute path, only the last part is kept.
 pub fn without_paths(text: &str) -> String {
     let mut plain = String::with_capacity(text.len());
     let mut rest = text;

@@ -1,5 +1,5 @@
-//! Metrics in Prometheus' text format: the server's own counts, the state of its process and disk, and the database's
-//! counts of the queue. They contain no personal data.
+//! Metrics in Prometheus' text format. The server counts its requests, the process and the disk report their state, and
+//! the database counts the jobs in the queue. The metrics contain no personal data.
 use crate::storage::Storage;
 use prometheus::{
     CounterVec, GaugeVec, HistogramOpts, HistogramVec, IntCounterVec, IntGauge, Opts, Registry, TextEncoder,
@@ -7,7 +7,8 @@ use prometheus::{
 };
 use std::time::Duration;
 
-/// Upper bounds of the histogram of latencies, in seconds: from a page to an upload over a slow line.
+/// The upper bounds of the histogram of latencies, in seconds. They range from a simple page to an upload over a slow
+/// line.
 const LATENCY_BUCKETS: [f64; 12] = [0.005, 0.01, 0.025, 0.05, 0.1, 0.25, 0.5, 1.0, 2.5, 5.0, 10.0, 30.0];
 
 /// The server's counters. Clones are cheap and share the counters.
@@ -18,7 +19,7 @@ pub struct Instruments {
     in_flight: IntGauge,
 }
 
-/// A request that is being answered; it is counted when its result is recorded, or when it is dropped.
+/// A request that is being answered. It is counted as active until this value is dropped.
 #[derive(Debug)]
 pub struct InFlight(IntGauge);
 
@@ -29,11 +30,11 @@ impl Drop for InFlight {
 }
 
 impl Instruments {
-    /// Creates counters that show zero.
+    /// Creates the counters, which all start at zero.
     ///
     /// # Errors
     ///
-    /// Fails if Prometheus does not allow a name.
+    /// Fails if Prometheus does not allow a metric's name.
     pub fn new() -> Result<Self, prometheus::Error> {
         let of_requests = ["method", "route", "status"];
         let duration = HistogramOpts::new(
@@ -48,24 +49,25 @@ impl Instruments {
         })
     }
 
-    /// Counts the start of a request.
+    /// Counts a request as active until the returned value is dropped.
     #[must_use]
     pub fn begin(&self) -> InFlight {
         self.in_flight.inc();
         InFlight(self.in_flight.clone())
     }
 
-    /// Counts the answer of a request. Routes are templates, so that the number of series is limited.
+    /// Counts the answer to a request. `route` is the route's template, not the address, so that the number of series
+    /// is limited.
     pub fn count_answer(&self, method: &str, route: &str, status: u16, took: Duration) {
         self.requests.with_label_values(&[method, route, &status.to_string()]).inc();
         self.seconds.with_label_values(&[method, route]).observe(took.as_secs_f64());
     }
 
-    /// Returns all metrics as text. If the database does not answer, there are none about the queue.
+    /// Returns all metrics as text. If the database does not answer, the metrics of the queue are missing.
     ///
     /// # Errors
     ///
-    /// Fails if they can't be written as text.
+    /// Fails if the metrics can't be written as text.
     pub fn show(&self, storage: &Storage, queue: Option<&Metrics>) -> Result<String, prometheus::Error> {
         let page = MetricsPage(Registry::new());
         page.0.register(Box::new(self.requests.clone()))?;
@@ -85,32 +87,32 @@ impl Instruments {
     }
 }
 
-/// The numbers from the database, without personal data.
+/// The metrics that the database counts. They contain no personal data.
 #[derive(Debug, Clone, Default)]
 pub struct Metrics {
-    /// The number of jobs by state.
+    /// The number of jobs in each state.
     pub jobs: Vec<(String, i64)>,
-    /// The number of scores for learning platforms by state.
+    /// The number of scores for learning platforms in each state.
     pub scores: Vec<(String, i64)>,
-    /// The time that the oldest waiting job has waited, in milliseconds.
+    /// The time in milliseconds that the oldest waiting job has waited so far.
     pub oldest: i64,
-    /// The number of workers that were seen recently.
+    /// The number of workers from which the server has heard recently.
     pub workers: i64,
-    /// The total number of the workers' slots.
+    /// The number of slots of all these workers together.
     pub slots: i64,
     /// The number of workers that claim no jobs because they can't grade.
     pub aside: i64,
-    /// The number of workers that are grading.
+    /// The number of workers that are grading at present.
     pub working: i64,
-    /// The number of events by kind, for the kinds that need attention.
+    /// The number of events of each kind that needs attention.
     pub events: Vec<(String, i64)>,
-    /// The stored bytes of uploads and reports: of all courses, and of the course with the most.
+    /// The stored bytes of uploads and reports: of all courses, and of the course with the most bytes.
     pub kept: [i64; 2],
-    /// The number of all submissions.
+    /// The number of submissions that the server has ever received.
     pub submissions: i64,
 }
 
-/// The metrics at one time. Names begin with `fosssim_`; an empty label name means no label.
+/// The metrics at one time. Names begin with `fosssim_`. An empty label name means that the metric has no label.
 struct MetricsPage(Registry);
 
 impl MetricsPage {
@@ -142,7 +144,7 @@ impl MetricsPage {
         self.gauge(name, help, "", &[("", value)])
     }
 
-    /// Writes the database's numbers about the queue.
+    /// Writes what the database counted about the queue.
     fn write_queue(&self, queue: &Metrics) -> Result<(), prometheus::Error> {
         let named = |counts: &'_ [(String, i64)], name: &str| {
             counts.iter().find(|(known, _)| known == name).map_or(0.0, |(_, count)| *count as f64)

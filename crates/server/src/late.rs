@@ -1,4 +1,4 @@
-//! The points of a submission that arrived after its due date.
+//! The deduction of points for a submission that arrived after its due date.
 use crate::db::{DbError, Row};
 use chrono::{DateTime, Days};
 use chrono_tz::Tz;
@@ -8,7 +8,7 @@ use utoipa::ToSchema;
 /// The number of milliseconds of a day.
 const DAY_MILLIS: i64 = 86_400_000;
 
-/// The settings of an assignment for late submissions.
+/// The settings of an assignment that apply to late submissions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Deserialize)]
 #[serde(default)]
 pub(crate) struct LatePolicy {
@@ -18,37 +18,37 @@ pub(crate) struct LatePolicy {
     pub(crate) time_zone: Option<Tz>,
 }
 
-/// The delay of a submission.
+/// How late a submission is, and what it loses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Lateness {
-    /// The number of days after the due date; a started day counts.
+    /// The number of days after the due date. A day that has begun counts in full.
     pub days: i64,
     /// The percentage of the grader's points that the submission loses.
     pub percent: i64,
 }
 
 impl LatePolicy {
-    /// Returns the last time at which an upload of a student with the due date `due` is accepted.
+    /// Returns the last time at which uploads are accepted from a student whose due date is `due`.
     pub(crate) fn closes_at(&self, due: i64) -> i64 {
         self.days_after(due, self.late_days.into())
     }
 
-    /// Returns the same time of day some days later, by the course's calendar, in which a day may have 23 or 25 hours.
+    /// Returns the same time of day, `days` later in the course's calendar, where a day may have 23 or 25 hours.
     fn days_after(&self, due: i64, days: i64) -> i64 {
         let by_calendar = self.time_zone.and_then(|zone| {
             let due = DateTime::from_timestamp_millis(due)?.with_timezone(&zone);
             Some(due.checked_add_days(Days::new(u64::try_from(days).ok()?))?.timestamp_millis())
         });
-        // This zone has no calendar, or its clocks skip that time.
+        // The course has no time zone, or the clocks of its zone skip that time.
         by_calendar.unwrap_or_else(|| due.saturating_add(days.saturating_mul(DAY_MILLIS)))
     }
 
-    /// Returns the delay of a submission that arrived at `came_at`, with the student's own due date if there is one.
-    /// `None` for a submission in time, or if the assignment has no rule for late ones.
+    /// Returns the delay of a submission that arrived at `came_at`. The student's own due date applies if there is one.
+    /// `None` means that the submission is in time, or that the assignment has no rule for late submissions.
     pub(crate) fn lateness(&self, own_due: Option<i64>, came_at: i64) -> Option<Lateness> {
         let due = self.due_at.map(|due| due.max(own_due.unwrap_or(due)))?;
         // The delay is at most the allowed late days, even if an extension was withdrawn. If late uploads are no longer
-        // accepted, earlier ones keep their deduction.
+        // accepted, earlier late uploads keep their deduction.
         let most = if self.late_days == 0 { i64::MAX } else { self.late_days.into() };
         let mut days = ((came_at - due) / DAY_MILLIS - 1).max(0);
         while self.days_after(due, days) < came_at {
@@ -61,14 +61,14 @@ impl LatePolicy {
 }
 
 impl Lateness {
-    /// Returns the delay of a submission from its row, with `created_at`, the assignment's `settings` and the owner's
-    /// own due date `own_due`.
+    /// Returns the delay of the submission in a row. The row contains `created_at`, the assignment's `settings`, and
+    /// the owner's own due date `own_due`.
     pub(crate) fn from_row(row: &Row) -> Result<Option<Self>, DbError> {
         let policy: LatePolicy = serde_json::from_str(&row.text("settings")?).unwrap_or_default();
         Ok(policy.lateness(row.maybe_int("own_due")?, row.int("created_at")?))
     }
 
-    /// Returns the points that remain of the grader's after the deduction.
+    /// Returns the points that are left after the deduction from the grader's points.
     pub(crate) fn left_of(self, points: &str) -> String {
         let left = |points: f64| (points * (100 - self.percent) as f64 / 100.0).to_string();
         points.parse().map_or_else(|_| points.to_owned(), left)

@@ -1,4 +1,4 @@
-//! The results of jobs: grades and their history, written in one transaction with the end of the job.
+//! Writes the results of jobs: grades and their history. Each is written in the transaction that ends its job.
 use crate::{
     db::{Database, DbError, Transaction, read_row},
     health,
@@ -9,11 +9,12 @@ use crate::{
 };
 use std::time::Duration;
 
-/// Writes the result of a job, if its lease is still valid; a late result is recorded and changes nothing.
+/// Writes the result of a job if its lease is still valid. A result that comes too late is recorded, but changes
+/// nothing.
 ///
 /// # Errors
 ///
-/// An error of the database; the caller must not commit then.
+/// Fails if the database fails. The caller must not commit then.
 pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outcome) -> Result<Completion, DbError> {
     let completion = queue::complete(transaction, lease).await?;
     match completion {
@@ -27,7 +28,7 @@ pub async fn finish(transaction: &mut Transaction, lease: &Lease, outcome: &Outc
     Ok(completion)
 }
 
-/// Records that a try failed; after the last one, writes the judge error.
+/// Records that a try failed. After the last try, the verdict "judge error" is written.
 ///
 /// # Errors
 ///
@@ -55,8 +56,8 @@ pub async fn fail(
     Ok(failure)
 }
 
-/// Finds silent workers, and writes the judge errors of jobs that were tried too often. It uses its own transaction: it
-/// locks jobs of other workers, so it must not wait for locks that they hold.
+/// Finds silent workers. Jobs that were tried too often get the verdict "judge error". This uses its own transaction:
+/// it locks the jobs of other workers, so it must not wait for locks that they hold.
 ///
 /// # Errors
 ///
@@ -78,7 +79,7 @@ pub async fn tick(database: &Database, policy: &QueuePolicy) -> Result<(), DbErr
     Ok(())
 }
 
-/// A job, with the facts about its submission.
+/// A job, and what is known about its submission.
 struct JobFacts {
     job: i64,
     submission: Option<i64>,
@@ -86,7 +87,7 @@ struct JobFacts {
     assignment: Option<i64>,
     course: Option<i64>,
     worker: String,
-    /// The account that requested the regrade.
+    /// The account that requested the job's regrade.
     asked_by: Option<i64>,
     task: String,
     seconds: i64,
@@ -108,7 +109,7 @@ async fn find_job(transaction: &mut Transaction, job: i64) -> Result<JobFacts, D
     }))
 }
 
-/// Writes an event about a job.
+/// Writes an entry about a job into the audit log.
 async fn note(transaction: &mut Transaction, about: &JobFacts, kind: &str, text: &str) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, course, assignment, submission, job, text)
         VALUES ({now}, ?, ?, ?, ?, ?, ?)";
@@ -118,8 +119,8 @@ async fn note(transaction: &mut Transaction, about: &JobFacts, kind: &str, text:
     Ok(())
 }
 
-/// Records and counts a worker's message that came too late; it has no other effect. A message about a job that does
-/// not exist is not counted.
+/// Records and counts a message of a worker that came too late. The message has no other effect. If the job does not
+/// exist, the message is not counted.
 async fn note_late(transaction: &mut Transaction, lease: &Lease, what: &str) -> Result<(), DbError> {
     let known =
         transaction.row("SELECT id FROM job WHERE id = ? AND attempt >= ?", values![lease.job, lease.attempt]).await?;
@@ -145,7 +146,7 @@ async fn give_up(transaction: &mut Transaction, job: i64, attempt: i64, fault: &
     note(transaction, &row, "buried", fault).await
 }
 
-/// Writes a result. Unless it belongs to an undecided regrade, it also becomes the grade.
+/// Writes a result. It also becomes the grade, unless it belongs to a regrade on which staff have not decided.
 async fn write_result(
     transaction: &mut Transaction,
     job: i64,
@@ -153,7 +154,7 @@ async fn write_result(
     outcome: &Outcome,
 ) -> Result<JobFacts, DbError> {
     let about = find_job(transaction, job).await?;
-    // Only jobs of the grading lane have a result.
+    // Only grading jobs have a result.
     let Some(submission) = about.submission else { return Ok(about) };
     let seconds = if outcome.code == JUDGE_ERROR { about.seconds.to_string() } else { outcome.seconds.clone() };
     let statement =
@@ -213,22 +214,22 @@ async fn write_result(
     Ok(about)
 }
 
-/// The reason why another result counts.
+/// A change of the result that counts for a submission, with its reason.
 #[derive(Debug, Clone, Copy)]
 pub struct GradeChange<'a> {
-    /// The submission with the grade.
+    /// The number of the submission whose grade changes.
     pub submission: i64,
-    /// The number of the result that counts.
+    /// The number of the result that counts from now on.
     pub result: i64,
     /// The person who requested the change; `None` for the first grading.
     pub by: Option<i64>,
     /// The regrade that caused the change.
     pub campaign: Option<i64>,
-    /// The reason for the change, for students.
+    /// The reason for the change, as students read it.
     pub reason: &'a str,
 }
 
-/// Makes a result count, and records the earlier one.
+/// Makes a result count, and records the result that counted before.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! The service: a grading server for courses that loses no submission. It uses SQLite by default, or PostgreSQL with
+//! The service, a grading server for courses that loses no submission. It uses SQLite by default, or PostgreSQL with
 //! any number of workers. docs/server/internals.md describes how it works.
 
 pub mod calendar;

@@ -1,5 +1,6 @@
-//! Serves connections until the server stops, and completes the requests that have arrived. The proxy that
-//! docs/server/operation.md requires limits the number of connections, slow heads and slow readers.
+//! Serves connections until the server stops, and completes the requests that have arrived. The proxy in front, which
+//! docs/server/operation.md requires, limits the number of connections, and ends connections that send or read too
+//! slowly.
 use axum::Router;
 use rustix::process::{Resource, Rlimit, getrlimit, setrlimit};
 use std::{io, net::SocketAddr, time::Duration};
@@ -7,10 +8,10 @@ use tokio::net::TcpListener;
 use tokio_util::sync::CancellationToken;
 use ureq::Agent;
 
-/// The time that open connections have to finish when the server stops.
+/// The time that open connections have to finish after the server was told to stop.
 const GRACE_PERIOD: Duration = Duration::from_secs(20);
 
-/// Serves until `stop` is canceled and the requests that have arrived are answered.
+/// Serves connections until `stop` is canceled, and answers the requests that have arrived by then.
 ///
 /// # Errors
 ///
@@ -32,7 +33,7 @@ pub async fn serve(listener: TcpListener, router: Router, stop: CancellationToke
     }
 }
 
-/// Returns a client for requests to configured services, which follows no redirections.
+/// Returns a client for requests to services that an administrator configured. It follows no redirections.
 pub(crate) fn new_agent(over_http: bool, patience: Duration) -> Agent {
     Agent::config_builder()
         .http_status_as_error(false)

@@ -1,6 +1,6 @@
-//! An OpenID Connect provider, by which the people of an organization sign in: the authorization code flow with PKCE.
-//! The crate `openidconnect` writes the requests and checks the answers. This module sends them, caches the provider's
-//! configuration, and returns the provider's description of a person. `domain` finds the account.
+//! An OpenID Connect provider, by which the people of an organization sign in: it uses the authorization code flow with
+//! PKCE. The crate `openidconnect` writes the requests and checks the answers. This module sends them, caches the
+//! provider's configuration, and returns what the provider reports about a person. `domain` finds the person's account.
 use crate::{net, problem::ensure};
 use anyhow::{Context as _, anyhow};
 use openidconnect::{
@@ -22,7 +22,7 @@ use url::Url;
 /// The time for which the provider's configuration is used before it is read again.
 const CONFIGURATION_LIFETIME: Duration = Duration::from_secs(3600);
 
-/// The minimum time between two readings, for an unknown key or after a failure.
+/// The minimum time between two requests for the configuration, after an unknown key or a failure.
 const MIN_PAUSE: Duration = Duration::from_secs(1);
 
 /// The maximum time to wait for the provider's answer.
@@ -31,7 +31,7 @@ const ANSWER_TIMEOUT: Duration = Duration::from_secs(10);
 /// The maximum size of an answer, in bytes.
 const MAX_ANSWER_BYTES: u64 = 1 << 20;
 
-/// The accepted signature algorithms of tokens: those whose private key only the provider has.
+/// The accepted algorithms for signatures of tokens. With these, only the provider has the private key.
 const ALGORITHMS: [CoreJwsSigningAlgorithm; 9] = [
     CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha256,
     CoreJwsSigningAlgorithm::RsaSsaPkcs1V15Sha384,
@@ -44,7 +44,7 @@ const ALGORITHMS: [CoreJwsSigningAlgorithm; 9] = [
     CoreJwsSigningAlgorithm::EdDsa,
 ];
 
-/// The client type, with the addresses that the provider published.
+/// The client's type, after the provider's addresses are known.
 type Client =
     CoreClient<EndpointSet, EndpointNotSet, EndpointNotSet, EndpointNotSet, EndpointMaybeSet, EndpointMaybeSet>;
 
@@ -59,31 +59,32 @@ pub enum ProviderFault {
     Rejected(String),
 }
 
-/// A person in the provider's description.
+/// A person, as the provider describes them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct ProviderPerson {
     /// The provider's identifier of the person, which never changes.
     pub subject: String,
-    /// The person's name.
+    /// The person's full name; `None` if the provider does not report it.
     pub name: Option<String>,
     /// The person's short name at the provider, from which a new account's login is made.
     pub nickname: Option<String>,
-    /// The part before the @ of an address that the provider has confirmed, in the allowed domain.
+    /// The part of the person's e-mail address before the @. The provider has confirmed the address, and it is in the
+    /// allowed domain.
     pub mailbox: Option<String>,
 }
 
-/// The secrets of one sign-in, which the provider receives.
+/// The secrets of one sign-in.
 #[derive(Debug, Clone)]
 pub struct SignInWords {
-    /// The state, which is returned unchanged.
+    /// The state, which the provider returns unchanged.
     pub state: String,
-    /// The nonce, which the token contains.
+    /// The nonce, which the provider's token must contain.
     pub nonce: String,
-    /// The proof that this service requested the code, with at least 43 characters.
+    /// The secret by which this service proves that it requested the code. It has at least 43 characters.
     pub verifier: String,
 }
 
-/// The claims about a person that this service uses.
+/// The facts that a provider reports about a person and that this service uses.
 struct SaidClaims {
     name: Option<String>,
     nickname: Option<String>,
@@ -91,7 +92,8 @@ struct SaidClaims {
     is_confirmed: bool,
 }
 
-/// Reads the claims from a token or from an answer. Both types have the same methods, but no common trait.
+/// Reads the claims from a token, or from the answer to a further request. The types of both have the same methods, but
+/// no common trait.
 macro_rules! said {
     ($claims:ident) => {
         SaidClaims {
@@ -110,13 +112,13 @@ struct KnownConfiguration {
     metadata: Result<CoreProviderMetadata, ProviderFault>,
 }
 
-/// A provider, with this service as its client.
+/// A provider at which people sign in, and this service's registration there.
 #[derive(Debug)]
 pub struct Provider {
     issuer: IssuerUrl,
     client: ClientId,
     secret: ClientSecret,
-    /// The provider's name on pages.
+    /// The provider's name as pages show it.
     pub label: String,
     domain: Option<String>,
     agent: Agent,
@@ -124,11 +126,12 @@ pub struct Provider {
 }
 
 impl Provider {
-    /// Creates the client of a provider. With a domain, only people with a confirmed address in it may sign in.
+    /// Creates a provider. If a domain is given, only people with a confirmed e-mail address in that domain may sign
+    /// in.
     ///
     /// # Errors
     ///
-    /// Fails if the issuer is not an HTTPS address; on this machine HTTP is accepted, for tests.
+    /// Fails if the issuer is not an HTTPS address. For tests, HTTP is accepted if the provider is on this machine.
     pub fn new(
         issuer: String,
         client: String,
@@ -151,12 +154,12 @@ impl Provider {
         })
     }
 
-    /// Returns the provider's issuer, which identifies a person together with a subject.
+    /// Returns the provider's issuer. Together with a subject, it identifies a person.
     pub fn issuer(&self) -> &str {
         &self.issuer
     }
 
-    /// Returns the provider's configuration, which is at most `age` old.
+    /// Returns the provider's configuration, which was read at most `age` ago.
     async fn metadata(&self, age: Duration) -> Result<CoreProviderMetadata, ProviderFault> {
         let mut published = self.published.lock().await;
         if let Some(KnownConfiguration { asked_at, metadata }) = &*published
@@ -175,7 +178,8 @@ impl Provider {
         metadata
     }
 
-    /// Returns a client with the provider's configuration of at most this age, for answers at the address `redirect`.
+    /// Returns a client with a configuration that was read at most `age` ago. The provider sends people back to the
+    /// address `redirect`.
     async fn client(&self, age: Duration, redirect: &str) -> Result<Client, ProviderFault> {
         let metadata = self.metadata(age).await?;
         let methods = metadata.token_endpoint_auth_methods_supported().cloned().unwrap_or_default();
@@ -186,7 +190,7 @@ impl Provider {
             .set_auth_type(if by_header { AuthType::BasicAuth } else { AuthType::RequestBody }))
     }
 
-    /// Returns the address to which a browser is redirected for signing in.
+    /// Returns the provider's address at which a person signs in.
     ///
     /// # Errors
     ///
@@ -226,7 +230,7 @@ impl Provider {
         let token = answer.id_token().ok_or_else(|| untrusted_answer(anyhow!("the provider returned no ID token")))?;
         let nonce = Nonce::new(words.nonce);
         let claims = match verify_token(&client, token, &nonce) {
-            // The provider may have changed its keys, so read its configuration again.
+            // The provider may have changed its keys, so its configuration is read again.
             Err(ClaimsVerificationError::SignatureVerification(SignatureVerificationError::NoMatchingKey)) => {
                 verify_token(&self.client(MIN_PAUSE, redirect).await?, token, &nonce)
             }
@@ -234,7 +238,7 @@ impl Provider {
         };
         let claims = claims.map_err(untrusted_answer)?;
         let said = said!(claims);
-        // Some providers put the mail address into the token, others only into a further answer.
+        // Some providers put the mail address into the token. Others return it only for a further request.
         let more = match said.email {
             Some(_) => None,
             None => self.ask_for_claims(&client, answer.access_token().clone(), claims.subject().clone()).await?,
@@ -242,7 +246,7 @@ impl Provider {
         self.read(claims.subject().to_string(), more.unwrap_or(said))
     }
 
-    /// Returns further claims about a person, if the provider offers them.
+    /// Returns further claims about a person; `None` if the provider does not offer them.
     async fn ask_for_claims(
         &self,
         client: &Client,
@@ -270,7 +274,7 @@ impl Provider {
     }
 }
 
-/// Checks a token: the provider signed it for this client and this sign-in, and it has not expired.
+/// Checks a token: the provider must have signed it for this client and this sign-in, and it must not have expired.
 fn verify_token<'a>(
     client: &Client,
     token: &'a CoreIdToken,
@@ -279,13 +283,13 @@ fn verify_token<'a>(
     token.claims(&client.id_token_verifier().set_allowed_algs(ALGORITHMS), nonce)
 }
 
-/// Returns the error about an answer that is not trusted, with all its causes.
+/// Returns the error for an answer that is not trusted. It lists all causes.
 fn untrusted_answer(error: impl Into<anyhow::Error>) -> ProviderFault {
     let why: String = format!("{:#}", error.into()).chars().filter(|c| !c.is_control()).take(300).collect();
     ProviderFault::Rejected(format!("the provider's answer is not accepted: {why}"))
 }
 
-/// Sends a request on a thread that may block.
+/// Sends a request in a thread that may block.
 async fn send(agent: Agent, request: HttpRequest) -> Result<HttpResponse, std::io::Error> {
     let sent = tokio::task::spawn_blocking(move || {
         let (head, mut body) = agent.run(request).map_err(std::io::Error::other)?.into_parts();

@@ -1,29 +1,30 @@
-//! Errors in the form that clients receive: the problem, and its remedy (RFC 9457, problem+json).
+//! Errors as clients receive them: each describes the problem, and what the client can do about it (RFC 9457,
+//! problem+json).
 use crate::{db::DbError, store::StoreError};
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// The reason why a request was rejected.
+/// The reason why a request was rejected, as the client receives it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Problem {
-    /// A stable name of the problem, for programs.
+    /// The name of the kind of problem, for programs. It never changes.
     #[serde(rename = "type")]
     pub kind: String,
-    /// The kind of problem, as text.
+    /// The kind of problem, in words.
     pub title: String,
     /// The HTTP status of the answer.
     pub status: u16,
-    /// The description of this problem.
+    /// The description of the fault in this request.
     pub detail: String,
-    /// The remedy for the problem.
+    /// The action by which the client can solve the problem.
     pub remedy: String,
-    /// The number of seconds after which a retry may succeed, if known.
+    /// The number of seconds after which a retry may succeed; null if it is unknown.
     #[serde(skip)]
     pub wait: Option<u64>,
 }
 
-/// Declares the reasons for rejections: the status, a name for programs, a title, the detail, and the remedy. A detail
-/// or a remedy that the caller gives is an argument.
+/// Declares the reasons for rejections. Each has a status, a name for programs, a title, a detail and a remedy. If the
+/// caller gives the detail or the remedy, it is an argument.
 macro_rules! problems {
     ($($(#[doc = $doc:literal])* $name:ident($($argument:ident: $type:ty),*):
         $status:literal, $kind:literal, $title:literal, $detail:expr, $remedy:expr;)*) => {
@@ -56,11 +57,11 @@ problems! {
     not_allowed(detail: impl Into<String>): 403, "not-allowed", "Not allowed",
         detail,
         "ask a person whose role allows it";
-    /// The person must sign in again, because somebody else may use the browser.
+    /// The sign-in is not recent. The person must sign in again, because somebody else may be using the browser.
     sign_in_again(detail: impl Into<String>): 403, "sign-in-again", "Sign in again",
         detail,
         "sign in again on this server's pages, and repeat the action there";
-    /// Another site may have made the browser send the request.
+    /// The request may have been sent by another site through the browser.
     cross_site(): 403, "cross-site", "Sent from another site",
         "the request came from another site, or does not say where it came from",
         "send it from this site's own pages, or with a token instead of a cookie";
@@ -68,7 +69,7 @@ problems! {
     refused_launch(detail: impl Into<String>): 403, "launch-refused", "This sign-in is not possible",
         detail,
         "go back to the platform and open it there again; if it happens again, tell the server's administrator";
-    /// A sign-in from a learning platform is not possible until a person does something.
+    /// A sign-in from a learning platform is not possible until somebody does what the remedy says.
     refused_until(detail: impl Into<String>, remedy: &str): 403, "launch-refused", "This sign-in is not possible",
         detail,
         remedy;
@@ -80,11 +81,11 @@ problems! {
     platform_failed(detail: impl Into<String>): 502, "platform-failed", "The learning platform failed",
         detail,
         "try again later; if it happens again, tell the server's administrator";
-    /// The thing does not exist, or the sender must not learn whether it exists.
+    /// The named thing does not exist, or the sender must not learn whether it exists.
     not_found(what: &str): 404, "not-found", "Not found",
         format!("there is no such {what}, or you may not see it"),
         "check the address";
-    /// The thing existed, and is no longer kept.
+    /// The named thing existed, but has been removed.
     removed(): 410, "removed", "No longer kept",
         "the upload and its reports were removed; the grade and its history stay",
         "ask the course's staff about the grade";
@@ -100,15 +101,15 @@ problems! {
     own_account(): 409, "conflict", "Not possible now",
         "this is your own account",
         "ask another administrator";
-    /// The upload is not a submission.
+    /// The uploaded file is not a submission.
     unusable(detail: impl Into<String>): 422, "unusable-upload", "This can't be graded",
         detail,
         "correct the file and upload it again; this did not count as an attempt";
-    /// The upload is not a suite.
+    /// The uploaded file is not a suite.
     no_suite(detail: impl Into<String>): 422, "unusable-upload", "This is not a suite",
         detail,
         "correct the suite and upload it again; the assignment keeps its suite";
-    /// The upload has more bytes than allowed.
+    /// The upload is larger than allowed.
     too_large(most: u64): 413, "too-large", "Too large",
         format!("more than the {} that are allowed", format_size(most)),
         "send less: leave out build folders, and traces in an archive of sources";
@@ -137,11 +138,11 @@ problems! {
     too_many(detail: impl Into<String>): 429, "too-many", "Too many",
         detail,
         "wait, and try again";
-    /// The server failed, and a retry may succeed.
+    /// The server cannot answer at present; a retry may succeed.
     unavailable(detail: impl Into<String>): 503, "unavailable", "Not available",
         detail,
         "try again in a moment; accepted uploads are safe";
-    /// The server failed.
+    /// The server failed, because of an error in it.
     fault(): 500, "fault", "The server failed",
         "something went wrong here",
         "try again, and tell the administrator; the log has details";
@@ -155,7 +156,7 @@ pub(crate) fn ensure<E>(holds: bool, otherwise: E) -> Result<(), E> {
     if holds { Ok(()) } else { Err(otherwise) }
 }
 
-/// Formats a size in bytes, in a unit with few digits.
+/// Formats a number of bytes with a short unit, such as `1.5 MiB`.
 pub(crate) fn format_size(bytes: u64) -> String {
     match bytes {
         few @ ..1024 => format!("{few} B"),

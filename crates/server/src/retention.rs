@@ -1,5 +1,6 @@
-//! Removes old uploads and reports, and bytes without references. Grades and their history stay forever. The work is
-//! done in batches, so that memory is the same for ten submissions and for a million, and no request waits for long.
+//! Removes old uploads and reports, and artifacts to which nothing refers. Grades and their history stay forever. The
+//! work is done in batches, so that memory is the same for ten submissions and for a million, and no request waits for
+//! long.
 use crate::{
     db::{Database, DbError, Transaction},
     queue::millis,
@@ -9,13 +10,13 @@ use crate::{
 use std::{collections::HashSet, time::Duration};
 use thiserror::Error;
 
-/// The minimum age of a removed artifact. A younger one may still be referenced by a running transaction.
+/// The minimum age of an artifact that is removed. A running transaction may still refer to a younger one.
 pub const MIN_AGE: Duration = Duration::from_secs(24 * 3600);
 
 /// The number of submissions that expire in one transaction.
 const BATCH_SIZE: i64 = 500;
 
-/// The reason why the removal is incomplete.
+/// The reason why some expired data could not be removed.
 #[derive(Debug, Error)]
 pub enum RetentionError {
     /// The database reported an error.
@@ -26,17 +27,17 @@ pub enum RetentionError {
     Store(#[from] StoreError),
 }
 
-/// The numbers of removed things.
+/// The numbers of submissions and artifacts that were removed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub struct RemovalCounts {
-    /// The number of submissions whose upload and reports expired.
+    /// The number of submissions whose upload and reports were removed.
     pub submissions: u64,
     /// The number of removed artifacts.
     pub artifacts: usize,
 }
 
-/// Removes uploads and reports of submissions that are older than `keep`, if it is set, and artifacts without
-/// references that are older than `least`. Submissions that are being graded or regraded stay.
+/// Removes the uploads and reports of submissions that are older than `keep`, if `keep` is set. Removes artifacts that
+/// are older than `least` and to which nothing refers. Submissions that are being graded or regraded are left alone.
 ///
 /// # Errors
 ///
@@ -94,7 +95,7 @@ async fn give_up_submissions(database: &Database, keep: i64) -> Result<u64, DbEr
     Ok(submissions)
 }
 
-/// Returns the digests that the database still references.
+/// Returns those of the digests to which the database still refers.
 async fn find_named(database: &Database, digests: Vec<Digest>) -> Result<HashSet<Digest>, RetentionError> {
     let mut transaction = database.read().await?;
     let suites = used_suites(&mut transaction).await?;
@@ -121,7 +122,7 @@ async fn find_named(database: &Database, digests: Vec<Digest>) -> Result<HashSet
     Ok(named)
 }
 
-/// Returns the archives of suites that settings or unfinished jobs reference.
+/// Returns the digests of suite archives that settings or unfinished jobs name.
 async fn used_suites(transaction: &mut Transaction) -> Result<HashSet<String>, DbError> {
     let statement = "SELECT settings AS words FROM assignment UNION SELECT settings FROM campaign
         UNION SELECT substr(payload, {strpos}(payload, '\"archive\":\"') + 11, 64) FROM job

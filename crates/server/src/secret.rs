@@ -2,14 +2,14 @@
 
 /// Returns 128 random bits in hexadecimal.
 ///
-/// # Panics When the system has no random numbers.
+/// # Panics Panics if the system provides no random numbers.
 pub fn random_hex() -> String {
     let mut bytes = [0; 16];
     getrandom::fill(&mut bytes).expect("random numbers from the system");
     to_hex(&bytes)
 }
 
-/// Returns eight random bits, for values that should only differ.
+/// Returns eight random bits, for values that need not be secret.
 pub(crate) fn random_byte() -> u8 {
     getrandom::u32().map_or(0, |word| word.to_le_bytes()[0])
 }

@@ -1,5 +1,5 @@
-//! The part of a grade that students see while groups that its suite hides are withheld. To students, the grade looks
-//! as if there were no such groups.
+//! The part of a grade that students see while the suite's hidden groups are withheld. To students, the grade looks as
+//! if these groups did not exist.
 use crate::{
     grade_file::{GradeFile, GradeInFile, GroupInFile, SceneInFile},
     store::{Store, StoreError},
@@ -11,8 +11,8 @@ use serde_json::Number;
 use std::io;
 use tokio_util::io::{StreamReader, SyncIoBridge};
 
-/// The verdicts from best to worst, each with its code, its text, and its letter in a row of scenes. The worst verdict
-/// of all scenes is the grade's.
+/// The verdicts from best to worst. Each has a code, a text, and a letter for tables that show all scenes in a row. A
+/// submission's verdict is the worst of its scenes' verdicts.
 const VERDICT_TEXTS: [(&str, &str, char); 14] = [
     ("AC", "accepted", 'r'),
     ("--", "not run", 'n'),
@@ -30,7 +30,7 @@ const VERDICT_TEXTS: [(&str, &str, char); 14] = [
     ("JE", "judge error", 'e'),
 ];
 
-/// Returns the text of a verdict. A grader of another version may have verdicts that are unknown here.
+/// Returns the text for a verdict's code. A grader of another version may report codes that are unknown here.
 pub fn verdict(code: &str) -> &str {
     let known = VERDICT_TEXTS.iter().find(|verdict| verdict.0 == code);
     known.map_or(if code == "NR" { "not shown yet" } else { code }, |verdict| verdict.1)
@@ -46,30 +46,30 @@ pub struct ShownGrade {
     summary: String,
 }
 
-/// The texts that the database stores about the scenes of an outcome.
+/// The texts about an outcome's scenes that the database stores.
 #[derive(Debug, Default)]
 pub struct KeptTexts {
-    /// The part that students see while groups are withheld; empty if its suite hides nothing.
+    /// The [`ShownGrade`] while groups are withheld; empty if the suite hides no groups.
     pub shown: String,
-    /// The scenes that are not accepted, one line each with the verdict's code; `None` if they are unknown.
+    /// The scenes that are not accepted, one per line after the verdict's code; `None` if they are unknown.
     pub failed: Option<String>,
     /// The grade's [`GradeParts`]; `None` if they are unknown.
     pub parts: Option<String>,
 }
 
-/// The parts of a grade with a column in tables of a class.
+/// The parts of a grade that have their own columns in tables of a class.
 #[derive(Debug, Default, Serialize, Deserialize)]
 pub struct GradeParts {
-    /// The groups, each with its points; `None` if the grader failed.
+    /// The name and the points of each group. The points are `None` if the grader failed.
     pub groups: Vec<(String, Option<f64>)>,
     /// The likely mistakes, as sentences.
     pub mistakes: Vec<String>,
-    /// A letter for each scene, with `|` between groups; empty for results of an older version.
+    /// One letter per scene, with `|` between groups; empty for results that an older version stored.
     #[serde(default)]
     pub scenes: String,
 }
 
-/// Reads the scenes of an outcome.
+/// Reads the texts about an outcome's scenes from its `grade.json`.
 ///
 /// # Errors
 /// Fails if the store fails.
@@ -92,14 +92,14 @@ fn read(grade: impl io::Read) -> Option<GradeFile> {
     serde_json::from_reader(io::BufReader::new(grade)).ok()
 }
 
-/// Returns the scenes that are not accepted, including hidden ones.
+/// Lists the scenes that are not accepted, including those in hidden groups, as text for the database.
 fn list_failed(report: &GradeFile) -> String {
     let scenes = report.grades.iter().flat_map(GradeInFile::scenes).filter(|scene| scene.code != "AC");
-    // A name with a line break would be read as two lines.
+    // A line break in a name is replaced, because it would be read as the end of the line.
     scenes.map(|scene| format!("{} {}\n", scene.code, scene.scene.replace('\n', " "))).collect()
 }
 
-/// Returns the parts of a grade, including those of hidden groups.
+/// Returns the parts of a grade as text for the database. Hidden groups are included.
 fn parts(report: &GradeFile) -> String {
     let groups = report.grades.iter().flat_map(|grade| &grade.groups);
     let mistakes = report.grades.iter().flat_map(|grade| &grade.likely_mistakes);
@@ -129,7 +129,7 @@ fn empty_grade() -> ShownGrade {
     }
 }
 
-/// Returns the part of a `grade.json` without hidden groups; `None` if it hides none.
+/// Returns the part of a `grade.json` that students see without hidden groups; `None` if the suite hides no groups.
 fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     let groups: Vec<&GroupInFile> = report.grades.iter().flat_map(|grade| &grade.groups).collect();
     let is_visible =
@@ -152,7 +152,7 @@ fn shown_grade(report: &GradeFile) -> Option<ShownGrade> {
     let accepted = scenes.iter().filter(|scene| scene.code == "AC").count();
     Some(ShownGrade {
         verdict: worst.verdict.clone(),
-        // A code has letters; "--" means that no group was run.
+        // The code "--" means that no group was run; shown codes consist of letters.
         code: if worst.code == "--" { "NR".to_owned() } else { worst.code.clone() },
         points: sum(|group| group.points),
         max_points: sum(|group| group.max_points),
@@ -169,18 +169,18 @@ impl ShownGrade {
         }
     }
 
-    /// Returns the points, and their maximum.
+    /// Returns the points and the maximum number of points.
     pub fn points(self) -> (Option<String>, Option<String>) {
         (self.points, self.max_points)
     }
 
-    /// Returns the verdict's code, and the points.
+    /// Returns the verdict's code and the points.
     pub fn line(self) -> (String, Option<String>) {
         (self.code, self.points)
     }
 
-    /// Reduces an outcome to the part that students see. Digests, sizes and exact times are removed as well, because
-    /// they would reveal changes of the withheld parts.
+    /// Reduces an outcome to the part that students see. Digests, sizes and exact times are also removed, because they
+    /// would reveal changes in the withheld parts.
     pub fn hide_from(self, outcome: &mut Outcome, page: &str) {
         (outcome.verdict, outcome.code, outcome.summary) = (self.verdict, self.code, self.summary);
         (outcome.points, outcome.max_points) = (self.points, self.max_points);
@@ -189,7 +189,7 @@ impl ShownGrade {
     }
 }
 
-/// Returns a time, rounded down to the hour: a grade's exact time would reveal how long hidden groups took.
+/// Returns a time rounded down to the hour. The exact time of a grade would reveal how long hidden groups took.
 pub fn round_to_hour(milliseconds: i64) -> i64 {
     milliseconds - milliseconds.rem_euclid(3_600_000)
 }

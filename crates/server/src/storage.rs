@@ -16,36 +16,36 @@ use std::{
 };
 use tokio::sync::Mutex;
 
-/// The time for which a check counts, so that frequent requests of monitors cost only one write.
+/// The time for which the result of a check is reused, so that frequent requests of monitors cost only one write.
 const CHECK_LIFETIME: Duration = Duration::from_secs(2);
 
-/// The maximum duration of a check; probes wait for five seconds.
+/// The maximum duration of a check. Monitors wait for five seconds.
 const CHECK_TIMEOUT: Duration = Duration::from_secs(3);
 
-/// The database, the store and the disk, for checks that they can be written.
+/// The database, the store and the disk, with checks that they can be written.
 #[derive(Debug)]
 pub struct Storage {
     database: Database,
     store: Store,
-    /// The folder of incoming uploads, whose disk is checked.
+    /// The folder of incoming uploads, on the disk whose free space is checked.
     incoming: PathBuf,
     /// The number of free bytes on the disk below which uploads are rejected.
     low_water: u64,
-    /// The time of the last check, with its result: the part that cannot be written.
+    /// The time of the last check, and the part that could not be written; `None` if all could be written.
     last: Mutex<Option<(Instant, Option<&'static str>)>>,
 }
 
 impl Storage {
-    /// Creates storage that rejects uploads below a number of free bytes.
+    /// Creates storage that rejects uploads if fewer than `low_water` bytes are free.
     pub fn new(database: Database, store: Store, incoming: PathBuf, low_water: u64) -> Self {
         Self { database, store, incoming, low_water, last: Mutex::default() }
     }
 
-    /// Checks by writing that the database and the store can be written.
+    /// Checks that the database and the store can be written, by writing to both.
     ///
     /// # Errors
     ///
-    /// Fails with status 503 if one of them can't be written, and names it.
+    /// Fails with status 503 if one of them can't be written. The message names it.
     pub async fn prove(&self) -> Result<(), Problem> {
         let proved = tokio::time::timeout(CHECK_TIMEOUT, self.prove_now()).await;
         proved.unwrap_or_else(|_| Err(Problem::unavailable("the database or the store does not answer in time")))
@@ -87,22 +87,22 @@ impl Storage {
 
     async fn write_to_database(&self) -> Result<(), DbError> {
         let mut transaction = self.database.begin().await?;
-        // The row gets the value that it has, but the commit must write it.
+        // The row gets the value that it already has, but the commit must still write it.
         transaction.execute("UPDATE pulse SET beat_at = beat_at WHERE id = 1", values![]).await?;
         transaction.commit().await
     }
 
-    /// Returns the free bytes of the data folder's disk, and its size, if the disk reports both.
+    /// Returns the free bytes and the size of the disk with the data folder; `None` if the disk does not report them.
     pub fn disk(&self) -> Option<(u64, u64)> {
         let disk = statvfs(&self.incoming).ok()?;
         Some((disk.f_bavail.saturating_mul(disk.f_frsize), disk.f_blocks.saturating_mul(disk.f_frsize)))
     }
 
-    /// Checks that there is space for an upload.
+    /// Checks that the disk has space for an upload.
     ///
     /// # Errors
     ///
-    /// Fails with status 507 if less than the low-water mark is free.
+    /// Fails with status 507 if fewer bytes are free than the low-water mark requires.
     pub fn ensure_room(&self) -> Result<(), Problem> {
         // If a disk does not report its free space, uploads are accepted.
         if self.disk().is_some_and(|(free, _)| free < self.low_water) {

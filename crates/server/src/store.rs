@@ -1,6 +1,6 @@
 //! The store of artifacts: submissions, reports, suites. Each is stored under the SHA-256 of its bytes, and is written
-//! once and never changed. A reader gets the bytes of the digest, or an error. The store is a folder by default; for
-//! several servers it is a bucket of S3 or a compatible service.
+//! once and never changed. A reader gets bytes that match the digest, or an error. The store is a folder by default;
+//! for several servers it is a bucket of S3 or a compatible service.
 //!
 //! An artifact is safely stored before the database refers to it, so that a referenced artifact always exists.
 mod read;
@@ -26,15 +26,15 @@ use thiserror::Error;
 use tokio_util::io::ReaderStream;
 use utoipa::ToSchema;
 
-/// The number of bytes that are read at a time.
+/// The number of bytes that are read at a time, in files and artifacts.
 const CHUNK_BYTES: usize = 256 * 1024;
 
-/// The folder of artifacts.
+/// The name of the folder that contains the artifacts.
 const KEPT_FOLDER: &str = "sha256";
 const TRASH_FOLDER: &str = "aside";
 
-/// The age above which an artifact is written again if it is stored again. The removal of unreferenced artifacts checks
-/// their age, and must not remove one that is about to be referenced.
+/// The age above which an existing artifact is written again when it is stored again. The removal of unreferenced
+/// artifacts goes by age, and must not remove an artifact to which the database is about to refer.
 const FRESH_AGE: Duration = Duration::from_secs(6 * 3600);
 
 /// The SHA-256 of an artifact's bytes, in lower-case hexadecimal.
@@ -45,9 +45,9 @@ pub struct Digest(String);
 /// The digest and size of an artifact.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Artifact {
-    /// The digest of the artifact's bytes.
+    /// The digest under which the artifact is stored.
     pub digest: Digest,
-    /// The number of the artifact's bytes.
+    /// The size of the artifact in bytes.
     #[schema(maximum = 9_007_199_254_740_991_i64)]
     pub size: u64,
 }
@@ -55,13 +55,13 @@ pub struct Artifact {
 /// The reason why an artifact can't be stored or read.
 #[derive(Debug, Error)]
 pub enum StoreError {
-    /// There is no artifact with this digest.
+    /// The store has no artifact with this digest.
     #[error("the store has no artifact {0}")]
     Missing(Digest),
     /// The artifact's bytes differ from those that were stored, because the disk is damaged or the file was changed.
     #[error("the artifact {0} is damaged in the store")]
     Damaged(Digest),
-    /// The store can't be used: no space, no permission, or not reachable.
+    /// The store can't be used; the value describes why, such as no space, no permission, or no connection.
     #[error("the store failed: {0}")]
     Failed(String),
 }
@@ -79,7 +79,7 @@ impl From<io::Error> for StoreError {
 }
 
 impl Digest {
-    /// Returns the digest of bytes.
+    /// Computes the digest of bytes.
     pub fn from_bytes(bytes: &[u8]) -> Self {
         Self(to_hex(&Sha256::digest(bytes)))
     }
@@ -89,12 +89,12 @@ impl Digest {
         &self.0
     }
 
-    /// Returns the beginning of the digest, for people.
+    /// Returns the first digits of the digest, for people.
     pub fn short(&self) -> &str {
         &self.0[..12]
     }
 
-    /// Returns the key of an artifact in one of the two folders.
+    /// Returns the key of an artifact in one of the store's two folders.
     fn key(&self, place: &str) -> Key {
         Key::from(format!("{place}/{}/{}", &self.0[..2], &self.0[2..]))
     }
@@ -126,11 +126,11 @@ impl fmt::Display for Digest {
     }
 }
 
-/// The store of artifacts. Clones are cheap.
+/// The store of artifacts. Clones are cheap and use the same store.
 #[derive(Debug, Clone)]
 pub struct Store {
     objects: Arc<dyn ObjectStore>,
-    /// The path, if the store is a folder.
+    /// The path of the store's folder; `None` if the store is a bucket.
     folder: Option<PathBuf>,
 }
 
@@ -147,12 +147,12 @@ impl Store {
         Ok(Self { objects: Arc::new(objects), folder: Some(folder.to_owned()) })
     }
 
-    /// Creates a store in a bucket, `s3://BUCKET` or `s3://BUCKET/PREFIX`, with the settings in the variables
+    /// Creates a store in a bucket, `s3://BUCKET` or `s3://BUCKET/PREFIX`, configured by the environment variables
     /// `AWS_...`.
     ///
     /// # Errors
     ///
-    /// Fails if the address is invalid, or this program was built without buckets.
+    /// Fails if the address is invalid, or this program was built without support for buckets.
     pub fn bucket(address: &str) -> Result<Self, StoreError> {
         let place = address.strip_prefix("s3://").unwrap_or_default();
         let (bucket, prefix) = place.split_once('/').unwrap_or((place, ""));
@@ -164,7 +164,7 @@ impl Store {
 
     #[cfg(feature = "s3")]
     fn s3(bucket: &str, prefix: &str) -> Result<Self, StoreError> {
-        // If a provider is installed already, the error can be ignored.
+        // This fails only if a provider is already installed, so the error is ignored.
         drop(rustls::crypto::ring::default_provider().install_default());
         let objects = object_store::aws::AmazonS3Builder::from_env().with_bucket_name(bucket).build()?;
         let objects = object_store::prefix::PrefixStore::new(objects, prefix);
@@ -176,7 +176,7 @@ impl Store {
         Err(StoreError::Failed("this program was built without buckets: build it with --features s3".to_owned()))
     }
 
-    /// Writes a small object and removes it, as a check that more can be stored.
+    /// Checks that more can be stored, by writing a small object and removing it.
     ///
     /// # Errors
     ///
@@ -188,7 +188,7 @@ impl Store {
         Ok(())
     }
 
-    /// Stores a file in pieces, so that it is never completely in memory.
+    /// Stores a file. It is read in pieces, so that the whole file is never in memory.
     ///
     /// # Errors
     ///
@@ -214,7 +214,7 @@ impl Store {
         Ok(artifact)
     }
 
-    /// Returns whether there is an artifact with a digest.
+    /// Returns whether the store has an artifact with this digest.
     ///
     /// # Errors
     ///
@@ -223,7 +223,7 @@ impl Store {
         Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some() || self.age(&digest.key(TRASH_FOLDER)).await?.is_some())
     }
 
-    /// Returns whether there is an artifact that will not be removed soon.
+    /// Returns whether the store has an artifact with this digest that will not be removed soon.
     async fn find_fresh(&self, digest: &Digest) -> Result<bool, StoreError> {
         Ok(self.age(&digest.key(KEPT_FOLDER)).await?.is_some_and(|age| age < FRESH_AGE))
     }
@@ -244,10 +244,10 @@ fn age(meta: &object_store::ObjectMeta) -> Duration {
     SystemTime::now().duration_since(written).unwrap_or(Duration::ZERO)
 }
 
-/// Returns the digest and size of a file.
+/// Computes the digest and size of a file.
 ///
 /// # Errors
-/// Fails if it can't be read.
+/// Fails if the file can't be read.
 pub async fn digest_of_file(file: &Path) -> io::Result<Artifact> {
     let (mut pieces, mut hasher, mut size) = (stream_file(file).await?, Sha256::new(), 0);
     while let Some(piece) = pieces.try_next().await? {
@@ -257,7 +257,7 @@ pub async fn digest_of_file(file: &Path) -> io::Result<Artifact> {
     Ok(Artifact { digest: Digest(to_hex(&hasher.finalize())), size })
 }
 
-/// Returns a file in pieces, so that it is never completely in memory.
+/// Returns a stream of a file's pieces, so that the whole file is never in memory.
 async fn stream_file(file: &Path) -> io::Result<ReaderStream<tokio::fs::File>> {
     Ok(ReaderStream::with_capacity(tokio::fs::File::open(file).await?, CHUNK_BYTES))
 }

@@ -1,4 +1,5 @@
-//! A worker's task and its result, with the same form in the queue, over HTTP and in the database.
+//! The task that a worker receives, and the outcome that it returns. Both have the same form in the queue, over HTTP
+//! and in the database.
 use crate::{
     schema::{Code, Decimal, ReportName},
     store::{Artifact, Digest},
@@ -6,42 +7,43 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// The complete description of one grading. With the artifacts that it refers to, the grading can be repeated.
+/// The complete description of one grading. The description and the artifacts that it names are enough to repeat the
+/// grading.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Task {
-    /// The uploaded file, as stored.
+    /// The uploaded file.
     pub submission: Input,
-    /// The suite for the grading.
+    /// The suite with which the submission is graded.
     pub suite: Suite,
-    /// The rule books, unless the suite decides: `parity`, `fair` or `both`.
+    /// The rule books: `parity`, `fair` or `both`. If missing, the suite decides.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rules: Option<String>,
-    /// The level of detail in reports, unless the suite decides: `none`, `where`, `what` or `full`.
+    /// The level of detail in reports for students: `none`, `where`, `what` or `full`. If missing, the suite decides.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub hints: Option<String>,
-    /// The name of the program in a folder of sources.
+    /// The name of the executable that a submission of sources builds.
     pub program: String,
-    /// The number of seconds after which the grading is stopped; its results so far count.
+    /// The number of seconds after which the grading is stopped. The results until then count.
     pub seconds: u64,
 }
 
-/// An uploaded file.
+/// An uploaded file, which is graded.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Input {
-    /// The upload's form.
+    /// The form of the submission: a program, sources or traces.
     pub form: Form,
     /// The file's name, without dangerous characters.
     pub name: String,
-    /// The upload's bytes.
+    /// The file's bytes in the store.
     #[serde(flatten)]
     pub artifact: Artifact,
 }
 
-/// Declares the forms of submissions. A row has a form, its name in tables and messages, and a description of the
-/// upload.
+/// Declares the forms of submissions. Each row has a form, the form's name in tables and messages, and a description of
+/// what is uploaded.
 macro_rules! forms {
     ($($(#[$about:meta])+ $form:ident $name:literal $what:literal;)+) => {
-        /// The forms of submissions.
+        /// The form in which a submission is uploaded.
         #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
         #[serde(rename_all = "lowercase")]
         pub enum Form { $($(#[$about])+ $form,)+ }
@@ -55,7 +57,7 @@ macro_rules! forms {
                 match self { $(Self::$form => $name,)+ }
             }
 
-            /// Returns a description of the upload.
+            /// Returns a description of what is uploaded.
             pub fn describe(self) -> &'static str {
                 match self { $(Self::$form => $what,)+ }
             }
@@ -66,31 +68,31 @@ macro_rules! forms {
 forms! {
     /// A program that can be run.
     Program "program" "a program for Linux";
-    /// An archive of sources; the suite contains the commands to build it.
+    /// An archive of source files. The suite contains the commands that build it.
     Sources "sources" "an archive of sources";
     /// An archive of traces, one for each scene.
     Traces "traces" "an archive of traces";
 }
 
 impl Form {
-    /// Returns the form with this name.
+    /// Returns the form that is called `name` in tables and messages.
     pub fn from_name(name: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|form| form.name() == name)
     }
 }
 
-/// A suite for grading a submission.
+/// The suite with which a submission is graded.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Suite {
-    /// A suite of the grader, by name.
+    /// A suite of the grader, given by its name.
     Named(String),
-    /// An archive with a `suite.toml` and its scenes, by digest.
+    /// An archive that contains a `suite.toml` and its scenes, given by its digest.
     Archive(Digest),
 }
 
 impl Suite {
-    /// Returns the suite's name, or the beginning of its digest.
+    /// Returns the suite's name, or the beginning of the archive's digest, for messages.
     pub fn short(&self) -> String {
         match self {
             Self::Named(name) => name.clone(),
@@ -99,26 +101,27 @@ impl Suite {
     }
 }
 
-/// The result of a grading: the grader writes it, a worker reports it, and the service shows it.
+/// The result of a grading. The grader writes it, a worker reports it, and the service shows it.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Outcome {
     /// The verdict as text.
     #[schema(max_length = 200)]
     pub verdict: String,
-    /// The verdict's code: AC, WA, ...; JE means that the grader failed, and gives no points instead of zero.
+    /// The code of the verdict, such as AC or WA. JE means that the grader failed; the submission then has no points,
+    /// not zero points.
     #[schema(value_type = Code)]
     pub code: String,
-    /// The points, with exactly the grader's digits; `None` after a judge error.
+    /// The points, with exactly the digits that the grader wrote; `None` if the grader failed.
     #[schema(value_type = Option<Decimal>)]
     pub points: Option<String>,
     /// The maximum number of points.
     #[schema(value_type = Option<Decimal>)]
     pub max_points: Option<String>,
-    /// One line about the result.
+    /// The result in one line.
     pub summary: String,
     /// The grader's version.
     pub version: String,
-    /// The SHA-256 of the grader, if it is known.
+    /// The SHA-256 digest of the grader; empty if it is unknown.
     #[schema(pattern = "^([0-9a-f]{64})?$")]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub grader: String,
@@ -126,24 +129,24 @@ pub struct Outcome {
     #[schema(value_type = Decimal)]
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub seconds: String,
-    /// The reports and logs; empty in lists.
+    /// The reports and logs; empty in lists of submissions.
     pub files: Vec<OutputFile>,
     /// The part that students see while groups are withheld, in the form of [`ShownGrade`](crate::shown::ShownGrade);
-    /// `None` until it was computed.
+    /// `None` before it is computed.
     #[serde(skip)]
     pub shown: Option<String>,
-    /// The scenes that are not accepted, one line each with the verdict's code; `None` until they were computed.
+    /// The scenes that are not accepted, one per line after the verdict's code; `None` before they are computed.
     #[serde(skip)]
     pub failed: Option<String>,
     /// The points of groups and the likely mistakes, in the form of [`GradeParts`](crate::shown::GradeParts); `None`
-    /// until they were computed.
+    /// before they are computed.
     #[serde(skip)]
     pub parts: Option<String>,
 }
 
 impl Outcome {
-    /// Returns the outcome of a job that was tried too often. The service is at fault, so the outcome has no points
-    /// instead of zero. Only staff see the reason, which is in the job.
+    /// Returns the outcome of a job that was tried too often. Because the service is at fault, the outcome has no
+    /// points, not zero points. The reason is stored with the job, and only staff see it.
     pub fn judge_error() -> Self {
         Self {
             verdict: "judge error".to_owned(),
@@ -165,10 +168,10 @@ pub fn round_points(number: impl ToString) -> String {
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// The code of the verdict for failures of the grader, which gives no points instead of zero.
+/// The verdict's code if the grader failed. The submission then has no points, not zero points.
 pub const JUDGE_ERROR: &str = "JE";
 
-/// A file that the grader wrote: a report or a log.
+/// A file that a grading produced: a report or a log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct OutputFile {
     /// The file's name, such as `grade.json`.
@@ -176,7 +179,7 @@ pub struct OutputFile {
     pub name: String,
     /// The file's media type.
     pub media_type: String,
-    /// The file's bytes, as stored.
+    /// The file's bytes in the store.
     #[serde(flatten)]
     pub artifact: Artifact,
 }

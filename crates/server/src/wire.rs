@@ -7,24 +7,24 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use utoipa::ToSchema;
 
-/// A job for a worker.
+/// A job that a worker has claimed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct ClaimedJob {
-    /// The lease for further messages.
+    /// The lease, which the worker's further messages must contain.
     pub lease: Lease,
     /// The time between two renewals of the lease, in milliseconds.
     pub renew_every: u64,
-    /// The task of the job.
+    /// The task that the worker must do.
     pub task: Task,
 }
 
-/// A worker's report that it is alive.
+/// A message that the worker is alive.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct SignOfLife {
-    /// The maximum number of parallel gradings; 0 while the worker can't grade.
+    /// The maximum number of parallel gradings. It is 0 while the worker can't grade.
     #[schema(maximum = 10_000)]
     pub(crate) slots: usize,
-    /// The reason why the worker can't grade.
+    /// The reason why the worker can't grade; `None` if it can.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) fault: Option<String>,
     /// The worker's version.
@@ -33,7 +33,7 @@ pub(crate) struct SignOfLife {
     pub(crate) version: String,
 }
 
-/// The server's settings for a worker.
+/// The server's settings for a worker: the interval of its reports, and the server's version.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub struct Manners {
     /// The time between two reports that the worker is alive, in milliseconds.
@@ -43,7 +43,7 @@ pub struct Manners {
     pub(crate) version: String,
 }
 
-/// The state of a lease.
+/// The server's answer to a message about a lease.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct LeaseAnswer {
     /// Whether the lease is still valid. If not, another worker has the job, and the request changed nothing.
@@ -56,17 +56,17 @@ impl From<bool> for LeaseAnswer {
     }
 }
 
-/// A lease to extend.
+/// A message that extends a lease.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct Renewal {
     #[serde(flatten)]
     pub(crate) lease: Lease,
-    /// The progress of the grading, if the worker knows it.
+    /// The progress of the grading, if the grader reports it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub(crate) progress: Option<Progress>,
 }
 
-/// A failed try.
+/// A message that the worker failed to grade a job.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct JobFault {
     pub(crate) lease: Lease,
@@ -74,7 +74,7 @@ pub(crate) struct JobFault {
     pub(crate) fault: String,
 }
 
-/// The result of a job.
+/// A message with the result of a job.
 #[derive(Serialize, Deserialize, ToSchema)]
 pub(crate) struct FinishedJob {
     pub(crate) lease: Lease,

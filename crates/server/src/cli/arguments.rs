@@ -1,4 +1,4 @@
-//! The command line's arguments.
+//! The arguments of the server's commands. The doc comments are the help texts.
 use crate::db::Address;
 use axum_client_ip::ClientIpSource;
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -8,7 +8,7 @@ use std::{net::SocketAddr, num::NonZeroUsize, path::PathBuf};
 #[derive(Debug, Parser)]
 #[command(name = "fosssim-server", version, max_term_width = 100)]
 pub(super) struct Arguments {
-    /// The format of the log.
+    /// The form in which the log is printed.
     #[arg(long, value_enum, default_value_t = LogFormat::Text, env = "FOSSSIM_LOG_FORMAT", global = true)]
     pub(super) log_format: LogFormat,
     #[command(subcommand)]
@@ -17,9 +17,9 @@ pub(super) struct Arguments {
 
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum LogFormat {
-    /// Text for people.
+    /// Print lines of text for people.
     Text,
-    /// One JSON object per line.
+    /// Print one JSON object per line.
     Json,
 }
 
@@ -51,7 +51,8 @@ pub(super) struct StorageArguments {
     /// The folder of the database, the artifacts and the jobs' working folders.
     #[arg(long, value_name = "DIR", default_value = "fosssim-data", env = "FOSSSIM_DATA")]
     pub(super) data: PathBuf,
-    /// The database: sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME. A SQLite file in the data folder by default.
+    /// The database: sqlite:FILE or postgres://USER:PASSWORD@HOST/NAME. The default is a SQLite file in the data
+    /// folder.
     #[arg(long, value_name = "ADDRESS", env = "FOSSSIM_DATABASE", hide_env_values = true)]
     pub(super) database: Option<Address>,
     /// A bucket for artifacts instead of a folder in the data folder: s3://BUCKET/PREFIX. The usual variables such as
@@ -66,7 +67,7 @@ pub(super) struct WorkloadArguments {
     /// The number of scenes that run in parallel in one grading.
     #[arg(long, value_name = "N", default_value = "1")]
     pub(super) threads: NonZeroUsize,
-    /// The grader; by default the program fosssim-oracle in the folder of this one.
+    /// The grader; by default the program fosssim-oracle in this program's folder.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) grader: Option<PathBuf>,
     /// The number of seconds without a sign of life after which a worker's jobs are given to other workers.
@@ -90,7 +91,7 @@ pub(super) struct ServiceArguments {
     /// HTTPS.
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
     pub(super) public_url: Option<String>,
-    /// The number of parallel gradings in this process; with 0, only other workers grade. One per core by default.
+    /// The number of parallel gradings in this process; with 0, only other workers grade. The default is one per core.
     #[arg(long, value_name = "N", env = "FOSSSIM_WORKERS")]
     pub(super) workers: Option<usize>,
     /// The number of requests that an account may send per minute.
@@ -148,7 +149,7 @@ pub(super) struct ProviderArguments {
     /// The file with the client secret.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_OIDC_SECRET_FILE", requires = "oidc_issuer")]
     pub(super) oidc_secret_file: Option<PathBuf>,
-    /// The provider's name on the sign-in page. Its host by default.
+    /// The provider's name on the sign-in page. The default is the provider's host.
     #[arg(long, value_name = "NAME", env = "FOSSSIM_OIDC_LABEL", requires = "oidc_issuer")]
     pub(super) oidc_label: Option<String>,
     /// Only people with a confirmed mail address in this domain can sign in. An account that staff created belongs to
@@ -157,7 +158,7 @@ pub(super) struct ProviderArguments {
     pub(super) oidc_domain: Option<String>,
 }
 
-/// Returns the scheme and host of a typed address.
+/// Returns the scheme and host of an address that an administrator typed.
 fn public_url(text: &str) -> Result<String, String> {
     let place = text.strip_prefix("https://").or_else(|| text.strip_prefix("http://"));
     let host = place.map(|place| place.trim_end_matches('/')).unwrap_or_default();
@@ -167,7 +168,7 @@ fn public_url(text: &str) -> Result<String, String> {
     Ok(text.trim_end_matches('/').to_owned())
 }
 
-/// Prints a link that signs in an administrator once, if the administrator cannot sign in otherwise.
+/// Prints a link with which an administrator who cannot sign in otherwise can sign in once.
 #[derive(Debug, Args)]
 pub(super) struct AdminLinkArguments {
     #[command(flatten)]
@@ -175,12 +176,12 @@ pub(super) struct AdminLinkArguments {
     /// The administrator's login.
     #[arg(default_value = "admin")]
     pub(super) login: String,
-    /// The server's public address. By default the one with which the server was last started.
+    /// The server's public address. The default is the address with which the server was last started.
     #[arg(long, value_name = "URL", env = "FOSSSIM_PUBLIC_URL", value_parser = public_url)]
     pub(super) public_url: Option<String>,
 }
 
-/// Prints a new token for a worker, like the page "Administration".
+/// Prints a new token for a worker, as the page "Administration" does.
 #[derive(Debug, Args)]
 pub(super) struct WorkerTokenArguments {
     #[command(flatten)]
@@ -201,7 +202,7 @@ pub(super) struct BackupArguments {
     pub(super) output: PathBuf,
 }
 
-/// Creates a data folder from a backup. The data folder must be empty, and so must a PostgreSQL database.
+/// Creates a data folder from a backup. The data folder must be empty. A PostgreSQL database must be empty, too.
 #[derive(Debug, Args)]
 pub(super) struct RestoreArguments {
     #[command(flatten)]
@@ -211,8 +212,8 @@ pub(super) struct RestoreArguments {
     pub(super) backup: PathBuf,
 }
 
-/// Checks whether a server (by its address) or a worker (by its data folder) is healthy, and reports it by the exit
-/// code, for probes.
+/// Checks whether a server or a worker is healthy, and reports it by the exit code, for probes. A server is given by
+/// its address, and a worker by its data folder.
 #[derive(Debug, Args)]
 pub(super) struct HealthArguments {
     /// The server's address.
@@ -245,7 +246,7 @@ pub(super) struct WorkerArguments {
     pub(super) place: StorageArguments,
     #[command(flatten)]
     pub(super) work: WorkloadArguments,
-    /// The number of parallel gradings. One per core by default.
+    /// The number of parallel gradings. The default is one per core.
     #[arg(long, value_name = "N")]
     pub(super) slots: Option<NonZeroUsize>,
     /// The address of a server on another machine for which this worker grades. The worker then needs no database.

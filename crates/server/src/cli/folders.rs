@@ -15,10 +15,10 @@ use std::{
 /// The age after which an unfinished upload or job is removed.
 const LEFTOVER_AGE: Duration = Duration::from_secs(24 * 3600);
 
-/// The paths in the data folder.
+/// The paths of the service's files and folders in the data folder.
 #[derive(Debug, Clone)]
 pub(super) struct ServiceFolders {
-    /// The folder of database and store, readable only by the server's user.
+    /// The data folder, which contains the database and the store. Only the server's user can read it.
     pub(super) data: PathBuf,
     pub(super) incoming: PathBuf,
     pub(super) backups: PathBuf,

@@ -1,5 +1,5 @@
-//! The command `health`, which reports by its exit code whether a server or a worker is healthy, for probes in
-//! containers without other tools.
+//! The command `health`, for probes in containers without other tools. Its exit code reports whether a server or a
+//! worker is healthy.
 use super::{arguments::HealthArguments, heartbeat};
 use std::time::Duration;
 

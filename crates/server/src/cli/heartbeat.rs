@@ -1,5 +1,5 @@
-//! Heartbeats for monitors of this process: systemd (`Type=notify` with `WatchdogSec`), and probes that read a file in
-//! the data folder.
+//! Heartbeats, by which monitors detect that this process hangs. The monitors are systemd (`Type=notify` with
+//! `WatchdogSec`), and probes that read a file in the data folder.
 use sd_notify::NotifyState;
 use std::{
     fs,
@@ -19,12 +19,12 @@ const CHECK_TIMEOUT: Duration = Duration::from_secs(10);
 /// The time without a heartbeat after which a process counts as dead.
 const MAX_SILENCE: Duration = Duration::from_secs(60);
 
-/// Reports that the process is ready.
+/// Reports to systemd that the process is ready.
 pub(super) fn say_ready() {
     notify_systemd(&[NotifyState::Ready]);
 }
 
-/// Reports that the process ends.
+/// Reports to systemd that the process is about to end.
 pub(super) fn say_stopping() {
     notify_systemd(&[NotifyState::Stopping]);
 }

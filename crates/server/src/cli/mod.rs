@@ -28,7 +28,7 @@ pub fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<u8> {
-    // This command uses neither threads nor a log, because it has little memory and prints only its answer.
+    // This command uses neither threads nor a log: its memory is limited, and its output is only the answer.
     if let Command::LookThrough(arguments) = &arguments.command {
         return look::run(arguments).map(|()| 0);
     }
@@ -59,7 +59,7 @@ fn run(arguments: &Arguments) -> Result<u8> {
     })
 }
 
-/// Returns a token that the first SIGINT or SIGTERM cancels; a second one ends the process immediately.
+/// Returns a token that the first SIGINT or SIGTERM cancels. The second signal ends the process immediately.
 fn until_signalled() -> Result<CancellationToken> {
     use tokio::signal::unix::{SignalKind, signal};
     let (mut interrupt, mut terminate) = (signal(SignalKind::interrupt())?, signal(SignalKind::terminate())?);

@@ -118,7 +118,8 @@ pub(super) async fn run(arguments: &ServiceArguments) -> Result<()> {
     Ok(())
 }
 
-/// Returns the provider at which people sign in. Its secret is not an option, because lists of processes show options.
+/// Returns the provider at which people sign in. The provider's secret is not a command-line option, because lists of
+/// processes show options.
 fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
     let ProviderArguments { oidc_issuer, oidc_client, oidc_secret_file, oidc_label, oidc_domain } = arguments;
     let (Some(issuer), Some(client)) = (oidc_issuer, oidc_client) else { return Ok(None) };
@@ -131,7 +132,8 @@ fn provider(arguments: &ProviderArguments) -> Result<Option<Provider>> {
 }
 
 /// Prints the server's address and a way to sign in to standard output, for people and scripts. The log is on standard
-/// error and contains no secrets. With an example, the path of its program is printed, too.
+/// error and contains no secrets. If the server has the example course, this also prints the path of the flawed
+/// program.
 async fn print_greeting(
     app: &App,
     [local, public]: [&str; 2],
@@ -160,7 +162,7 @@ async fn print_greeting(
     Ok(output.flush()?)
 }
 
-/// Deletes expired artifacts and leftovers of killed servers, periodically.
+/// Deletes expired artifacts, and files that killed servers left behind, at regular intervals.
 async fn clean_up(database: Database, store: Store, keep: Option<Duration>) {
     loop {
         match retention::give_up(&database, &store, keep, retention::MIN_AGE).await {
@@ -201,7 +203,7 @@ async fn run_grader(named: Option<&Path>, words: &[&str]) -> Result<Vec<u8>> {
     Ok(said.stdout)
 }
 
-/// Updates the tables. A copy of a SQLite database with data is made first.
+/// Updates the database's tables to this version. A SQLite database with data is copied first.
 async fn update_tables(database: &Database, folders: &ServiceFolders, address: &Address) -> Result<()> {
     let version = db::read_version(database).await?;
     if version > 0 && version < db::NEWEST && matches!(address, Address::Sqlite(_)) {
@@ -216,8 +218,8 @@ async fn update_tables(database: &Database, folders: &ServiceFolders, address: &
     Ok(())
 }
 
-/// Copies a SQLite database into a new file, which gets its name when it is complete. An incomplete file of a killed
-/// server is removed.
+/// Copies a SQLite database into a new file, which gets its name when it is complete. An incomplete copy that a killed
+/// server left behind is removed.
 async fn back_up(database: &Database, backups: &Path, version: i64) -> Result<PathBuf> {
     std::fs::create_dir_all(backups)?;
     for entry in std::fs::read_dir(backups)?.flatten() {
@@ -235,7 +237,7 @@ async fn back_up(database: &Database, backups: &Path, version: i64) -> Result<Pa
     Ok(copy)
 }
 
-/// Opens the service's data without serving.
+/// Opens the database and the store, without listening for requests.
 async fn open(place: &StorageArguments, public: String) -> Result<(App, Database)> {
     let folders = ServiceFolders::find(place)?;
     let (database, _) = folders.open_database(place).await?;

@@ -50,12 +50,12 @@ pub(super) async fn run(arguments: &WorkerArguments) -> Result<()> {
     Ok(())
 }
 
-/// Works for a server on another machine.
+/// Grades jobs of a server on another machine, over HTTP.
 async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, stop: CancellationToken) -> Result<()> {
     let token = std::fs::read_to_string(token_file)
         .with_context(|| format!("cannot read the token in {}", token_file.display()))?;
     let token = token.trim();
-    // The text is not repeated, because it may be another secret.
+    // The file's text is not repeated in the message, because it may be another secret.
     if !token.starts_with("fsw_") || !token.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_') {
         bail!("{} holds no worker's token (fsw_...)", token_file.display());
     }
@@ -89,7 +89,7 @@ fn slot_count(slots: Option<NonZeroUsize>) -> usize {
     slots.or(std::thread::available_parallelism().ok()).map_or(1, NonZeroUsize::get)
 }
 
-/// Returns the queue's policy from the arguments.
+/// Returns the queue's policy that the arguments describe.
 pub(super) fn queue_policy(work: &WorkloadArguments) -> QueuePolicy {
     let lease = Duration::from_secs(work.lease);
     QueuePolicy { lease, max_failures: work.tries, first_wait: lease / 30, longest_wait: lease * 4 }
@@ -107,7 +107,7 @@ pub(super) fn find_grader(named: Option<&Path>) -> Result<PathBuf> {
     std::path::absolute(&path).context("the grader's path")
 }
 
-/// Workers that access the database directly.
+/// The server's own workers, which access the database directly.
 pub(super) struct LocalWorkers {
     pub(super) folders: ServiceFolders,
     pub(super) database: Database,
@@ -118,7 +118,7 @@ pub(super) struct LocalWorkers {
 }
 
 impl LocalWorkers {
-    /// Works until `stop` is canceled.
+    /// Grades jobs until `stop` is canceled.
     pub(super) async fn work(
         &self,
         work: &WorkloadArguments,

@@ -32,7 +32,7 @@ impl fmt::Display for Address {
         match self {
             Self::Sqlite(file) => write!(f, "sqlite:{}", file.display()),
             Self::Postgres(url) => {
-                // The password may contain an @; the host can't.
+                // The password may contain an @; the host's name can't.
                 let rest = url.split_once("://").map_or("", |(_, rest)| rest);
                 let place = rest.rsplit_once('@').map_or(rest, |(_, place)| place);
                 // The query may also contain the password, as `password=...`.

@@ -7,7 +7,7 @@ pub enum DbError {
     /// The database can't be reached or is shutting down; a retry may succeed.
     #[error("the database can't be reached: {0}")]
     Unavailable(String),
-    /// A concurrent transaction conflicts; a retry may succeed.
+    /// Another transaction blocks this one, or conflicts with it; a retry may succeed.
     #[error("the database is busy: {0}")]
     Busy(String),
     /// A row with the same key exists already. The statement's caller knows which row.

@@ -1,5 +1,6 @@
-//! The tables and their changes. A change is a separate file, which is applied once and never edited afterwards. All
-//! missing changes are applied in one transaction, so that a database is never between two versions.
+//! The database's tables and their changes over time. Each change is a separate file, which is applied once and never
+//! edited afterwards. All missing changes are applied in one transaction, so that a database is never between two
+//! versions.
 use super::{Database, DbError, Dialect};
 use crate::{secret::to_hex, values};
 use sha2::{Digest, Sha256};
@@ -41,7 +42,7 @@ const MIGRATIONS: [(&str, &str); 29] = [
 /// The version of the tables that this program uses.
 pub const NEWEST: i64 = MIGRATIONS.len() as i64;
 
-/// PostgreSQL's number of the lock that prevents two servers from migrating in parallel; an arbitrary number.
+/// PostgreSQL's number for the lock that prevents two servers from migrating in parallel. The number is arbitrary.
 const LOCK_NUMBER: i64 = 0x6673_6f5f_6d69_6772;
 
 /// The reason why the tables can't be updated.
@@ -64,7 +65,7 @@ pub enum MigrateError {
         /// The name of the change.
         name: &'static str,
     },
-    /// The database failed.
+    /// A statement failed, or the database does not answer.
     #[error(transparent)]
     Database(#[from] DbError),
 }
@@ -91,7 +92,7 @@ pub async fn read_version(database: &Database) -> Result<i64, DbError> {
 ///
 /// # Errors
 ///
-/// Fails if a newer program has used the database, or the database fails; nothing has changed then.
+/// Fails if a newer program has used the database, or the database fails. After an error nothing has changed.
 pub async fn migrate(database: &Database) -> Result<usize, MigrateError> {
     let mut transaction = database.begin().await?;
     if transaction.dialect() == Dialect::Postgres {

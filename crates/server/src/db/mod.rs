@@ -49,8 +49,8 @@ const BEGIN: &str = "BEGIN; SET LOCAL idle_in_transaction_session_timeout = '10s
                      SET LOCAL statement_timeout = '60s'";
 
 /// Returns whether a connection can be used again; otherwise the pool closes it and opens a new one. A connection whose
-/// COMMIT and ROLLBACK both failed, for example on a full disk, stays in a transaction forever. A connection from
-/// before the last failure of the database may lead to a server that is now read-only or stopped.
+/// COMMIT and ROLLBACK both failed, for example on a full disk, stays in a transaction forever. A connection that was
+/// opened before the database's last failure may lead to a server that is now read-only or stopped.
 fn is_good(connection: &impl Connection, faults: &Faults, age: Duration) -> bool {
     !connection.is_in_transaction() && faults.trust(age)
 }
@@ -72,14 +72,14 @@ pub struct Database {
     faults: Faults,
     /// Whether a newer program has changed the tables, so that nothing may be written.
     is_outdated: Arc<AtomicBool>,
-    /// The turns of requests without priority, which limit how many of them use, or wait for, the connections.
+    /// The turns of requests without priority. They limit how many of these requests use connections, or wait for them.
     turns: Arc<Semaphore>,
     goes_first: bool,
 }
 
 #[derive(Debug, Clone)]
 enum Engine {
-    /// SQLite has one writer, so one connection writes; readers do not wait for it.
+    /// An SQLite database. It has only one writer, so a single connection writes; readers do not wait for it.
     Sqlite {
         writer: SqlitePool,
         readers: SqlitePool,
@@ -153,8 +153,8 @@ impl Database {
         Ok(Self { engine, faults, is_outdated: Arc::default(), turns, goes_first: false })
     }
 
-    /// Returns a handle to the same database with priority, for callers such as workers, whose leases expire. Grades
-    /// are stored and waiting jobs are claimed even during many uploads.
+    /// Returns a handle to the same database with priority, for callers that must not wait, such as workers, whose
+    /// leases expire. Even during many uploads, grades are stored and waiting jobs are claimed.
     #[must_use]
     pub fn with_priority(&self) -> Self {
         Self { goes_first: true, ..self.clone() }
@@ -188,7 +188,7 @@ impl Database {
             return Err(DbError::Unavailable("a newer program has changed its tables".to_owned()));
         }
         match &self.engine {
-            // A transaction that begins as a reader could not become the writer if another one has committed since.
+            // A transaction that begins by reading cannot write if another transaction has committed in the meantime.
             Engine::Sqlite { writer, .. } => {
                 self.limit_wait(Inner::Sqlite, || writer.begin_with("BEGIN IMMEDIATE"), true).await
             }
@@ -212,8 +212,8 @@ impl Database {
         }
     }
 
-    /// Returns whether the database answers and has no tables of a newer program. If a newer program has changed the
-    /// tables, nothing is written from then on.
+    /// Returns whether the database answers, and its tables are not from a newer program. If they are, nothing is
+    /// written from then on.
     pub async fn is_healthy(&self) -> bool {
         let version = read_version(self).await;
         if version.as_ref().is_ok_and(|version| *version > NEWEST) {
@@ -237,7 +237,7 @@ impl Database {
         }
     }
 
-    /// Waits for a turn, if turns are counted, and for a transaction to begin.
+    /// Begins a transaction, with a limited wait. Waits first for a turn, if turns are counted.
     async fn limit_wait<T, F: Future<Output = Result<T, sqlx::Error>>>(
         &self,
         make: fn(T) -> Inner,
@@ -252,7 +252,8 @@ impl Database {
         begun.map_err(|error| self.faults.note(error))
     }
 
-    /// Copies a SQLite database into a new file, consistently, while others write; PostgreSQL has its own tools.
+    /// Copies a SQLite database into a new file. The copy is consistent even while others write. PostgreSQL has its own
+    /// tools for this.
     ///
     /// # Errors
     ///

@@ -1,8 +1,8 @@
-//! One text of a statement for both engines; the parts that differ are in braces.
+//! Statements that are written once for both engines. The parts that differ are in braces.
 use super::Dialect;
 
-/// Returns the parts of a script for an engine: lines between `-- only sqlite` or `-- only postgres` and `-- end` are
-/// for one engine only.
+/// Returns the parts of a script that belong to an engine. Lines between `-- only sqlite` or `-- only postgres` and `--
+/// end` belong to one engine only.
 pub(super) fn join_parts(script: &str, dialect: Dialect) -> String {
     let other = match dialect {
         Dialect::Sqlite => "-- only postgres",
@@ -20,10 +20,11 @@ pub(super) fn join_parts(script: &str, dialect: Dialect) -> String {
     kept
 }
 
-/// Renders the statement for an engine. `{now}` is its clock, `{int}`, `{id}` and `{strict}` are words of table
-/// definitions, and `{each}` are the rows of a JSON array that is a value, `wanted.value`. `{strpos}` gives the place
-/// of a text in another, `{quoted}` makes JSON of a text, and PostgreSQL numbers its placeholders. Statements contain
-/// no other braces or question marks: values are never part of a statement's text.
+/// Renders the statement for an engine. `{now}` is the engine's clock, and `{int}`, `{id}` and `{strict}` are words of
+/// table definitions. `{each}` lists the rows of a JSON array, which is passed as a value and read as `wanted.value`.
+/// `{strpos}` finds the position of one text in another, and `{quoted}` turns a text into JSON. For PostgreSQL,
+/// placeholders are numbered. Statements contain no other braces or question marks: values are never part of a
+/// statement's text.
 pub(super) fn text(statement: &str, dialect: Dialect) -> String {
     let words: [(&str, &str); 11] = match dialect {
         Dialect::Sqlite => [
@@ -41,23 +42,22 @@ pub(super) fn text(statement: &str, dialect: Dialect) -> String {
             ("{quoted}", "json_quote"),
         ],
         Dialect::Postgres => [
-            // now() is not used, because it is constant within a transaction: a lease counts from the moment when it is
-            // given.
+            // now() is not used, because it is constant within a transaction, and a lease begins when it is given.
             ("{now}", "CAST(extract(epoch FROM clock_timestamp()) * 1000 AS BIGINT)"),
             ("{int}", "BIGINT"),
             ("{id}", "BIGINT GENERATED ALWAYS AS IDENTITY PRIMARY KEY"),
             ("{strict}", ""),
-            // Rows of the queue change five times each, so they get free space next to them, and dead rows are removed
-            // early.
+            // Each row of the queue changes five times, so pages keep free space for new versions of rows, and dead
+            // rows are removed early.
             ("{queue}", "WITH (fillfactor = 70, autovacuum_vacuum_scale_factor = 0.02)"),
-            // NO KEY allows other transactions to write rows that refer to this one. Otherwise two transactions could
-            // wait for each other: one that holds such a row and then refers to this one, and one that holds this row
-            // and then changes those.
+            // NO KEY allows other transactions to write rows that refer to this row. Otherwise two transactions could
+            // wait for each other: one holds a referring row and needs this one, and the other holds this row and needs
+            // the referring one.
             ("{skip locked}", "FOR NO KEY UPDATE SKIP LOCKED"),
             ("{for update}", "FOR NO KEY UPDATE"),
             ("{each}", "json_array_elements_text(CAST(? AS json)) AS wanted (value)"),
             ("{strpos}", "strpos"),
-            // Rows that refer to this one can't be written either.
+            // With FOR UPDATE, other transactions cannot write rows that refer to this one either.
             ("{for removal}", "FOR UPDATE"),
             ("{quoted}", "to_json"),
         ],

@@ -17,18 +17,19 @@ pub struct Transaction {
     turn: Turn,
 }
 
-/// The time of the last failure that connections may have caused; older connections are closed.
+/// The time of the last failure that a broken connection may have caused. Connections from before that time are closed.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Faults(Arc<Mutex<Option<Instant>>>);
 
 impl Faults {
-    /// Returns whether a connection of this age may be used.
+    /// Returns whether a connection of this age was opened after the last failure.
     pub(super) fn trust(&self, age: Duration) -> bool {
         let last = *self.0.lock().unwrap_or_else(PoisonError::into_inner);
         last.is_none_or(|last| last.elapsed() > age)
     }
 
-    /// Records a failure, unless it only means that all connections are in use.
+    /// Records the time of a failure, unless it only means that all connections are in use. Returns the error that
+    /// callers see.
     pub(super) fn note(&self, error: sqlx::Error) -> DbError {
         let is_of_pool = matches!(error, sqlx::Error::PoolTimedOut | sqlx::Error::PoolClosed);
         let error = DbError::from(error);
@@ -48,8 +49,8 @@ pub(super) enum Inner {
     Postgres(sqlx::Transaction<'static, Postgres>),
 }
 
-/// Creates a query with its values, as the engine's own type. The query is not prepared, because a prepared statement
-/// would stay in the session.
+/// Creates a query with its values, in the engine's own type. The query is not prepared, because a prepared statement
+/// would remain in the session.
 macro_rules! query {
     ($database:ty, $text:expr, $values:expr) => {{
         let mut query = sqlx::query::<$database>(AssertSqlSafe($text)).persistent(false);
@@ -68,7 +69,7 @@ impl Transaction {
         Self { inner, faults, turn }
     }
 
-    /// Returns the kind of database.
+    /// Returns the kind of database, PostgreSQL or SQLite.
     pub fn dialect(&self) -> Dialect {
         match self.inner {
             Inner::Sqlite(_) => Dialect::Sqlite,

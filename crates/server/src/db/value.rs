@@ -1,5 +1,5 @@
-//! The values of statements and of their answers. There are two types: integers (numbers, times, booleans) and text
-//! (names, digests, JSON). Points are text, too, so that they stay exact.
+//! The values in statements and in their results. There are two types of values: integers (numbers, times, booleans)
+//! and text (names, digests, JSON). Points are text, too, so that they stay exact.
 use super::DbError;
 use sqlx::{Row as _, postgres::PgRow, sqlite::SqliteRow};
 
@@ -41,8 +41,8 @@ macro_rules! values {
     ($($value:expr),* $(,)?) => { &[$($crate::db::Value::from($value)),*] };
 }
 
-/// A row of a result. Columns are read by name. A missing column, or one of another type, is an error in the statement
-/// ([`DbError::Other`]).
+/// A row of a statement's result. Columns are read by name. If a column is missing or has another type, the statement
+/// is wrong ([`DbError::Other`]).
 #[derive(Debug)]
 pub struct Row(pub(super) Inner);
 
@@ -105,7 +105,7 @@ impl Row {
     }
 }
 
-/// The type of a column's value.
+/// A Rust type that a column's value can be read as.
 pub trait Column: Sized {
     /// Reads the value of a column.
     ///
@@ -143,7 +143,7 @@ pub trait FromRow: Sized {
     fn from_row(row: &Row) -> Result<Self, DbError>;
 }
 
-/// Declares types whose fields have the names of their columns, or the given names.
+/// Implements [`FromRow`] for types whose fields are named like their columns. Other column names can be given.
 macro_rules! from_row {
     ($($type:ty { $($field:ident $(= $column:literal)?),* $(,)? })*) => {
         $(impl $crate::db::FromRow for $type {
@@ -155,8 +155,8 @@ macro_rules! from_row {
 }
 pub(crate) use from_row;
 
-/// Creates a value whose fields have the names of their columns, or the given names; fields after the semicolon have
-/// expressions.
+/// Reads the fields of a struct from a row, from columns of the same names or of the given names. Fields after the
+/// semicolon have expressions.
 macro_rules! read_row {
     ($row:ident => $type:ident { $($field:ident $(= $column:literal)?),* $(,)?; $($rest:tt)* }) => {
         $type { $($field: $crate::db::read_row!(@ $row $field $($column)?),)* $($rest)* }

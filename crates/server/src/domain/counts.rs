@@ -1,4 +1,4 @@
-//! The numbers for monitors. The database counts them with indexes. Simultaneous requests share one answer and one
+//! Numbers for monitoring. The database counts them with indexes. Simultaneous requests share one answer and one
 //! connection.
 use crate::{
     db::{Database, DbError},
@@ -10,7 +10,7 @@ use crate::{
 use std::time::{Duration, Instant};
 use tokio::sync::Mutex;
 
-/// The time for which an answer is reused.
+/// The time for which the numbers are reused.
 const MAX_AGE: Duration = Duration::from_secs(1);
 
 /// The latest numbers for monitors, with the time at which they were read.
@@ -18,7 +18,7 @@ const MAX_AGE: Duration = Duration::from_secs(1);
 pub struct Counts(Mutex<Option<(Instant, Metrics)>>);
 
 impl Counts {
-    /// Returns the present numbers, or those of at most a second ago.
+    /// Returns numbers that are at most a second old.
     pub(super) async fn read(&self, database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbError> {
         let mut last = self.0.lock().await;
         if let Some((at, metrics)) = last.as_ref()
@@ -42,7 +42,7 @@ async fn count(database: &Database, policy: &QueuePolicy) -> Result<Metrics, DbE
     let row = transaction.one(statement, values![]).await?;
     metrics.submissions = row.int("submissions")?;
     let mut graded = row.int("results")?;
-    // These events are rare. A job that was given up has a result, too, but was not graded.
+    // These events are rare. A job that was given up also has a result, but it was not graded.
     for kind in ["failed try", "late answer", "buried"] {
         let n = transaction.one("SELECT count(*) AS n FROM event WHERE kind = ?", values![kind]).await?.int("n")?;
         graded -= if kind == "buried" { n } else { 0 };

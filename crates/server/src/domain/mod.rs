@@ -1,7 +1,7 @@
-//! Roles and their rights. Requests reach the database only through a role, and each offers only what it allows. The
-//! roles are a [`Visitor`] who is not signed in, a [`Person`] who is signed in, a [`Member`] of a course with their own
-//! submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with its jobs. The type that a handler takes names
-//! the role that it serves; a handler without such a type cannot read data.
+//! Roles and their rights. Requests reach the database only through a role, and the type of each role has only the
+//! functions that the role allows. The roles are a [`Visitor`] who is not signed in, a [`Person`] who is signed in, a
+//! [`Member`] of a course with their own submissions, its [`Staff`], an [`Admin`], and a [`Remote`] worker with its
+//! jobs. The type that a handler takes names the role that it serves; a handler without such a type cannot read data.
 
 mod accounts;
 mod assignments;
@@ -53,7 +53,7 @@ use std::{ops::Deref, path::PathBuf, sync::Arc, time::Duration};
 use submissions::standings::SharedStandings;
 use tokio::sync::OnceCell;
 
-/// The parts of the service. Only this module uses the parts that contain data; all modules may read the others.
+/// The parts of the service. Only this module uses the parts that contain data; other modules may read the rest.
 #[derive(Debug, Clone)]
 pub struct App(Arc<Parts>);
 
@@ -62,17 +62,17 @@ struct Parts {
     database: Database,
     store: Store,
     notifier: Notifier,
-    /// The policy of the queue.
+    /// The rules by which the queue gives jobs to workers.
     policy: QueuePolicy,
-    /// The numbers for monitors.
+    /// The numbers for monitoring, which are kept for a second.
     counts: Counts,
-    /// The state of the data folder's disk: its free space, and whether it can be written.
+    /// The free space on the data folder's disk, and whether the disk can be written.
     storage: Storage,
-    /// The request limits of accounts.
+    /// The limits on the rate of each account's requests.
     throttle: Throttle,
     /// The standings of classes, which simultaneous requests share.
     standings: SharedStandings,
-    /// The key that signs data for a later check, read from the database when it is first needed.
+    /// The key that signs data which come back later. It is read from the database when it is first needed.
     signing_key: OnceCell<String>,
     instruments: Instruments,
     options: Options,
@@ -83,19 +83,19 @@ struct Parts {
 pub struct Options {
     /// The suites of the grader.
     pub suites: Suites,
-    /// The grader, if there is one; it checks suites before they grade submissions.
+    /// The grader, if this server has one. It checks suites before they are used for grading.
     pub grader: Option<PathBuf>,
-    /// The page that checks traces in a browser, if the grader has it.
+    /// The page that checks traces in a browser, if the grader contains it.
     pub checker: Option<String>,
-    /// The folder of uploads before they are stored.
+    /// The folder in which uploads are received before they are stored.
     pub incoming: PathBuf,
     /// The number of free bytes on the disk below which uploads are rejected.
     pub low_water: u64,
     /// The public address of the service.
     pub public: String,
-    /// The place where a client's address is found: the connection itself, or a header of the proxy.
+    /// How a client's address is found: from the connection itself, or from a header of the proxy.
     pub client_address: Option<ClientIpSource>,
-    /// The maximum pause within a request's body.
+    /// The maximum pause while a request's body is received.
     pub patience: Duration,
     /// The maximum number of requests of one account per minute.
     pub requests_per_minute: u32,
@@ -103,7 +103,7 @@ pub struct Options {
     pub limits: TransferLimits,
     /// The provider at which people sign in, if there is one.
     pub provider: Option<Provider>,
-    /// The client of learning platforms.
+    /// The client for requests to learning platforms.
     pub lti: Arc<Lti>,
 }
 
@@ -146,7 +146,7 @@ impl App {
         }))
     }
 
-    /// Returns the server's counts about itself.
+    /// Returns the counters and times that the server measures about itself.
     pub fn instruments(&self) -> &Instruments {
         &self.0.instruments
     }
@@ -156,12 +156,12 @@ impl App {
         format!("{}/welcome/{}", self.public, secret.reveal())
     }
 
-    /// Returns whether people use HTTPS.
+    /// Returns whether the public address uses HTTPS.
     pub fn is_secure(&self) -> bool {
         self.public.starts_with("https://")
     }
 
-    /// Checks that there is space for an upload.
+    /// Checks that the disk has space for an upload.
     ///
     /// # Errors
     ///

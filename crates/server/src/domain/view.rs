@@ -14,57 +14,58 @@ use serde::{Deserialize, Serialize};
 use std::ops::Deref;
 use utoipa::{IntoParams, ToSchema};
 
-/// An account of a person.
+/// The account of a person who can sign in.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Account {
-    /// The account's number.
+    /// The account's number in the database.
     #[serde(skip)]
     pub(crate) id: i64,
-    /// The account's name in addresses and tables.
+    /// The login: the account's name in addresses and tables.
     pub login: String,
-    /// The name of its owner.
+    /// The name of the account's owner.
     pub name: String,
     /// Whether the account is an administrator's.
     pub is_admin: bool,
 }
 
-/// A course.
+/// A course on this server.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Course {
-    /// The course's name in addresses.
+    /// The short name of the course, which is used in addresses.
     pub slug: String,
-    /// The course's name.
+    /// The full name of the course.
     pub title: String,
 }
 
-/// An assignment.
+/// An assignment of a course.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Assignment {
     #[serde(skip)]
     pub(crate) id: i64,
-    /// The assignment's name in addresses.
+    /// The short name of the assignment, which is used in addresses.
     pub slug: String,
-    /// The assignment's name.
+    /// The full name of the assignment.
     pub title: String,
     /// Whether students see the assignment.
     pub visible: bool,
     /// The settings for grading and uploads.
     pub settings: Settings,
-    /// The time since which students see the groups that the suite hides, in milliseconds since 1970.
+    /// The time at which the hidden groups were published, in milliseconds since 1970; null while students cannot see
+    /// them.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub published_at: Option<i64>,
-    /// The number of the assignment's changes; a change that is based on an earlier one is rejected.
+    /// The number of changes of the assignment so far. A change that is based on an earlier revision is rejected.
     pub revision: i64,
 }
 
-/// A submission with its result.
+/// A submission, and its result if there is one.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Submission {
     /// The submission's number on this server.
     pub id: i64,
-    /// The number of the submission among those of its owner to the assignment, from 1.
+    /// The submission's number among its owner's submissions to this assignment, starting at 1.
     pub number: i64,
-    /// The name of the assignment in addresses.
+    /// The short name of the assignment, which is used in addresses.
     pub assignment: String,
     /// The assignment's title.
     pub title: String,
@@ -74,11 +75,11 @@ pub struct Submission {
     pub name: String,
     /// The submission's form: `program`, `sources` or `traces`.
     pub form: String,
-    /// The file's name.
+    /// The name of the uploaded file.
     pub file_name: String,
-    /// The SHA-256 of the submission's bytes.
+    /// The SHA-256 digest of the uploaded file.
     pub digest: String,
-    /// The submission's size in bytes.
+    /// The size of the uploaded file in bytes.
     pub size: i64,
     /// The time of the upload, in milliseconds since 1970.
     pub created_at: i64,
@@ -87,10 +88,10 @@ pub struct Submission {
     pub removed_at: Option<i64>,
     /// The submission's state: `waiting`, `running`, `done`, `buried` (the grader failed too often) or `canceled`.
     pub state: String,
-    /// The number of jobs before this one while it waits.
+    /// The number of jobs ahead in the queue, while the submission waits.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ahead: Option<i64>,
-    /// The expected number of seconds until the grade, while the submission waits and there are workers.
+    /// The expected number of seconds until the grade is there, while the submission waits and workers are connected.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub expected_seconds: Option<u64>,
     /// Whether the submission waits although no worker is connected that could grade it.
@@ -99,13 +100,13 @@ pub struct Submission {
     /// The progress of the grading, while it runs.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub progress: Option<Progress>,
-    /// The result that counts.
+    /// The result that counts; null until the submission is graded.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub grade: Option<ResultView>,
-    /// The delay of a late submission that loses points; points from staff lose nothing.
+    /// The delay for which a late submission loses points. Points that staff set are not reduced.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub late: Option<Lateness>,
-    /// The comment of staff on the submission.
+    /// The points and the comment of staff, and the owner's request for a review.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub mark: Option<Mark>,
     /// Whether groups that the suite hides are left out of the grade, its history and its reports until staff publishes
@@ -114,7 +115,7 @@ pub struct Submission {
     pub is_withheld: bool,
     #[serde(skip)]
     pub(super) is_published: bool,
-    /// The last error of the grader on the submission; for staff.
+    /// The last error of the grader on this submission. Only staff see it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
     #[serde(skip)]
@@ -123,21 +124,21 @@ pub struct Submission {
     pub(super) account: i64,
 }
 
-/// The comment of staff on a submission, and the request of its owner.
+/// The points and the comment of staff on a submission, and the request of the submission's owner.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Mark {
     /// The points that count instead of the grader's.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub points: Option<String>,
-    /// The reason for the points, or a comment on the submission.
+    /// The reason for the points that staff set, or another comment on the submission.
     pub comment: String,
-    /// The author of the mark.
+    /// The login of the member of staff who last wrote the mark.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub by: Option<String>,
-    /// The time of the mark, in milliseconds since 1970.
+    /// The time at which staff wrote the mark, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub marked_at: Option<i64>,
-    /// The owner's question about the grade.
+    /// The question with which the submission's owner requests a review.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub request: Option<String>,
     /// The time of the request, in milliseconds since 1970.
@@ -145,12 +146,12 @@ pub struct Mark {
     pub requested_at: Option<i64>,
 }
 
-/// A result of a grading.
+/// The result of one grading of a submission.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ResultView {
     #[serde(skip)]
     pub(crate) result: i64,
-    /// The outcome of the grading.
+    /// The verdict, the points and the reports.
     #[serde(flatten)]
     pub outcome: Outcome,
     /// The time of the grading, in milliseconds since 1970; rounded to the hour while hidden groups are withheld.
@@ -165,20 +166,20 @@ impl Deref for ResultView {
     }
 }
 
-/// A change of the result that counts.
+/// A change of the result that counts for a submission.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct History {
     /// The time of the change, in milliseconds since 1970; rounded to the hour while hidden groups are withheld.
     pub changed_at: i64,
-    /// The reason for the change, for students.
+    /// The reason for the change, as students read it.
     pub reason: String,
     /// The person who requested the change; `None` for the grader.
     pub by: Option<String>,
-    /// The verdict before the change.
+    /// The code of the verdict before the change.
     pub old_code: Option<String>,
     /// The points before the change.
     pub old_points: Option<String>,
-    /// The verdict after the change.
+    /// The code of the verdict after the change.
     pub new_code: String,
     /// The points after the change.
     pub new_points: Option<String>,
@@ -188,17 +189,17 @@ pub struct History {
     pub version: String,
     /// The SHA-256 of the grader, if it is known.
     pub grader: String,
-    /// The rules, the suite and the upload, as one line.
+    /// The suite, the rules and the upload, in one line.
     pub by_what: String,
     /// The complete task (rules, suite, digests), with which the grading can be repeated. Only for staff.
     #[serde(skip_serializing_if = "String::is_empty")]
     pub task: String,
 }
 
-/// An event of the audit log.
+/// An entry of the audit log.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Event {
-    /// The event's number, which always grows.
+    /// The event's number; later events have larger numbers.
     pub id: i64,
     /// The time of the event, in milliseconds since 1970.
     pub happened_at: i64,
@@ -206,13 +207,13 @@ pub struct Event {
     pub kind: String,
     /// The person who caused the event; `None` for the service.
     pub actor: Option<String>,
-    /// The name of the course in addresses.
+    /// The short name of the event's course.
     pub course: Option<String>,
-    /// The name of the assignment in addresses.
+    /// The short name of the event's assignment.
     pub assignment: Option<String>,
     /// The number of the event's submission on this server.
     pub submission: Option<i64>,
-    /// The number of the submission among those of its owner to the assignment.
+    /// The submission's number among its owner's submissions to the assignment.
     pub number: Option<i64>,
     /// The login of the submission's owner.
     pub owner: Option<String>,
@@ -220,20 +221,20 @@ pub struct Event {
     pub text: String,
 }
 
-/// The filter of the audit log's events; an empty part stands for all.
+/// A filter for events of the audit log. An empty part allows all events.
 #[derive(Debug, Clone, Default, Deserialize, IntoParams)]
 #[serde(default)]
 #[into_params(parameter_in = Query)]
 pub struct EventQuery {
-    /// Only events before this one.
+    /// Only events with a number below this one.
     pub(crate) before: Option<u64>,
-    /// Only events with these words in the text, the actor's login or the owner's.
+    /// Only events with these words in the text, in the login of the person who caused them, or in the owner's login.
     pub(crate) who: String,
     /// Only events of this kind.
     pub(crate) kind: String,
 }
 
-/// Selects events by an [`EventQuery`] and further values; the second argument is the rest of the statement.
+/// Selects events by an [`EventQuery`] and further values. The second argument is the end of the statement.
 macro_rules! events {
     ($transaction:ident, $query:ident, $which:literal $(, $value:expr)*) => {{
         let statement = concat!(
@@ -257,7 +258,7 @@ macro_rules! events {
 }
 pub(super) use events;
 
-/// The queue and its workers.
+/// The numbers of jobs in the queue, and the workers.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Queue {
     /// The number of waiting uploads.
@@ -266,9 +267,9 @@ pub struct Queue {
     pub regrades: i64,
     /// The number of running jobs.
     pub running: i64,
-    /// The number of jobs that were given up, for staff to review.
+    /// The number of jobs that were given up and that staff must check.
     pub buried: i64,
-    /// The workers that were seen recently.
+    /// The workers from which the server has heard recently.
     pub workers: Vec<QueueWorker>,
 }
 
@@ -283,17 +284,18 @@ pub struct QueueWorker {
     pub slots: i64,
     /// The number of jobs that the worker runs at present.
     pub running: i64,
-    /// The time of the last sign of life, in milliseconds since 1970.
+    /// The time at which the worker was last heard from, in milliseconds since 1970.
     pub seen_at: i64,
-    /// The time from which the worker claims no jobs because it can't grade, in milliseconds since 1970.
+    /// The time since which the worker claims no jobs because it can't grade, in milliseconds since 1970; null if it
+    /// can.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub aside_since: Option<i64>,
-    /// The number of the worker's consecutive faults.
+    /// The number of the worker's faults since its last result.
     pub faults: i64,
-    /// The last fault.
+    /// The description of the worker's last fault.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault: Option<String>,
-    /// The time of the last fault, in milliseconds since 1970.
+    /// The time of the worker's last fault, in milliseconds since 1970.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fault_at: Option<i64>,
 }
@@ -306,7 +308,7 @@ from_row! {
     QueueWorker { name, version, slots, running, seen_at, aside_since, faults, fault, fault_at }
 }
 
-/// Selects submissions; the argument is the rest of the statement.
+/// Selects submissions. The argument is the end of the statement.
 macro_rules! submissions {
     ($rest:literal) => {
         concat!(
@@ -375,7 +377,7 @@ fn read_progress(row: &Row) -> Result<Option<Progress>, DbError> {
 }
 
 impl Submission {
-    /// Replaces the grader's points by those that staff set, which are not reduced for being late.
+    /// Shows the points that staff set, if any, instead of the grader's. They are not reduced for being late.
     pub(super) fn apply_staff_points(&mut self) {
         let Some(grade) = &mut self.grade else { return };
         let given = self.mark.as_ref().and_then(|mark| mark.points.clone());
@@ -395,10 +397,11 @@ pub(super) async fn submissions_of(
     transaction.all(statement, values![assignment, account]).await
 }
 
-/// The number of submissions that are read in one statement.
+/// The number of submissions that one statement reads.
 const PAGE_SIZE: i64 = 500;
 
-/// Returns a page of the submissions to an assignment after a number, oldest first; empty after the last.
+/// Returns a page of the submissions to an assignment, oldest first, from the first one after the number `after`. The
+/// page after the last submission is empty.
 pub(super) async fn submissions_after(
     transaction: &mut Transaction,
     assignment: i64,
@@ -447,8 +450,8 @@ pub(super) async fn submission(
     Ok(Some(submission))
 }
 
-/// Returns the history of a grade; `withheld` leaves out hidden groups. Only staff see names of the course's own
-/// suites.
+/// Returns the history of a grade. With `withheld`, hidden groups are left out. Only staff see the names of suites that
+/// were uploaded to the course.
 pub(super) async fn history(
     transaction: &mut Transaction,
     submission: i64,
@@ -499,7 +502,7 @@ pub(super) async fn history(
     rows.iter().map(read).collect()
 }
 
-/// Describes a task by its suite, hints and rules.
+/// Describes the suite, the hints and the rules of a task, in one line.
 fn describe_task(task: &str, is_staff: bool) -> String {
     let Ok(task) = serde_json::from_str::<Task>(task) else { return String::new() };
     let suite = match task.suite {
@@ -528,7 +531,7 @@ pub(super) struct Entry<'a> {
 }
 
 impl<'a> Entry<'a> {
-    /// Creates an entry that contains only text.
+    /// Creates an entry without a course or a submission.
     pub(super) fn new(kind: &'static str, actor: i64, text: &'a str) -> Self {
         Self { kind, actor, course: None, assignment: None, submission: None, text }
     }
@@ -542,9 +545,9 @@ pub(super) async fn note(transaction: &mut Transaction, entry: &Entry<'_>) -> Re
     transaction.execute(statement, values![kind, actor, course, assignment, submission, text]).await.map(drop)
 }
 
-/// Returns the queue in the form for staff.
+/// Returns the state of the queue and of the workers, as staff see it.
 pub(super) async fn queue(transaction: &mut Transaction, app: &App) -> Result<Queue, DbError> {
-    // Each count has its own small index, because few jobs have each state.
+    // Each count uses a small index of its own, because few jobs are in these states.
     let statement = "SELECT
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NULL) AS waiting,
         (SELECT count(*) FROM job WHERE lane = 'grading' AND state = 'waiting' AND campaign IS NOT NULL) AS regrades,

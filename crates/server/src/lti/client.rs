@@ -1,5 +1,5 @@
-//! Requests to platforms, for tokens and to their services. Answers have limits of size and time, and redirections are
-//! not followed.
+//! Requests to the services of learning platforms, and for the tokens that these services require. The size of answers
+//! and the time to wait for them are limited, and redirections are not followed.
 use super::{Platform, keys};
 use crate::{
     db::{Database, DbError},
@@ -17,7 +17,7 @@ use thiserror::Error;
 use ureq::{Agent, http::Request};
 use url::Url;
 
-/// The scopes of tokens (AGS 3.1, NRPS 2.1).
+/// The scopes that tokens can have (AGS 3.1, NRPS 2.1).
 pub(crate) mod scope {
     pub(crate) const SCORE_SCOPE: &str = "https://purl.imsglobal.org/spec/lti-ags/scope/score";
     pub(crate) const LINE_ITEM: &str = "https://purl.imsglobal.org/spec/lti-ags/scope/lineitem";
@@ -30,13 +30,13 @@ const ANSWER_TIMEOUT: Duration = Duration::from_secs(20);
 /// The maximum size of an answer, in bytes.
 const MAX_ANSWER_BYTES: u64 = 8 << 20;
 
-/// The lifetime of this service's assertions, in seconds.
+/// The lifetime of the assertions with which this service requests tokens, in seconds.
 const ASSERTION_LIFETIME: u64 = 300;
 
-/// The time before expiry at which tokens are renewed.
+/// The time before a token's expiry at which it is renewed.
 const RENEWAL_MARGIN: Duration = Duration::from_secs(30);
 
-/// The maximum wait that a platform can request.
+/// The maximum pause between requests that a platform can impose.
 const MAX_WAIT: Duration = Duration::from_secs(3600);
 
 /// The reason why a request to a platform failed.
@@ -47,10 +47,10 @@ pub enum ServiceFault {
     Away {
         /// The platform's message, or a description of the error.
         why: String,
-        /// The wait that the platform requests before the next request.
+        /// The pause that the platform requests; `None` if it requests no particular pause.
         after: Option<Duration>,
     },
-    /// The platform rejects the request.
+    /// The platform rejects the request, for the given reason.
     #[error("it refuses: {0}")]
     Refused(String),
 }
@@ -67,18 +67,18 @@ impl From<DbError> for ServiceFault {
     }
 }
 
-/// The answer of a platform.
+/// A platform's answer to a request.
 #[derive(Debug)]
 pub(super) struct ServiceAnswer {
     pub(super) status: u16,
     body: Vec<u8>,
-    /// The value of the header `Link`.
+    /// The value of the header `Link`, which leads to further pages.
     pub(super) link: Option<String>,
     after: Option<Duration>,
 }
 
 impl ServiceAnswer {
-    /// Parses the answer's content; `what` names it in errors.
+    /// Parses the answer's content. `what` names the content in error messages.
     pub(super) fn read<T: DeserializeOwned>(&self, what: &str) -> Result<T, ServiceFault> {
         let read = serde_json::from_slice(&self.body);
         read.map_err(|error| ServiceFault::Refused(format!("{what} can't be read: {error}")))
@@ -105,11 +105,11 @@ impl ServiceAnswer {
 pub(super) struct Ask {
     pub(super) address: String,
     pub(super) accept: &'static str,
-    /// The body and its type; `None` for a GET request.
+    /// The media type and the content of a POST request; `None` for a GET request.
     pub(super) body: Option<(&'static str, Vec<u8>)>,
 }
 
-/// The tokens by platform and scope, each with its expiry.
+/// The tokens and their expiry times, by platform and scope.
 type Tokens = HashMap<(i64, String), (String, Instant)>;
 
 /// The client for requests to platforms.
@@ -158,7 +158,8 @@ impl Client {
         asked.map_err(ServiceFault::from_outage)?
     }
 
-    /// Calls a service with a token for a scope, and again with a new token if the platform rejects the first.
+    /// Calls a service with a token for a scope. If the platform rejects the token, the call is repeated with a new
+    /// one.
     pub(super) async fn call(
         &self,
         database: &Database,
@@ -176,7 +177,7 @@ impl Client {
         self.send(platform, ask, Some(&token)).await?.ensure_success()
     }
 
-    /// Returns a token for a scope, requested with an assertion that this service signed (SEC 4.1, RFC 7523).
+    /// Returns a token for a scope. To get one, this service sends an assertion that it signed (SEC 4.1, RFC 7523).
     async fn token(&self, database: &Database, platform: &Platform, scope: &str) -> Result<String, ServiceFault> {
         let key = (platform.id, scope.to_owned());
         if let Some((token, ends)) = self.tokens.lock().unwrap_or_else(PoisonError::into_inner).get(&key)
@@ -217,7 +218,7 @@ impl Client {
     }
 }
 
-/// Returns the number of seconds since 1970.
+/// Returns the present time in seconds since 1970.
 pub(super) fn now_seconds() -> u64 {
     SystemTime::now().duration_since(UNIX_EPOCH).map_or(0, |now| now.as_secs())
 }
@@ -242,7 +243,7 @@ fn send_blocking(
     let mut answer = answer.map_err(ServiceFault::from_outage)?;
     let header = |name: &str| answer.headers().get(name).and_then(|value| value.to_str().ok()).map(str::to_owned);
     let link = header("link");
-    // The value is in seconds; a date is ignored, and the queue's own delay applies.
+    // Only a value in seconds is used. If the header contains a date, the queue's own delay applies.
     let after = header("retry-after").and_then(|text| text.trim().parse().ok()).map(Duration::from_secs);
     let status = answer.status().as_u16();
     let body =

@@ -13,7 +13,7 @@ use ring::{
 };
 use serde::{Serialize, de::DeserializeOwned};
 
-/// The maximum difference between clocks, in seconds.
+/// The maximum difference between this server's clock and a platform's, in seconds.
 pub(super) const CLOCK_LEEWAY: u64 = 60;
 
 struct Rs256Signer(RsaKeyPair);
@@ -73,7 +73,7 @@ static PROVIDER: CryptoProvider =
     CryptoProvider { signer_factory: signer, verifier_factory: verifier, key_utils: KeyUtils::new_unimplemented() };
 
 fn install() {
-    // If a provider is installed already, the error can be ignored.
+    // This fails only if a provider is already installed, so the error is ignored.
     let _: Result<(), &CryptoProvider> = PROVIDER.install_default();
 }
 
@@ -92,7 +92,8 @@ pub(super) struct PublicKey {
     pub(super) e: String,
 }
 
-/// Returns the claims of a token that the key signed, that an issuer made for an audience, and that is not too old.
+/// Returns the claims of a token. The token must be signed with the key, made by the issuer for the audience, and
+/// recent.
 pub(super) fn verify<T: DeserializeOwned + Clone>(
     token: &str,
     key: &PublicKey,

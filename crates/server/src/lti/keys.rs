@@ -1,5 +1,5 @@
-//! The service's own keys. The first is created on demand. A new key signs after an hour, so that platforms have time
-//! to read it, and the one before it is published until the next.
+//! The service's own keys for signatures. The first key is created when it is needed. A new key is used after an hour,
+//! so that platforms have time to read it, and the previous key is published until another one is created.
 use super::crypto;
 use crate::{
     db::{Database, DbError, Row, Transaction},
@@ -13,23 +13,23 @@ use serde_json::{Value, json};
 /// The number of bits of a key, which every platform accepts.
 const KEY_BITS: usize = 2048;
 
-/// The time for which a new key is published before it signs, in milliseconds.
+/// The time for which a new key is published before it is used for signatures, in milliseconds.
 const PUBLICATION_TIME: i64 = 3600 * 1000;
 
-/// A key of the service.
+/// A key of the service for signatures.
 pub(super) struct SigningKey {
     kid: String,
     der: Vec<u8>,
 }
 
 impl SigningKey {
-    /// Signs claims.
+    /// Signs claims with this key.
     pub(super) fn sign(&self, claims: &impl Serialize) -> Result<String, DbError> {
         crypto::sign(claims, &self.kid, &self.der).map_err(|error| DbError::Other(format!("a token: {error}")))
     }
 }
 
-/// Creates a key. It signs after an hour, or immediately if it is the first one.
+/// Creates a key for signatures. It is used after an hour, or immediately if it is the first key.
 ///
 /// # Errors
 ///
@@ -41,7 +41,7 @@ pub async fn new_key(database: &Database) -> Result<(), DbError> {
     let statement =
         "INSERT INTO platform_key (kid, private_key, modulus, exponent, created_at) VALUES (?, ?, ?, ?, {now})";
     transaction.execute(statement, values![secret::random_hex(), private, modulus, exponent]).await?;
-    // Keep only the new key, and the key that signs at present.
+    // Keep only the new key, and the key that is used at present.
     let statement = "UPDATE platform_key SET retired_at = {now} WHERE retired_at IS NULL
         AND id NOT IN (SELECT id FROM platform_key WHERE retired_at IS NULL ORDER BY id DESC LIMIT 2)";
     transaction.execute(statement, values![]).await?;
@@ -63,7 +63,7 @@ async fn rows(transaction: &mut Transaction) -> Result<Vec<Row>, DbError> {
     transaction.rows(statement, values![PUBLICATION_TIME]).await
 }
 
-/// Returns all keys, the newest first, and creates the first one if there is none.
+/// Returns all keys, the newest first. If there are no keys, the first one is created.
 async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
     let found = rows(&mut database.read().await?).await?;
     if !found.is_empty() {
@@ -73,7 +73,7 @@ async fn all(database: &Database) -> Result<Vec<Row>, DbError> {
     rows(&mut database.read().await?).await
 }
 
-/// Returns the key that signs: the newest that platforms had time to read, or the oldest.
+/// Returns the key for signatures: the newest one that platforms had time to read, or otherwise the oldest.
 pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbError> {
     let rows = all(database).await?;
     let known = rows.iter().find(|row| matches!(row.flag("is_known"), Ok(true)));
@@ -84,7 +84,7 @@ pub(super) async fn signing_key(database: &Database) -> Result<SigningKey, DbErr
     Ok(SigningKey { kid: row.text("kid")?, der })
 }
 
-/// Returns the public part of the keys: a JSON Web Key Set (RFC 7517).
+/// Returns the public parts of the keys as a JSON Web Key Set (RFC 7517).
 ///
 /// # Errors
 /// Fails if the database fails.

@@ -1,4 +1,5 @@
-//! A platform's message about a person who comes from it (LTI 5), and the trusted parts of it.
+//! A platform's message about a person who comes from there (LTI 5), and the parts of it that are trusted after all
+//! checks.
 use super::{
     Platform,
     client::{now_seconds, scope},
@@ -29,19 +30,19 @@ pub enum Rejection {
     /// The platform's keys can't be read.
     #[error("the platform's keys can't be read now")]
     NoKeys,
-    /// The signature is not the platform's.
+    /// The signature does not match the platform's key.
     #[error("the message was not signed by the platform")]
     Signature,
     /// The message is too old, or from the future.
     #[error("the message is too old, or a clock is wrong")]
     Time,
-    /// The message answers another request.
+    /// The message answers another request; the value names the part that differs.
     #[error("the message is not for this sign-in: {0} differs")]
     Foreign(&'static str),
-    /// The message comes from an unregistered deployment.
+    /// The message comes from the deployment of this name, which is not registered.
     #[error("deployment {0} is not registered; an administrator can add it")]
     Deployment(String),
-    /// A part of the message is missing or invalid.
+    /// A part of the message is missing or invalid; the value describes it.
     #[error("the message is invalid: {0}")]
     Content(String),
 }
@@ -56,7 +57,7 @@ pub enum LtiRole {
 }
 
 impl LtiRole {
-    /// Returns the role's name in a course's list of members.
+    /// Returns the role as this service stores it, `student` or `staff`.
     pub fn name(self) -> &'static str {
         match self {
             Self::Student => "student",
@@ -68,43 +69,43 @@ impl LtiRole {
 /// A person, as a platform describes them.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LtiPerson {
-    /// The platform's identifier of the person, which never changes.
+    /// The platform's identifier of the person. It never changes.
     pub subject: String,
     /// The person's role in the platform's course; `None` for parents, guests and others, and for people who left.
     pub role: Option<LtiRole>,
-    /// The person's name, if the platform gives it.
+    /// The person's name; `None` if the platform withholds it.
     pub name: Option<String>,
-    /// The person's address, if the platform gives it; used only to propose a login.
+    /// The person's e-mail address; `None` if the platform withholds it. It is used only to propose a login.
     pub email: Option<String>,
 }
 
-/// A message about a person who comes from a platform, and the place that the person comes from.
+/// A platform's message about a person: who comes, and from which course and link.
 #[derive(Debug, Clone)]
 pub struct Message {
-    /// The person.
+    /// The person who comes to this service.
     pub person: LtiPerson,
-    /// The place that the person comes from.
+    /// The course and the link from which the person comes.
     pub arrival: Arrival,
 }
 
-/// The place on a platform that a person comes from.
+/// The course and the link on a platform from which a person comes.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Arrival {
-    /// The deployment of this service on the platform.
+    /// The number of this service's deployment on the platform.
     pub deployment: String,
     /// The course on the platform.
     pub context: Context,
-    /// The link that the person followed; `None` if the platform requests a new one.
+    /// The link that the person followed; `None` if the person is about to create a link.
     pub resource: Option<Resource>,
     /// The assignment that the link names.
     pub assignment: Option<String>,
-    /// The address of the grade book's column for the link, if scores may be sent there.
+    /// The address of the link's column in the grade book; `None` if scores may not be sent there.
     pub line_item: Option<String>,
-    /// The address for creating columns, if that is permitted.
+    /// The address for creating columns; `None` if this is not permitted.
     pub line_items: Option<String>,
-    /// The address of the course's list of members.
+    /// The address of the course's list of members; `None` if the platform does not offer it.
     pub memberships: Option<String>,
-    /// The request to choose a link.
+    /// The platform's request to choose what a new link opens.
     pub deep_linking: Option<DeepLinking>,
 }
 
@@ -116,7 +117,7 @@ pub struct Context {
     /// The course's title on the platform.
     #[serde(default)]
     pub title: Option<String>,
-    /// The course's short name on the platform.
+    /// The course's short name on the platform, such as a number.
     #[serde(default)]
     pub label: Option<String>,
 }
@@ -131,7 +132,7 @@ pub struct Resource {
     pub title: Option<String>,
 }
 
-/// The parameters of a platform's request to choose a link (DL 4.4.1).
+/// The parameters with which a platform requests a new link (DL 4.4.1).
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct DeepLinking {
     /// The platform's address for the answer.
@@ -139,7 +140,7 @@ pub struct DeepLinking {
     /// The types of items that the platform accepts.
     #[serde(default)]
     pub accept_types: Vec<String>,
-    /// Data that are returned unchanged.
+    /// Text that the answer must return unchanged.
     #[serde(default)]
     pub data: Option<String>,
 }
@@ -197,14 +198,15 @@ struct Claims {
     email: Option<String>,
 }
 
-/// Returns the name of the key that a message claims to be signed with.
+/// Returns the name of the key with which a message claims to be signed.
 pub(super) fn key_of(token: &str) -> Result<String, Rejection> {
     let header = jsonwebtoken::decode_header(token).map_err(|_| Rejection::Form)?;
     ensure(header.alg == Algorithm::RS256, Rejection::Form)?;
     header.kid.filter(|kid| !kid.is_empty() && kid.len() <= 500).ok_or(Rejection::Form)
 }
 
-/// Reads the content of a message that `key` signed; `nonce` is the digest of the nonce that was sent.
+/// Reads the content of a message that was signed with `key`. `nonce` is the digest of the nonce that this service
+/// sent.
 pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &str) -> Result<Message, Rejection> {
     let settings = &platform.settings;
     let claims: Claims =
@@ -217,8 +219,8 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
             ErrorKind::MissingRequiredClaim(name) => Rejection::Content(format!("{name} is missing")),
             _ => Rejection::Content(error.to_string()),
         })?;
-    // SEC 5.1.3, 3 to 5: if there are several audiences, or an authorized party, the authorized party must be this
-    // service.
+    // SEC 5.1.3, steps 3 to 5: if the message has several audiences or an authorized party, the authorized party must
+    // be this service.
     let several = matches!(&claims.aud, TokenAudience::Many(all) if all.len() > 1);
     if matches!(&claims.aud, TokenAudience::One(audience) if *audience != settings.client_id) {
         return Err(Rejection::Foreign("the audience"));
@@ -281,20 +283,20 @@ pub(super) fn read(platform: &Platform, token: &str, key: &PublicKey, nonce: &st
     })
 }
 
-/// Returns the full name of a person, or the name joined from its parts.
+/// Returns a person's full name; if the platform does not send it, the first and last name joined.
 pub(super) fn name_of(whole: Option<String>, parts: [Option<String>; 2]) -> Option<String> {
     let spoken = parts.into_iter().flatten().collect::<Vec<_>>().join(" ");
     whole.or(Some(spoken)).filter(|name| !name.trim().is_empty())
 }
 
-/// Returns the role of a person in the course from the platform's roles (LTI A.2.3). Roles in the institution or system
-/// give no role in the course, except for a sole role as administrator.
+/// Returns a person's role in the course, according to the roles that the platform sends (LTI A.2.3). A role in the
+/// institution or the system gives no role in the course, unless it is administrator and the only role.
 pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     const COURSE_ROLES: &str = "http://purl.imsglobal.org/vocab/lis/v2/membership";
     // The simple names are deprecated, but still in use.
     let in_course = |role: &str| -> Option<String> {
         let rest = role.strip_prefix(COURSE_ROLES)?;
-        // A principal role, or a sub-role: #Instructor, /Instructor#TeachingAssistant.
+        // A principal role such as `#Instructor`, or a sub-role such as `/Instructor#TeachingAssistant`.
         match rest.strip_prefix('/') {
             Some(part) => part.split('#').next().map(str::to_owned),
             None => rest.strip_prefix('#').map(str::to_owned),
@@ -316,7 +318,7 @@ pub(crate) fn role_of(roles: &[String]) -> Option<LtiRole> {
     (named.is_empty() && roles.iter().any(administers)).then_some(LtiRole::Staff)
 }
 
-/// Returns the answer to a request for a link as a signed token, with one link to an assignment (DL 4.5).
+/// Returns the signed answer to a request for a link. It contains one link, which opens an assignment (DL 4.5).
 ///
 /// # Errors
 /// Fails if the database fails.

@@ -1,8 +1,8 @@
-//! Learning platforms, by LTI 1.3 with its three services ("LTI Advantage"): people come from a platform's course to an
-//! assignment, a roster is read, and scores go back. This module implements the protocol: messages, keys, tokens,
-//! services. `domain` decides about permissions.
+//! Connects learning platforms by LTI 1.3 and its three services ("LTI Advantage"). People come from a platform's
+//! course to an assignment, the course's list of members is read, and scores are sent back. This module implements the
+//! protocol: messages, keys, tokens, services. `domain` decides about permissions.
 //!
-//! Written against the specifications of 1EdTech: LTI Core 1.3 ("LTI"), Security Framework 1.0 ("SEC"), Deep Linking
+//! The code follows the specifications of 1EdTech: LTI Core 1.3 ("LTI"), Security Framework 1.0 ("SEC"), Deep Linking
 //! 2.0 ("DL"), Names and Role Provisioning Services 2.0 ("NRPS"), and Assignment and Grade Services 2.0 ("AGS").
 
 mod client;
@@ -28,10 +28,10 @@ pub(crate) use client::scope;
 
 use trust::Trust;
 
-/// The state for communication with platforms.
+/// The state that the service keeps for communication with platforms.
 #[derive(Debug)]
 pub struct Lti {
-    /// The client for platforms' tokens and services.
+    /// The client for requests to platforms.
     pub client: Client,
     trust: Trust,
 }
@@ -43,21 +43,21 @@ impl Default for Lti {
 }
 
 impl Lti {
-    /// Creates the state. `over_http` allows platforms without TLS, for tests on one machine.
+    /// Creates the state. With `over_http`, platforms without TLS are allowed, for tests on one machine.
     pub fn new(over_http: bool) -> Self {
         Self { client: Client::new(over_http), trust: Trust::default() }
     }
 
-    /// Returns whether platforms and this service may be used over plain HTTP.
+    /// Returns whether plain HTTP is allowed for platforms and for this service.
     pub fn over_http(&self) -> bool {
         self.client.over_http
     }
 
-    /// Reads a platform's message about a person who comes from it, and checks it completely (SEC 5.1.3).
+    /// Reads a platform's message about a person who comes from there, and makes all checks of SEC 5.1.3.
     ///
     /// # Errors
     ///
-    /// Fails if the message is rejected, with the reason.
+    /// Fails if the message is rejected. The error is the reason.
     pub async fn receive(&self, platform: &Platform, token: &str, nonce: &str) -> Result<Message, Rejection> {
         let kid = message::key_of(token)?;
         let key = self.trust.key(&self.client, platform, &kid).await?;

@@ -8,26 +8,26 @@ use serde::{Deserialize, Serialize};
 use url::Url;
 use utoipa::ToSchema;
 
-/// The addresses of a platform, which are on the platform's page for tools.
+/// The addresses of a platform. Platforms show them on their pages about external tools.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub struct PlatformWish {
-    /// The issuer of the platform's messages ("platform ID").
+    /// The issuer of the platform's messages (called "platform ID").
     #[schema(value_type = Word)]
     pub issuer: String,
-    /// The platform's name for this service ("client ID").
+    /// The platform's name for this service (called "client ID").
     #[schema(value_type = Word)]
     pub client_id: String,
-    /// The address at which the platform signs people in ("authentication request URL").
+    /// The address at which the platform signs people in (called "authentication request URL").
     #[schema(value_type = HttpsUrl)]
     pub login_url: String,
-    /// The address of tokens for the platform's services ("access token URL").
+    /// The address at which the platform issues tokens for its services (called "access token URL").
     #[schema(value_type = HttpsUrl)]
     pub token_url: String,
-    /// The address of the platform's public keys ("public keyset URL").
+    /// The address of the platform's public keys (called "public keyset URL").
     #[schema(value_type = HttpsUrl)]
     pub keys_url: String,
-    /// The audience of requests for tokens, if it differs from the address for tokens.
+    /// The audience in requests for tokens; null if it is the address that issues tokens.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<Word>)]
     pub audience: Option<String>,
@@ -35,7 +35,7 @@ pub struct PlatformWish {
     /// deployment's number.
     #[schema(value_type = Vec<Word>, min_items = 1, max_items = 1000)]
     pub deployments: Vec<String>,
-    /// Further hosts of the platform's services, in addition to those of the other addresses.
+    /// Hosts of the platform's services, in addition to the hosts of the other addresses.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     #[schema(value_type = Vec<Host>, max_items = 50)]
     pub hosts: Vec<String>,
@@ -44,7 +44,7 @@ pub struct PlatformWish {
 /// A registered platform.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Platform {
-    /// The platform's number on this server.
+    /// The platform's number in the database.
     #[serde(skip)]
     pub(crate) id: i64,
     /// The platform's name on this server.
@@ -62,7 +62,7 @@ pub(super) fn address(text: &str, over_http: bool) -> Option<Url> {
     (secure && plain && url.has_host() && text.len() <= 2000).then_some(url)
 }
 
-/// Returns the host and port, in the form of an origin.
+/// Returns the host and port of an address, in the form of an origin.
 fn place(url: &Url) -> String {
     match (url.host_str(), url.port()) {
         (Some(host), Some(port)) => format!("{host}:{port}"),
@@ -75,7 +75,7 @@ impl PlatformWish {
     ///
     /// # Errors
     ///
-    /// Fails at the first invalid value.
+    /// Fails with a message about the first invalid value.
     pub fn check(&self, over_http: bool) -> Result<(), Problem> {
         let is_word = |text: &str| (1..=255).contains(&text.chars().count()) && !text.chars().any(char::is_control);
         for (name, text) in [("issuer", &self.issuer), ("client_id", &self.client_id)] {
@@ -123,14 +123,14 @@ impl Platform {
         own.chain(settings.hosts.iter().cloned()).collect()
     }
 
-    /// Returns an address of one of the platform's services. Only hosts that an administrator registered are allowed,
-    /// so that a message can't make this service call others, or send them its token.
+    /// Returns an address of one of the platform's services. Only registered hosts are allowed, so that a message can't
+    /// make this service call other hosts, or send its token to them.
     pub(crate) fn service(&self, text: &str, over_http: bool) -> Option<Url> {
         let url = address(text, over_http)?;
         self.places(over_http).contains(&place(&url)).then_some(url)
     }
 
-    /// Returns the origins that may show a page of this service in a frame.
+    /// Returns the origins whose pages may show a page of this service in a frame.
     pub fn origins(&self, over_http: bool) -> String {
         let scheme = if over_http { "http://" } else { "https://" };
         let mut places: Vec<String> = self.places(over_http).iter().map(|place| format!("{scheme}{place}")).collect();

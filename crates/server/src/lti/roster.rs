@@ -1,4 +1,4 @@
-//! The people in a platform's course, as the platform lists them (NRPS 2).
+//! The members of a platform's course, as the platform lists them (NRPS 2).
 use super::{
     Client, LtiPerson, Platform, ServiceFault,
     client::{Ask, scope},
@@ -7,7 +7,7 @@ use super::{
 use crate::db::Database;
 use serde::Deserialize;
 
-/// The maximum number of pages of a list of members.
+/// The maximum number of pages that a list of members may have.
 const MAX_PAGES: usize = 500;
 const MAX_MEMBERS: usize = 50_000;
 
@@ -35,7 +35,8 @@ struct Member {
 ///
 /// # Errors
 ///
-/// Fails if the platform reports an error, or its answer is invalid; no members are returned then.
+/// Fails if the platform reports an error, or its answer is invalid. No members are returned then, not even those of
+/// earlier pages.
 pub async fn fetch(
     client: &Client,
     database: &Database,
@@ -71,12 +72,12 @@ fn to_person(member: Member) -> Option<LtiPerson> {
     })
 }
 
-/// Returns the address of the next page in a header `Link` (RFC 8288).
+/// Returns the address of the next page according to the header `Link` (RFC 8288).
 fn next_page(header: &str) -> Option<String> {
     let mut rest = header;
     while let Some((_, after)) = rest.split_once('<') {
         let (address, after) = after.split_once('>')?;
-        // The parameters end at the next link, which begins with a bracket.
+        // The parameters end where the next link begins, with a bracket.
         let (parameters, further) = after.split_at(after.find('<').unwrap_or(after.len()));
         let is_next = parameters.split([';', ',']).any(|parameter| {
             parameter.split_once('=').is_some_and(|(name, value)| {

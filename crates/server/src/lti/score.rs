@@ -1,9 +1,9 @@
-//! Scores of people's work on assignments, for platforms (AGS 3.4).
+//! The scores that platforms receive for people's work on assignments (AGS 3.4).
 //!
 //! Every change of a grade puts a job into the queue, in the same transaction. The job contains no score: the score is
-//! read when it is sent, so that many changes need only one message. Each score has a time, which only grows and is the
-//! same if the score is sent again; a platform keeps the newest score. A message that arrives twice, or late, therefore
-//! changes nothing.
+//! read when it is sent, so that many changes need only one message. Each score has a time. A later score has a later
+//! time, and a score that is sent again has the same time. A platform keeps only the newest score, so a message that
+//! arrives twice or late changes nothing.
 use super::Platform;
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
@@ -16,19 +16,20 @@ use crate::{
 use serde::{Deserialize, Serialize};
 use serde_json::{Value, json};
 
-/// The job of sending a score.
+/// The task of a job that sends a score.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Order {
-    /// The number of the platform's link.
+    /// The number of the platform's link in the database.
     pub(super) link: i64,
     /// The number of the student's account.
     pub(super) account: i64,
-    /// Whether the score is sent even if the platform has received it before.
+    /// Whether the score is sent even if the platform already has it.
     #[serde(default)]
     pub(super) again: bool,
 }
 
-/// Selects links of platforms and the students whose scores they receive; the argument is the rest of the statement.
+/// Selects links of platforms, and the students whose scores these links receive. The argument is the end of the
+/// statement.
 macro_rules! orders {
     ($which:literal) => {
         concat!(
@@ -46,26 +47,27 @@ macro_rules! orders {
     };
 }
 
-/// Records that the counting result of a submission has changed, so that the owner's platforms receive the score.
+/// Enqueues the score of a submission's owner for the platforms, because the submission's counting result has changed.
 pub(crate) async fn note_change(transaction: &mut Transaction, submission: i64) -> Result<(), DbError> {
     let rows = transaction.rows(orders!("submission.id = ?"), values![submission]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
-/// Records that the results of a regrade count from now on.
+/// Enqueues the scores of all submissions in a regrade, because the regrade's results count from now on.
 pub(crate) async fn note_regrade(transaction: &mut Transaction, campaign: i64) -> Result<(), DbError> {
     let statement = orders!("submission.id IN (SELECT submission FROM result WHERE campaign = ?)");
     let rows = transaction.rows(statement, values![campaign]).await?;
     enqueue(transaction, &rows, false).await.map(drop)
 }
 
-/// Enqueues all scores of an assignment, with `again` even those that platforms have, and returns their number.
+/// Enqueues all scores of an assignment, and returns their number. With `again`, scores that platforms already have are
+/// sent as well.
 pub(crate) async fn send_all(transaction: &mut Transaction, assignment: i64, again: bool) -> Result<usize, DbError> {
     let rows = transaction.rows(orders!("submission.assignment = ?"), values![assignment]).await?;
     enqueue(transaction, &rows, again).await
 }
 
-/// Enqueues the score of an account for the link by which its person just arrived.
+/// Enqueues the score of an account for the link by which the person just arrived.
 pub(crate) async fn note_arrival(transaction: &mut Transaction, link: i64, account: i64) -> Result<(), DbError> {
     let statement = orders!("submission.account = ? AND platform_link.id = ?");
     let rows = transaction.rows(statement, values![account, link]).await?;
@@ -93,9 +95,9 @@ pub(super) struct Parcel {
     pub(super) platform: Platform,
     /// The platform's identifier of the person.
     pub(super) subject: String,
-    /// The address of the grade book's column, if it is known.
+    /// The address of the link's column in the grade book; `None` if it is not known yet.
     pub(super) line_item: Option<String>,
-    /// The address for finding or creating the column otherwise.
+    /// The address at which the column is found or created if `line_item` is `None`.
     pub(super) line_items: Option<String>,
     pub(super) resource: String,
     pub(super) slug: String,
@@ -151,9 +153,9 @@ pub(super) async fn prepare(transaction: &mut Transaction, order: Order) -> Resu
     })))
 }
 
-/// Returns the score of a person's work on an assignment: the most points of all submissions. Before there are points,
-/// the platform receives the state `Pending`, or `PendingManual` if the grader failed; it never receives an
-/// undeserved zero. Hidden, unpublished groups are left out, because platforms show every score.
+/// Returns the score of a person's work on an assignment: the points of the best submission. Before there are points,
+/// the platform receives the state `Pending`, or `PendingManual` if the grader failed; it never receives an undeserved
+/// zero. Groups that are hidden and not published are left out, because platforms show every score.
 async fn score_content(transaction: &mut Transaction, assignment: i64, account: i64) -> Result<Option<Value>, DbError> {
     let statement = "SELECT job.state, result.points, result.max_points, assignment.published_at, result.shown,
            mark.points AS mark, submission.created_at, assignment.settings, extension.due_at AS own_due FROM submission
@@ -201,7 +203,7 @@ async fn score_content(transaction: &mut Transaction, assignment: i64, account: 
     })
 }
 
-/// Records that a platform has the score, unless there is a newer one.
+/// Records that a platform has received the score, unless there is a newer score.
 pub(super) async fn note_sent(transaction: &mut Transaction, parcel: &Parcel) -> Result<(), DbError> {
     let statement =
         "UPDATE platform_score SET sent_at = {now}, fault = NULL WHERE link = ? AND account = ? AND stamp = ?";
@@ -214,13 +216,13 @@ pub(super) async fn note_sent(transaction: &mut Transaction, parcel: &Parcel) ->
     note(transaction, parcel.order, "score sent", &format!("{what}, to {}", parcel.platform.name)).await
 }
 
-/// Records the reason why a platform rejects a score, for staff.
+/// Records the reason why a platform rejected a score. Staff see it.
 pub(super) async fn note_rejection(transaction: &mut Transaction, order: Order, fault: &str) -> Result<(), DbError> {
     let statement = "UPDATE platform_score SET fault = ? WHERE link = ? AND account = ? AND sent_at IS NULL";
     transaction.execute(statement, values![fault, order.link, order.account]).await.map(drop)
 }
 
-/// Records that a job was tried too often; returns whether it was a job that sends a score.
+/// Records that a job was tried too often. Returns whether the job was to send a score.
 pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault: &str) -> Result<bool, DbError> {
     let Ok(order) = serde_json::from_str::<Order>(payload) else { return Ok(false) };
     note_rejection(transaction, order, fault).await?;
@@ -228,7 +230,7 @@ pub(crate) async fn give_up(transaction: &mut Transaction, payload: &str, fault:
     Ok(true)
 }
 
-/// Writes an event about a score into the course's log.
+/// Writes an entry about a score into the course's audit log.
 async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &str) -> Result<(), DbError> {
     let statement = "INSERT INTO event (happened_at, kind, course, assignment, text)
         SELECT {now}, ?, assignment.course, assignment.id, account.login || ': ' || CAST(? AS TEXT)
@@ -242,14 +244,14 @@ async fn note(transaction: &mut Transaction, order: Order, kind: &str, text: &st
 pub(super) enum ColumnState {
     /// The column is known; the value is its address.
     Known(String),
-    /// The column is unknown, and the caller must create it; other callers wait.
+    /// The column is unknown, and the caller must create it. Other callers wait until then.
     Unclaimed,
-    /// Another caller creates the column.
+    /// The column is unknown, and another caller is creating it.
     Claimed,
 }
 
-/// Returns the state of the column of a link; a caller that receives [`ColumnState::Unclaimed`] must create the column
-/// soon.
+/// Returns what is known about a link's column. A caller that receives [`ColumnState::Unclaimed`] must create the
+/// column soon.
 pub(super) async fn find_column(
     transaction: &mut Transaction,
     link: i64,
@@ -266,7 +268,7 @@ pub(super) async fn find_column(
     Ok(row.maybe_text("line_item")?.map_or(ColumnState::Claimed, ColumnState::Known))
 }
 
-/// Stores the column that was found or created for a link; `None` lets another caller try.
+/// Stores the address of the column that was found or created for a link. With `None`, another caller may try.
 pub(super) async fn keep_column(
     transaction: &mut Transaction,
     link: i64,

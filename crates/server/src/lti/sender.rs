@@ -1,4 +1,4 @@
-//! Sends scores to platforms, as jobs of a separate lane that the server runs itself.
+//! Sends scores to platforms. Each score is a job in a separate lane, and the server itself runs these jobs.
 use super::{
     Lti, ServiceFault,
     client::{Ask, scope},
@@ -16,35 +16,37 @@ use tokio::sync::Semaphore;
 use tokio_util::sync::CancellationToken;
 use url::Url;
 
-/// The number of parallel messages, so that a hanging platform delays only a few.
+/// The number of scores that are sent in parallel. A hanging platform then delays only a few others.
 const MAX_PARALLEL: usize = 4;
 
-/// The time between two searches for jobs without a notification.
+/// The time after which jobs are searched even without a notification.
 const SEARCH_INTERVAL: Duration = Duration::from_secs(2);
 
-/// The number of tries while a platform does not answer, with waits up to an hour: more than a day altogether.
+/// The maximum number of tries while a platform does not answer. With waits of up to an hour, the tries last for more
+/// than a day.
 const MAX_OUTAGE_TRIES: u32 = 32;
 
-/// The number of tries while a platform rejects scores, because its configuration may be corrected.
+/// The maximum number of tries while a platform rejects scores. There are several, because its configuration may be
+/// corrected.
 const MAX_REJECTED_TRIES: u32 = 6;
 
-/// The maximum duration of sending a score.
+/// The maximum time for sending one score.
 const MAX_DURATION: Duration = Duration::from_secs(600);
 
-/// The maximum wait between two tries.
+/// The maximum wait between two tries to send a score.
 const MAX_WAIT: Duration = Duration::from_secs(3600);
 
-/// The time for which one caller may create a column while others wait, in milliseconds. The others check at the same
-/// interval.
+/// The time for which one caller may create a column while the others wait, in milliseconds. The others check again
+/// after the same time.
 const COLUMN_CREATION_TIME: i64 = 90_000;
 const MAX_POLLS: u32 = 100;
 const POLL_INTERVAL: Duration = Duration::from_millis(250);
 
-/// The claimant of the jobs.
+/// The name under which the server claims the jobs that send scores.
 const CLAIMANT: Claimant<'static> = Claimant { worker: "scores", token: None };
 
 /// Sends scores until `stop` is canceled. If recording a sent score fails, it is sent again, which changes nothing.
-/// `look` is called before each claim, and finds jobs of servers that stopped responding.
+/// Before each claim, `look` is called, so that jobs of servers that stopped responding are found.
 pub async fn run<F: Future<Output = Result<(), DbError>>>(
     database: Database,
     notifier: Notifier,
@@ -80,7 +82,7 @@ pub async fn run<F: Future<Output = Result<(), DbError>>>(
     }
 }
 
-/// Returns the next job, and a permit to run it.
+/// Claims the next job. Also returns a permit, which limits the number of jobs that run in parallel.
 async fn take<F: Future<Output = Result<(), DbError>>>(
     database: &Database,
     policy: &QueuePolicy,
@@ -143,7 +145,7 @@ async fn work(database: &Database, policy: &QueuePolicy, lti: &Lti, claim: &Clai
     transaction.commit().await
 }
 
-/// Sends the next due score and returns it; `None` if no score is due.
+/// Sends the score of a claimed job and returns it; `None` if there is no score to send.
 async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Parcel>, ServiceFault> {
     let order: Order = serde_json::from_str(&claim.payload)
         .map_err(|error| ServiceFault::Refused(format!("the job can't be read: {error}")))?;
@@ -165,13 +167,14 @@ async fn send(database: &Database, lti: &Lti, claim: &Claim) -> Result<Option<Pa
     };
     match lti.client.call(database, &parcel.platform, scope::SCORE_SCOPE, &ask).await {
         Ok(_) => Ok(Some(parcel)),
-        // The platform has a newer score already (AGS 3.4.8).
+        // The platform already has a newer score (AGS 3.4.8).
         Err(ServiceFault::Refused(said)) if said.starts_with("409") => Ok(Some(parcel)),
         Err(fault) => Err(fault),
     }
 }
 
-/// Returns the address of a column's scores: the column's, with `/scores` at the end of the path (AGS 3.4).
+/// Returns the address to which a column's scores are sent: the column's address with `/scores` at the end of the path
+/// (AGS 3.4).
 fn scores(line_item: &str) -> Result<String, ServiceFault> {
     let wrong = || ServiceFault::Refused("the address of its grade book's column is invalid".to_owned());
     let mut url = Url::parse(line_item).map_err(|_| wrong())?;
@@ -186,7 +189,7 @@ struct LineItem {
     link: Option<String>,
 }
 
-/// Returns the column of a link that has none yet. One caller finds or creates it, and the others wait.
+/// Returns the column for a link without a known column. One caller finds or creates it while the others wait.
 async fn line_item(database: &Database, lti: &Lti, parcel: &Parcel) -> Result<String, ServiceFault> {
     let Some(container) = &parcel.line_items else {
         return Err(ServiceFault::Refused("its grade book has no column for this link".to_owned()));

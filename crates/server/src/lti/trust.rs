@@ -1,5 +1,5 @@
-//! The keys that platforms publish. They are kept for an hour, and read again if one is unknown, because platforms
-//! change their keys.
+//! The keys that platforms publish. They are kept for an hour. If a message names an unknown key, they are read again,
+//! because platforms change their keys.
 use super::{Client, Platform, Rejection, crypto::PublicKey};
 use serde::Deserialize;
 use std::{
@@ -17,7 +17,7 @@ const STALE_LIFETIME: Duration = Duration::from_secs(24 * 3600);
 /// The minimum pause between two requests for unknown keys, because strangers can name any key.
 const MIN_PAUSE: Duration = Duration::from_secs(5);
 
-/// The keys of platforms, by the platform's number.
+/// The keys of each platform, by the platform's number.
 #[derive(Debug, Default)]
 pub(super) struct Trust(Mutex<HashMap<i64, KnownKeys>>);
 
@@ -44,7 +44,7 @@ struct PublishedKey {
     r#use: Option<String>,
 }
 
-/// Returns the keys of a set for RS256; others are ignored.
+/// Returns the keys of a set that can be used with RS256.
 fn usable_keys(set: KeySet) -> Vec<PublicKey> {
     let keys = set.keys.into_iter().filter_map(|key| serde_json::from_value::<PublishedKey>(key).ok());
     let usable = keys.filter(|key| {
@@ -61,7 +61,7 @@ impl Trust {
         known.get(&platform.id).filter(|known| known.address == platform.settings.keys_url).cloned()
     }
 
-    /// Returns the platform's key with a name.
+    /// Returns the platform's key that is called `kid`.
     pub(super) async fn key(&self, client: &Client, platform: &Platform, kid: &str) -> Result<PublicKey, Rejection> {
         let named = |known: &KnownKeys| known.keys.iter().find(|key| key.kid == kid).cloned();
         let known = self.find_keys(platform);

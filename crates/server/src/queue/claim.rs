@@ -1,4 +1,4 @@
-//! Claiming of jobs.
+//! Claims jobs for workers.
 use super::{Claim, Lane, Lease, QueuePolicy, millis};
 use crate::{
     db::{DbError, Transaction, read_row},
@@ -10,13 +10,13 @@ use crate::{
 pub struct Claimant<'a> {
     /// The worker's name.
     pub worker: &'a str,
-    /// The number of the worker's token, if it has one.
+    /// The number of the token with which the worker signed in; `None` for the server's own workers.
     pub token: Option<i64>,
 }
 
-/// Claims the next job, if there is one. A job on which this worker failed last is left to other workers for a third of
-/// a lease, because this worker may be at fault. Two workers never get the same job: the row is locked, and skipped by
-/// others, until the caller commits.
+/// Claims the next job; `None` if there is no job. If this worker was the last one that failed on a job, the job is
+/// left to other workers for a third of a lease, because this worker may be at fault. Two workers never get the same
+/// job: until the caller commits, the job's row is locked, and other workers skip it.
 ///
 /// # Errors
 ///
@@ -44,8 +44,8 @@ pub async fn claim(
     Ok(Some(read_row!(row => Claim { submission, payload, failures, deaths; lease })))
 }
 
-/// Returns whether a job in a lane may be due: a waiting job, or a running one whose lease may have expired. This needs
-/// only a read transaction.
+/// Returns whether a job in this lane may be ready: a job that waits, or a running job whose lease may have expired.
+/// This needs only a read transaction.
 ///
 /// # Errors
 ///

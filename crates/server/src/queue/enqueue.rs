@@ -1,24 +1,25 @@
 //! Puts jobs into the queue, with their ranks.
 //!
-//! A job's **rank** is a time by which jobs are ordered. For the first waiting job of a student it is the present; each
-//! further one is later by [`Turn::Student`]'s spacing, so that twenty uploads of one student do not delay another
-//! student's first upload. Jobs of a regrade get a later rank than uploads of the same time, and increasing ranks among
-//! themselves. Ranks never change, so only a bounded number of other jobs can pass a waiting job. No aging is needed,
-//! and the position of a job in the queue is a count.
+//! A job's **rank** is a time by which jobs are ordered. The rank of a student's first waiting job is the present time.
+//! Each further job has a rank that is later by [`Turn::Student`]'s spacing, so that twenty uploads of one student do
+//! not delay another student's first upload. Jobs of a regrade get later ranks than uploads that arrive at the same
+//! time; each is later than the one before. Ranks never change, so only a bounded number of other jobs can pass a
+//! waiting job. Therefore no aging is needed, and a job's position in the queue is the number of jobs with a smaller
+//! rank.
 use super::Lane;
 use crate::{
     db::{DbError, Transaction},
     values,
 };
 
-/// The owner of a job, by whom jobs take turns.
+/// The owner of a job. Owners take turns, so that no owner's jobs delay all others.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Turn {
-    /// A student with an upload; the value is the account.
+    /// A student who uploaded a submission; the value is the account's number.
     Student(i64),
-    /// A regrade.
+    /// A regrade; the value is its number.
     Campaign(i64),
-    /// A score of an account for a platform's link.
+    /// A score that a platform receives; the values are the numbers of the account and of the link.
     Score(i64, i64),
 }
 
@@ -32,7 +33,7 @@ impl Turn {
         }
     }
 
-    /// Returns the delay of the owner's first job after an upload of the same time, in milliseconds.
+    /// Returns how much later than an upload of the same time the owner's first job is ranked, in milliseconds.
     fn delay_millis(self) -> i64 {
         match self {
             Self::Student(_) | Self::Score(..) => 0,
@@ -42,7 +43,7 @@ impl Turn {
 
     /// Returns the rank of the owner's next job.
     pub(crate) async fn next(self, transaction: &mut Transaction) -> Result<i64, DbError> {
-        // Two simultaneous uploads of one student may have the same rank; then the number decides.
+        // Two simultaneous uploads of one student may get the same rank. Then the job with the smaller number is first.
         let statement = "SELECT max(rank) AS last, {now} AS now FROM job
             WHERE fair_key = ? AND state IN ('waiting', 'running')";
         let last = transaction.one(statement, values![self.key()]).await?;
@@ -62,15 +63,15 @@ impl Turn {
 /// A job for the queue.
 #[derive(Debug, Clone)]
 pub struct NewJob<'a> {
-    /// The lane that does the work.
+    /// The lane to which the job belongs.
     pub lane: Lane,
-    /// The submission of the job.
+    /// The submission that is graded; `None` for other kinds of jobs.
     pub submission: Option<i64>,
-    /// The regrade of the job.
+    /// The regrade to which the job belongs, if any.
     pub campaign: Option<i64>,
-    /// The owner of the job.
+    /// The owner of the job, which determines its rank.
     pub turn: Turn,
-    /// The task, in the form for the worker.
+    /// The task as text, in the form that the worker reads.
     pub payload: &'a str,
 }
 
@@ -91,8 +92,8 @@ pub async fn enqueue(transaction: &mut Transaction, job: &NewJob<'_>) -> Result<
     row.int("id")
 }
 
-/// Returns whether a job of this owner is waiting and stays so until the caller's transaction ends. Then no further job
-/// is needed.
+/// Returns whether a job of this owner is waiting, and stays so until the caller's transaction ends. In that case no
+/// further job is needed.
 ///
 /// # Errors
 ///

@@ -1,4 +1,4 @@
-//! The reports of a worker that has a lease. Each counts only while the job runs under this lease.
+//! The messages of a worker that has a lease. A message counts only while the job runs under this lease.
 use super::{Lease, MAX_PLATFORM_WAIT, QueuePolicy, millis};
 use crate::{
     db::{DbError, Row, Transaction},
@@ -8,40 +8,40 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use utoipa::ToSchema;
 
-/// The result of reporting a job as finished.
+/// The effect of reporting that a job is finished.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Completion {
     /// The job is finished, and the caller must write its result in the same transaction.
     Done,
-    /// The job was already finished under the same lease, but the worker did not receive the answer.
+    /// The worker had already finished the job under the same lease, but did not receive the answer.
     Repeated,
     /// The lease was lost, so nothing may be written.
     Late,
 }
 
-/// The result of reporting a failed try.
+/// The effect of reporting that a try failed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Failure {
-    /// The job waits again.
+    /// The job waits for another try.
     Retried,
-    /// The job has no tries left; the caller writes the failure in the same transaction.
+    /// The job has no tries left. The caller must write the failure in the same transaction.
     Buried,
-    /// The lease was lost before the report.
+    /// The lease was lost before the worker reported the failure.
     Late,
 }
 
-/// The progress of a grading, in scenes.
+/// The progress of a grading, counted in scenes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Progress {
-    /// The number of scenes with a verdict.
+    /// The number of scenes that have a verdict.
     #[schema(maximum = 1_000_000)]
     pub done: u32,
-    /// The number of scenes in the grading.
+    /// The number of all scenes in the grading.
     #[schema(maximum = 1_000_000)]
     pub all: u32,
 }
 
-/// Extends a lease, up to a maximum age of the claim, and stores the worker's progress, if it is reported. Returns
+/// Extends a lease, but not beyond a maximum age of the claim. Stores the progress if the worker reports it. Returns
 /// `false` if the lease was lost; the worker should then stop.
 ///
 /// # Errors
@@ -73,13 +73,14 @@ pub async fn payload(transaction: &mut Transaction, lease: &Lease) -> Result<Opt
     row.map(|row| row.text("payload")).transpose()
 }
 
-/// Ends a job. An expired lease still counts if no other worker got the job, because the work is done.
+/// Ends a job. If the lease has expired but no other worker has the job, the result still counts, because the work is
+/// done.
 ///
 /// # Errors
 ///
 /// Fails if the database fails.
 pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Completion, DbError> {
-    // The key stays, so that a repeated report is recognized.
+    // The lease's key stays in the row, so that a repeated report is recognized.
     let statement = "UPDATE job SET state = 'done', finished_at = {now}, lease_until = NULL
         WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'";
     let changed = transaction.execute(statement, values![lease.job, lease.attempt, &lease.key]).await?;
@@ -91,7 +92,8 @@ pub async fn complete(transaction: &mut Transaction, lease: &Lease) -> Result<Co
     Ok(if same.is_some() { Completion::Repeated } else { Completion::Late })
 }
 
-/// Returns a job without counting a failure, because its worker must stop. Returns `false` if the lease was lost.
+/// Gives a job back to the queue because its worker must stop. This does not count as a failure. Returns `false` if the
+/// lease was lost.
 ///
 /// # Errors
 ///
@@ -104,7 +106,7 @@ pub async fn release(transaction: &mut Transaction, lease: &Lease) -> Result<boo
     Ok(changed > 0)
 }
 
-/// Records that a try failed, with the reason. The next try begins after `least` at the earliest.
+/// Records that a try failed, and why. The next try begins after `least` at the earliest.
 ///
 /// # Errors
 ///
@@ -126,17 +128,17 @@ pub async fn fail(
     lose_job(transaction, loss, failures >= i64::from(policy.max_failures)).await
 }
 
-/// A failed try, with the updated counts of its job.
+/// A failed try of a job, with the updated counts of failures.
 struct Loss<'a> {
     job: i64,
     failures: i64,
     deaths: i64,
-    /// The wait before the next try.
+    /// The minimum time until the next try.
     wait: Duration,
     fault: &'a str,
 }
 
-/// Records that the worker of a job was lost. This transaction has locked `row`, which contains the job's counts.
+/// Records that a job's worker was lost. The transaction must have locked the job, whose counts are in `row`.
 pub(super) async fn give_up_worker(
     transaction: &mut Transaction,
     policy: &QueuePolicy,
@@ -148,7 +150,7 @@ pub(super) async fn give_up_worker(
     lose_job(transaction, loss, deaths >= policy.max_deaths()).await
 }
 
-/// Gives a job up after its last try, or lets it wait again.
+/// Gives a job up if this was its last try, or lets it wait for another.
 async fn lose_job(transaction: &mut Transaction, loss: Loss<'_>, is_last: bool) -> Result<Failure, DbError> {
     let Loss { job, failures, deaths, wait, fault } = loss;
     if is_last {

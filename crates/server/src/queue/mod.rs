@@ -1,12 +1,13 @@
-//! The queue of jobs, as statements within the caller's transaction: a job is enqueued together with its upload, and
-//! finished together with its result.
+//! The queue of jobs. Its statements run within the caller's transaction, so a job is enqueued together with its
+//! upload, and finished together with its result.
 //!
 //! A worker **claims** a job for the time of a lease, which the worker **renews**. The worker then **finishes** the
 //! job, gives it back (**releases** it) or reports that it **failed**. Every claim has a number, the attempt, and a key
 //! that only the worker knows. Every message of a worker must contain both, so that a worker without a valid lease
-//! changes nothing. A job that failed waits again, later each time, and after [`QueuePolicy::max_failures`] failures it
-//! is **buried**: staff must check it. The loss of a worker does not count as a failure of the job. However, a job
-//! whose workers were lost very often is buried, too. The modules that use the queue define the jobs and their results.
+//! changes nothing. After a failure, a job waits for another try, longer each time. After [`QueuePolicy::max_failures`]
+//! failures it is **buried**: it is not tried again, and staff must check it. The loss of a worker does not count as a
+//! failure of the job. However, a job whose workers were lost very often is buried, too. The modules that use the queue
+//! define the jobs and their results.
 
 mod claim;
 mod enqueue;
@@ -27,17 +28,17 @@ use serde::{Deserialize, Serialize};
 use std::time::Duration;
 use utoipa::ToSchema;
 
-/// The kind of a job's work.
+/// The kind of work that a job needs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Lane {
-    /// Grading, by workers.
+    /// Grading, which workers do.
     Grading,
-    /// Sending grades to a learning platform, by the service.
+    /// Sending scores to learning platforms, which the service itself does.
     Passback,
 }
 
 impl Lane {
-    /// Returns the lane's name in the table.
+    /// Returns the lane's name, as the table of jobs stores it.
     pub fn name(self) -> &'static str {
         match self {
             Self::Grading => "grading",
@@ -46,7 +47,7 @@ impl Lane {
     }
 }
 
-/// The maximum wait that a platform can request.
+/// The maximum wait until the next try that a platform can request.
 const MAX_PLATFORM_WAIT: Duration = Duration::from_secs(86_400);
 
 /// The time limits and the numbers of tries in the queue.
@@ -56,7 +57,7 @@ pub struct QueuePolicy {
     pub lease: Duration,
     /// The number of failures after which a job is buried.
     pub max_failures: u32,
-    /// The wait after the first failure; each further one multiplies it by four.
+    /// The wait after the first failure. After each further failure the wait is four times as long.
     pub first_wait: Duration,
     /// The maximum wait between two tries.
     pub longest_wait: Duration,
@@ -74,7 +75,7 @@ impl Default for QueuePolicy {
 }
 
 impl QueuePolicy {
-    /// Returns the time between two renewals of a lease; two renewals may get lost.
+    /// Returns the time between two renewals of a lease. It is short enough that two renewals in a row may get lost.
     pub fn renew_every(&self) -> Duration {
         self.lease / 4
     }
@@ -84,14 +85,14 @@ impl QueuePolicy {
         self.lease / 8
     }
 
-    /// Returns the gap between two searches for expired leases from which the database counts as having been
-    /// unavailable, so that workers could not renew leases.
+    /// Returns the minimum gap between two searches for expired leases after which the database counts as having been
+    /// unavailable. During such a gap, workers could not renew their leases.
     fn outage(&self) -> Duration {
         self.lease / 2
     }
 
-    /// Returns how often the worker of a job may be lost. The limit is far above that for failures, because the job
-    /// rarely causes a server's crash loop.
+    /// Returns how often a job's worker may be lost. This limit is far above the limit for failures, because the job
+    /// itself rarely causes a worker's crash.
     fn max_deaths(&self) -> i64 {
         8 * i64::from(self.max_failures)
     }
@@ -107,14 +108,15 @@ impl QueuePolicy {
         self.first_wait.saturating_mul(4_u32.saturating_pow(steps)).min(self.longest_wait)
     }
 
-    /// Returns a random wait, so that jobs that failed at the same time do not retry at the same time.
+    /// Returns a random wait up to [`Self::max_delay`], so that jobs that failed at the same time are not tried again
+    /// at the same time.
     fn retry_delay(&self, failures: i64) -> Duration {
         let longest = self.max_delay(failures);
         longest - longest / 4 * secret::random_byte().into() / 255
     }
 }
 
-/// The proof that a worker holds a job.
+/// A worker's right to a job, which the worker proves with the key.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Lease {
     /// The job's number.
@@ -123,7 +125,7 @@ pub struct Lease {
     /// The number of the claim, from 1.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     pub attempt: i64,
-    /// A secret that only the worker knows.
+    /// A secret that only the worker and the database know.
     #[schema(max_length = 200)]
     pub key: String,
 }
@@ -131,11 +133,11 @@ pub struct Lease {
 /// A job that was claimed.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Claim {
-    /// The lease for further messages.
+    /// The lease, which the worker's further messages must contain.
     pub lease: Lease,
-    /// The submission of the job.
+    /// The number of the submission that is graded, if any.
     pub submission: Option<i64>,
-    /// The task, as it was enqueued.
+    /// The task, as it was enqueued, as text.
     pub payload: String,
     /// The number of the job's earlier failures.
     pub failures: i64,
@@ -143,7 +145,7 @@ pub struct Claim {
     pub deaths: i64,
 }
 
-/// Returns a duration in milliseconds, as the database stores it.
+/// Returns a duration in milliseconds, in the type of the database.
 pub(crate) fn millis(duration: Duration) -> i64 {
     i64::try_from(duration.as_millis()).unwrap_or(i64::MAX)
 }

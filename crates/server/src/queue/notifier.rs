@@ -1,10 +1,10 @@
-//! Notifies waiting tasks of this process to check immediately. Notifications only save time: without one, as in
-//! another process, a task notices a change a little later.
+//! Wakes waiting tasks of this process when something changes. Notifications only save time. Without one, for example
+//! after a change by another process, a task notices the change a little later.
 use crate::db::{DbError, Transaction};
 use std::{sync::Arc, time::Duration};
 use tokio::sync::watch;
 
-/// The notifier of one process.
+/// The notifier of this process. Clones share their subscribers.
 #[derive(Debug, Clone, Default)]
 pub struct Notifier {
     changes: Arc<watch::Sender<u64>>,
@@ -15,7 +15,7 @@ pub struct Notifier {
 pub struct Subscription(watch::Receiver<u64>);
 
 impl Notifier {
-    /// Commits, and wakes subscribers.
+    /// Commits a transaction, and wakes all subscribers.
     ///
     /// # Errors
     /// Fails if the transaction can't be committed.
@@ -25,7 +25,7 @@ impl Notifier {
         Ok(())
     }
 
-    /// Wakes subscribers.
+    /// Wakes all subscribers.
     pub fn wake(&self) {
         self.changes.send_modify(|changes| *changes += 1);
     }
@@ -37,12 +37,13 @@ impl Notifier {
 }
 
 impl Subscription {
-    /// Waits for a change, at most for `patience`, and returns whether there was one.
+    /// Waits for a change, but not longer than `patience`. Returns whether there was a change.
     pub async fn wait(&mut self, patience: Duration) -> bool {
         match tokio::time::timeout(patience, self.0.changed()).await {
             Ok(Ok(())) => true,
             Err(_) => false,
-            // The notifier was dropped, so no change can follow. Wait anyway, so that no caller spins.
+            // The notifier was dropped, so there will be no changes. Wait anyway, so that the caller does not loop
+            // without a pause.
             Ok(Err(_)) => {
                 tokio::time::sleep(patience).await;
                 false

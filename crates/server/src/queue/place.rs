@@ -1,4 +1,4 @@
-//! The position of a job in the queue, and its expected time.
+//! The position of a job in the queue, and the time until it is expected to be graded.
 use super::{Lane, QueuePolicy, millis};
 use crate::{
     db::{DbError, Transaction},
@@ -6,16 +6,16 @@ use crate::{
 };
 use std::time::Duration;
 
-/// The number of finished jobs from which the expected time is computed.
+/// The number of finished jobs from whose durations the expected time is computed.
 const RECENT_JOBS: i64 = 50;
 
 /// A waiting job's position in the queue.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Place {
-    /// The number of jobs before this one.
+    /// The number of jobs that are ahead of this one.
     pub ahead: i64,
-    /// The expected time until the job's result, computed from recent jobs and the slots of live workers; `None`
-    /// without recent jobs or live workers.
+    /// The expected time until the job's result. It is computed from recent jobs and the slots of live workers; `None`
+    /// if there are no recent jobs or no live workers.
     pub expected: Option<Duration>,
     /// Whether a worker is alive that can run the job.
     pub is_served: bool,

@@ -1,18 +1,18 @@
 //! Finds workers that stopped responding.
 //!
-//! Every live process ticks, and leases expire only while one does. A gap between ticks means that the database was
-//! unavailable and no worker could renew, so all leases start again. Therefore a restart of PostgreSQL does not count
-//! as a failure of any job.
+//! Every live process ticks, and leases expire only while a process ticks. A gap between ticks means that the database
+//! was unavailable, so that no worker could renew its lease. All leases then start again. Therefore a restart of
+//! PostgreSQL does not count as a failure of any job.
 use super::{Failure, QueuePolicy, hold::give_up_worker, millis};
 use crate::{
     db::{DbError, Row, Transaction},
     values,
 };
 
-/// The message about a job whose lease expired.
+/// The fault that is recorded for a job whose lease expired.
 const SILENT_WORKER: &str = "the worker stopped responding";
 
-/// The results of a tick.
+/// The changes that a tick made.
 #[derive(Debug, Default, PartialEq, Eq)]
 pub struct Tick {
     /// The number of jobs that wait again.
@@ -20,7 +20,7 @@ pub struct Tick {
     /// The jobs that were given up, because their workers were lost too often. The caller must write the failures in
     /// the same transaction.
     pub buried: Vec<BuriedJob>,
-    /// Whether leases started again because no process had ticked.
+    /// Whether all leases started again, because no process had ticked for a while.
     pub outage: bool,
 }
 
@@ -29,7 +29,7 @@ pub struct Tick {
 pub struct BuriedJob {
     /// The job's number.
     pub job: i64,
-    /// The number of the job's last claim.
+    /// The number of the job's last claim, from 1.
     pub attempt: i64,
     /// The name of the job's last worker.
     pub worker: String,
@@ -37,8 +37,8 @@ pub struct BuriedJob {
     pub fault: String,
 }
 
-/// Ends leases of workers that stopped responding, at most once per [`QueuePolicy::tick_every`], no matter which
-/// process calls it.
+/// Ends the leases of workers that stopped responding. This happens at most once per [`QueuePolicy::tick_every`], no
+/// matter how many processes call it.
 ///
 /// # Errors
 ///
@@ -53,7 +53,7 @@ pub async fn tick(transaction: &mut Transaction, policy: &QueuePolicy) -> Result
         return Ok(Tick::default());
     }
     transaction.execute("UPDATE pulse SET beat_at = {now} WHERE id = 1", values![]).await?;
-    // A clock that was set back or far ahead counts as an outage, too.
+    // If the clock was set back, or far ahead, that also counts as an outage.
     if now < beat || now - beat > millis(policy.outage()) {
         let statement = "WITH held AS (SELECT id FROM job WHERE state = 'running' ORDER BY id {for update})
             UPDATE job SET lease_until = {now} + ?, started_at = {now}

@@ -1,4 +1,4 @@
-//! Reading of artifacts in pieces, so that memory is the same for artifacts of any size.
+//! Reads artifacts in pieces, so that large artifacts need no more memory than small ones.
 use super::{Digest, KEPT_FOLDER, Store, StoreError, TRASH_FOLDER};
 use crate::secret::to_hex;
 use axum::body::Bytes;
@@ -12,20 +12,20 @@ use tokio::io::AsyncWriteExt;
 pub struct OpenArtifact {
     /// The size of the whole artifact, in bytes.
     pub size: u64,
-    /// The artifact's bytes.
+    /// The artifact's bytes, in pieces.
     pub pieces: BoxStream<'static, Result<Bytes, StoreError>>,
 }
 
 impl Store {
-    /// Opens an artifact. Its last piece is returned only if all bytes are right, so a reader that gets all pieces has
-    /// the right bytes. An artifact of one piece is checked before its first piece.
+    /// Opens an artifact. The last piece is returned only if the bytes match the digest, so a reader that gets all
+    /// pieces has the right bytes. An artifact that is a single piece is checked before that piece is returned.
     ///
     /// # Errors
     ///
     /// Fails if there is no such artifact, it is damaged, or the store fails.
     pub async fn open(&self, digest: &Digest) -> Result<OpenArtifact, StoreError> {
         let mut found = self.objects.get(&digest.key(KEPT_FOLDER)).await;
-        // The sweep may have moved the file to the trash before a row referred to it again, so restore it.
+        // The sweep may have moved the file to the trash before the database referred to it again, so it is moved back.
         if matches!(found, Err(object_store::Error::NotFound { .. })) {
             found = self.objects.get(&digest.key(TRASH_FOLDER)).await;
         }
@@ -45,8 +45,8 @@ impl Store {
     ///
     /// # Errors
     ///
-    /// Fails if there is no such artifact or it is damaged (no file is left then), the file can't be written, or the
-    /// store fails.
+    /// Fails if there is no such artifact, if it is damaged, if the file can't be written, or if the store fails. No
+    /// file is left behind if the artifact is missing or damaged.
     pub async fn fetch(&self, digest: &Digest, file: &Path) -> Result<(), StoreError> {
         let mut output = tokio::fs::File::create_new(file).await?;
         let copying = async {
@@ -64,7 +64,7 @@ impl Store {
     }
 }
 
-/// Passes the pieces on, but the last one only if all of them together have the digest.
+/// Passes the pieces on. The last piece is passed on only if all pieces together match the digest.
 fn verify(
     pieces: BoxStream<'static, Result<Bytes, StoreError>>,
     digest: Digest,

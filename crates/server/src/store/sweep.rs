@@ -1,4 +1,4 @@
-//! Removes unreferenced artifacts in batches, so that memory is the same for any number of artifacts.
+//! Removes unreferenced artifacts in batches, so that the memory needed does not depend on the number of artifacts.
 use super::{Digest, KEPT_FOLDER, Key, Store, StoreError, TRASH_FOLDER, age};
 use futures_util::{StreamExt, TryStreamExt};
 use object_store::ObjectStoreExt;
@@ -9,22 +9,22 @@ use std::{
     time::{Duration, SystemTime},
 };
 
-/// The number of artifacts per query.
+/// The number of artifacts that are handled in one batch.
 const BATCH_SIZE: usize = 500;
 
 impl Store {
-    /// Removes every unreferenced artifact that is older than `least`, and returns their number. `named` finds the
-    /// referenced ones among given digests.
+    /// Removes every artifact that is older than `least` and to which nothing refers. Returns the number of removed
+    /// artifacts. `named` returns which of the given digests are referenced.
     ///
     /// An artifact that is being stored at the same time is not lost. It is first moved to the trash, where it can
-    /// still be read, and is checked again immediately and in every later run. If it is referenced by then, it is
-    /// restored. It is removed only after it was in the trash for `least`. A server that was started with the wrong
-    /// database by mistake therefore removes nothing within that time.
+    /// still be read. There it is checked again, immediately and in every later run. If the database refers to it by
+    /// then, it is moved back. It is removed only after it was in the trash for the time `least`. Therefore a server
+    /// that was started with the wrong database by mistake removes nothing within that time.
     ///
     /// # Errors
     ///
-    /// Fails if the store fails, or the referenced digests can't be found. Artifacts in the trash are checked again the
-    /// next time.
+    /// Fails if the store fails, or if the referenced digests can't be found. Artifacts in the trash are checked again
+    /// in the next run.
     pub async fn give_up<E: From<StoreError>, F: Future<Output = Result<HashSet<Digest>, E>>>(
         &self,
         least: Duration,
@@ -68,7 +68,8 @@ impl Store {
         Ok(given_up)
     }
 
-    /// Returns all artifacts; one that is moved to the trash during the listing may be returned twice.
+    /// Returns the digests of all artifacts. If an artifact is moved to the trash during the listing, its digest may be
+    /// returned twice.
     pub fn digests(&self) -> impl futures_util::Stream<Item = Result<Digest, StoreError>> + Unpin {
         self.list(KEPT_FOLDER).chain(self.list(TRASH_FOLDER)).map_ok(|(digest, _)| digest)
     }
@@ -81,7 +82,7 @@ impl Store {
         }
     }
 
-    /// Returns the artifacts below a prefix, with their ages.
+    /// Returns the artifacts in one of the store's two folders, with their ages.
     fn list(&self, prefix: &str) -> impl futures_util::Stream<Item = Result<(Digest, Duration), StoreError>> + Unpin {
         let listing = self.objects.list(Some(&Key::from(prefix))).map_err(StoreError::from);
         let found = listing.try_filter_map(async |meta| {
@@ -94,7 +95,7 @@ impl Store {
     }
 }
 
-/// Sets a file's modification time to now, if possible.
+/// Sets a file's modification time to now. Errors are ignored.
 fn renew(file: &Path) {
     let touched = fs::File::options().write(true).open(file).and_then(|file| file.set_modified(SystemTime::now()));
     if let Err(error) = touched {
@@ -102,8 +103,8 @@ fn renew(file: &Path) {
     }
 }
 
-/// Removes incomplete artifacts that a killed server left, and returns their number. They are called `NAME#NUMBER`
-/// until they are complete, and listings leave them out.
+/// Removes incomplete artifacts that a killed server left behind, and returns their number. Until they are complete,
+/// artifacts are called `NAME#NUMBER`, and listings leave them out.
 fn remove_parts(folder: &Path, least: Duration) -> usize {
     let below = |folder: &Path| fs::read_dir(folder).into_iter().flatten().flatten();
     let folders =

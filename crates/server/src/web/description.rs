@@ -1,4 +1,5 @@
-//! The description of the API (OpenAPI 3.1): the handlers' own descriptions, and everything that they have in common.
+//! The description of the API (OpenAPI 3.1). It combines the handlers' own descriptions with everything that they have
+//! in common.
 use super::who::cookie_name;
 use crate::{
     problem::Problem,
@@ -20,7 +21,7 @@ use utoipa::{
 /// The media type of an upload's body.
 const UPLOAD_TYPE: &str = "application/octet-stream";
 
-/// The largest number that JSON can hold in every language.
+/// The largest integer that every language can read from JSON without rounding.
 const MAX_INTEGER: i64 = (1 << 53) - 1;
 
 #[derive(utoipa::OpenApi)]
@@ -46,12 +47,13 @@ const MAX_INTEGER: i64 = (1 << 53) - 1;
 )]
 struct Base;
 
-/// Returns a description with the answers that are sent before any handler runs.
+/// Returns a description that contains only the answers that are sent before a handler runs.
 pub(super) fn base() -> OpenApi {
     Base::openapi()
 }
 
-/// Adds everything that applies to all operations: ways to sign in, the form of names in addresses, and common answers.
+/// Adds everything that applies to all operations: the ways to sign in, the form of names in addresses, and common
+/// answers.
 pub(super) fn complete(api: &mut OpenApi) {
     let components = api.components.get_or_insert_default();
     for (name, scheme) in schemes() {
@@ -66,7 +68,7 @@ pub(super) fn complete(api: &mut OpenApi) {
     }
 }
 
-/// Allows additional fields in schemas that other schemas include; otherwise the fields of the including schema would
+/// Allows additional fields in schemas that other schemas include. Otherwise the fields of the including schema would
 /// be invalid.
 fn allow_extension(schemas: &mut BTreeMap<String, RefOr<Schema>>) {
     let closed: BTreeMap<String, Object> = schemas
@@ -110,7 +112,7 @@ fn operations(item: &mut PathItem) -> impl Iterator<Item = &mut Operation> {
     [&mut item.get, &mut item.put, &mut item.post, &mut item.delete, &mut item.patch].into_iter().flatten()
 }
 
-/// Describes the parts of an address as parameters, and adds that every request may be rejected.
+/// Describes the parts of an address as parameters, and adds the answer for rejected requests.
 fn name_parts(path: &str, operation: &mut Operation) {
     let names = path.split('{').skip(1).filter_map(|part| part.split('}').next());
     let parts = names.map(|name| {
@@ -127,7 +129,7 @@ fn name_parts(path: &str, operation: &mut Operation) {
 fn complete_operation(operation: &mut Operation) {
     let is_of = |tag: &str| operation.tags.iter().flatten().any(|of| of == tag);
     let required = |name: &str| SecurityRequirement::new(name, Vec::<String>::new());
-    // A handler that does not accept all ways to sign in describes its own.
+    // A handler that accepts only some ways to sign in describes them itself.
     let security = match () {
         () if is_of("operations") => Vec::new(),
         () if is_of("workers") => vec![required("worker")],
@@ -191,20 +193,20 @@ fn complete_parameter(parameter: &mut Parameter) {
     parameter.description.get_or_insert(text.to_owned());
 }
 
-/// Returns the schema of a number that JSON can hold in every language.
+/// Returns the schema of an integer that every language can read from JSON without rounding.
 fn number_schema(least: i64) -> RefOr<Schema> {
     let format = SchemaFormat::KnownFormat(KnownFormat::Int64);
     let number = ObjectBuilder::new().schema_type(Type::Integer).format(Some(format));
     number.minimum(Some(least)).maximum(Some(MAX_INTEGER)).into()
 }
 
-/// Returns the schema of the bytes of a file.
+/// Returns the schema of a file's bytes.
 fn bytes_schema() -> RefOr<Schema> {
     let format = SchemaFormat::KnownFormat(KnownFormat::Binary);
     ObjectBuilder::new().schema_type(Type::String).format(Some(format)).min_length(Some(1)).into()
 }
 
-/// Returns a default description for an answer.
+/// Returns the description of an answer whose handler does not describe it.
 fn describe_answer(status: &str) -> String {
     if status == "default" {
         return "The request was rejected or failed; the body has the reason and the remedy".to_owned();

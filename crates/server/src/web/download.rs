@@ -1,4 +1,4 @@
-//! Sends artifacts in pieces while they are read; an artifact that the client already has is not sent again.
+//! Sends artifacts in pieces while they are read. If the client already has an artifact, it is not sent again.
 use crate::{
     domain::{Member, Transfer},
     problem::Problem,
@@ -24,10 +24,10 @@ pub(super) async fn send(member: &Member, asked: &HeaderMap, artifact: &Artifact
     Ok(response)
 }
 
-/// Returns an answer with a whole artifact.
+/// Returns an answer that contains a whole artifact.
 pub(super) fn whole_answer(opened: OpenArtifact, transfer: Option<Transfer>) -> Response {
     let pieces = opened.pieces.inspect_err(move |error| {
-        // The answer is aborted, so that the client notices that bytes are missing.
+        // The answer is broken off, so that the client notices that bytes are missing.
         tracing::error!(%error, "a response was interrupted");
         let _of_this_answer = &transfer;
     });

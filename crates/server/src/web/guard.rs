@@ -1,4 +1,4 @@
-//! The rules for every request: the sites that may send it, the headers of answers, and the log.
+//! Rules for every request: which sites may send it, the headers of its answer, and its entry in the log.
 use super::{input::ArrivalTime, who};
 use crate::{domain::App, problem::Problem};
 use axum::{
@@ -9,21 +9,22 @@ use axum::{
 };
 use std::time::Instant;
 
-/// The content security policy of pages: they use only this server's files, and cannot be shown in a frame.
+/// The content security policy of pages. They use only files of this server, and cannot be shown in a frame.
 const PAGE_POLICY: &str = "default-src 'none'; script-src 'self'; style-src 'self'; img-src 'self' data: blob:; \
                       media-src blob:; connect-src 'self'; form-action 'self'; base-uri 'none'; \
                       frame-ancestors 'none'";
 
-/// The addresses to which learning platforms send people, always from other sites. The secret of the sign-in binds each
-/// request to the browser.
+/// The addresses to which learning platforms send people, always from the platform's site. The secret of the sign-in
+/// proves that the request comes from the browser in which it began.
 const PLATFORM_ADDRESSES: [&str; 2] = ["/lti/login", "/lti/launch"];
 
-/// The page that connects an account with a provider. Another site could have signed this browser in at the provider.
+/// The page that connects an account to a provider. Requests from other sites are rejected, because another site could
+/// have signed this browser in at the provider.
 const CONNECT_ADDRESS: &str = "/account/provider";
 
 /// Rejects requests that another site made a browser send. Another site can't send a token in a header, so requests
-/// with a token are accepted. All others that change something must come from this site, as the browser confirms in
-/// `Sec-Fetch-Site` (older browsers: `Origin`).
+/// with a token are accepted. All other requests that change something must come from this site. The browser confirms
+/// this in the header `Sec-Fetch-Site` (older browsers use `Origin`).
 pub(super) async fn check_site(State(app): State<App>, request: Request, next: Next) -> Response {
     if (is_harmless(request.method()) && request.uri().path() != CONNECT_ADDRESS)
         || PLATFORM_ADDRESSES.contains(&request.uri().path())
@@ -39,7 +40,7 @@ pub(super) async fn check_site(State(app): State<App>, request: Request, next: N
     Problem::cross_site().into_response()
 }
 
-/// Sends a session's cookie again after the session was extended.
+/// Sends a session's cookie again if the session was extended.
 pub(super) async fn renew_cookie(State(app): State<App>, mut request: Request, next: Next) -> Response {
     let renewed = who::RenewedSession::default();
     request.extensions_mut().insert(renewed.clone());
@@ -56,7 +57,7 @@ pub(super) async fn renew_cookie(State(app): State<App>, mut request: Request, n
 /// The lifetime of a session, in seconds.
 pub(super) const SESSION_SECONDS: u32 = 1_209_600;
 
-/// Returns a session's cookie with a lifetime in seconds.
+/// Returns the cookie for a session, with a lifetime in seconds.
 pub(super) fn session_cookie(app: &App, session: &str, lasts: u32) -> String {
     let (name, secure) = (who::cookie_name(app.is_secure()), if app.is_secure() { "; Secure" } else { "" });
     format!("{name}={session}; Path=/; HttpOnly; SameSite=Lax; Max-Age={lasts}{secure}")
@@ -76,7 +77,7 @@ fn is_own(headers: &HeaderMap, app: &App) -> bool {
         || text(header::HOST).is_some_and(|host| origin.split_once("://").is_some_and(|(_, place)| place == host))
 }
 
-/// Adds the headers of every answer.
+/// Adds the headers that every answer has.
 pub(super) async fn add_headers(State(app): State<App>, request: Request, next: Next) -> Response {
     let mut response = next.run(request).await;
     let headers = response.headers_mut();
@@ -106,7 +107,7 @@ pub(super) async fn log_request(State(app): State<App>, mut request: Request, ne
     drop(in_flight);
     let (status, took) = (response.status().as_u16(), start.elapsed());
     let known = [Method::GET, Method::HEAD, Method::POST, Method::PUT, Method::DELETE, Method::OPTIONS, Method::PATCH];
-    // Clients can invent methods, and each would be a separate series.
+    // Clients can invent methods, and each method would add a series to the metrics.
     let counted = if known.contains(&method) { method.as_str() } else { "other" };
     app.instruments().count_answer(counted, &route, status, took);
     let took = took.as_millis();

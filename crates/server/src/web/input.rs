@@ -1,4 +1,4 @@
-//! Reads requests, with error answers that name the fault.
+//! Reads the parts of requests. If a part is invalid, the answer names the fault.
 use crate::{
     domain::App,
     problem::{Problem, ensure},
@@ -13,16 +13,16 @@ use serde_json::{Map, Value};
 use std::time::Instant;
 use utoipa::IntoParams;
 
-/// A JSON body.
+/// The JSON value in a request's body.
 pub(super) struct Body<T>(pub(super) T);
 
-/// A text body.
+/// The text in a request's body.
 pub(super) struct PlainBody(pub(super) String);
 
-/// The fields of a form, from the body or from the query of a GET request.
+/// The fields of a form, from the body of a request, or from the query of a GET request.
 pub(super) struct Fields<T>(pub(super) T);
 
-/// The names in an address; a name that the route does not have is empty.
+/// The names in an address. Names that the route does not have are empty.
 #[derive(Debug, Default, Deserialize)]
 #[serde(default)]
 pub(super) struct AddressParts {
@@ -35,50 +35,50 @@ pub(super) struct AddressParts {
     pub(super) id: i64,
 }
 
-/// The query of the address.
+/// The query parameters in an address.
 pub(super) struct QueryInput<T>(pub(super) T);
 
-/// The query's parameter for the event that the sender of a change has seen.
+/// The query parameter with the newest event that the sender of a change has seen.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct SeenEvent {
-    /// The last event of the audit log that the sender has seen. If it is given, a change is rejected if the same thing
-    /// was changed after it.
+    /// The number of the newest event of the audit log that the sender has seen. If what the request changes was
+    /// changed after it, the request is rejected. Without this parameter, it is not checked.
     #[param(maximum = 9_007_199_254_740_991_i64)]
     seen: Option<u64>,
 }
 
 impl SeenEvent {
-    /// Returns the number of the event.
+    /// Returns the event's number, in the type of the database.
     pub(super) fn event(&self) -> Option<i64> {
         self.seen.map(|seen| i64::try_from(seen).unwrap_or(i64::MAX))
     }
 }
 
-/// The query's parameter for the start of a list.
+/// The query parameter that says where a list begins.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct ListStart {
-    /// Only changes of submissions after this one: `next` of the answer before.
+    /// Only changes after the submission with this number, which is `next` in the previous answer.
     pub(super) after: Option<i64>,
 }
 
-/// Rejects a request whose body has another media type.
+/// Rejects a request whose body has another media type than `wanted`.
 fn check_type(headers: &HeaderMap, wanted: &str, otherwise: &str) -> Result<(), Problem> {
     let value = headers.get(header::CONTENT_TYPE).and_then(|value| value.to_str().ok()).unwrap_or_default();
     let is_wanted = value.split(';').next().is_some_and(|value| value.trim().eq_ignore_ascii_case(wanted));
     ensure(is_wanted, Problem::invalid(otherwise))
 }
 
-/// The time when a request's head arrived.
+/// The time at which a request's head arrived.
 #[derive(Clone, Copy)]
 pub(super) struct ArrivalTime(pub(super) Instant);
 
-/// Marks a request whose sender is known, so that a larger body may be read.
+/// Marks a request whose sender is signed in, so that a larger body may be read.
 #[derive(Clone, Copy)]
 pub(super) struct SignedIn;
 
-/// Reads a request's body, which must be small unless the sender is known.
+/// Reads a request's body. It must be small unless the sender is signed in.
 async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
     let most = if request.extensions().get::<SignedIn>().is_some() { super::MAX_BODY } else { super::MAX_GUEST_BODY };
     let reading = async {
@@ -93,8 +93,8 @@ async fn read_body(request: Request, app: &App) -> Result<Vec<u8>, Problem> {
     tokio::time::timeout(app.patience, reading).await.map_err(|_| Problem::too_slow())?
 }
 
-/// Converts whole numbers such as `7.0` to integers. Some languages write them so, and JSON Schema treats them as
-/// integers.
+/// Converts whole numbers such as `7.0` to integers. Some languages write integers in this form, and JSON Schema
+/// accepts it.
 fn fix_integers(value: &mut Value) {
     match value {
         Value::Number(number) => {
@@ -117,7 +117,7 @@ fn with_whole_numbers<T: DeserializeOwned>(bytes: &[u8]) -> Option<T> {
     serde_json::from_value(value).ok()
 }
 
-/// Reads the fields of an object whose types are checked later.
+/// Reads the fields of an object. Their types are checked later.
 pub(super) fn whole_numbers<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Map<String, Value>, D::Error> {
     let mut fields = Map::deserialize(deserializer)?;
     fields.values_mut().for_each(fix_integers);
@@ -171,7 +171,7 @@ impl<S: Send + Sync> FromRequestParts<S> for AddressParts {
 
     async fn from_request_parts(parts: &mut Parts, state: &S) -> Result<Self, Problem> {
         let found = Path::<Self>::from_request_parts(parts, state).await;
-        // The text is not a number.
+        // The text in the address is not a number.
         let route = parts.extensions.get::<MatchedPath>().map_or("", MatchedPath::as_str);
         let of_submission = ["/s/{id}", "/submissions/{id}"].iter().any(|part| route.contains(part));
         let what = if of_submission { "submission" } else { "page" };

@@ -1,5 +1,5 @@
-//! Checks of untrusted uploads: a program by its first bytes, an archive in a separate process, with limits of time and
-//! memory, in the sender's turn.
+//! Checks untrusted uploads. A program is checked by its first bytes. An archive is checked in a separate process with
+//! limits of time and memory, when it is the sender's turn.
 use super::upload::is_program;
 use crate::{
     domain::{Member, Settings},
@@ -18,10 +18,11 @@ use std::{
 const MAX_SECONDS: u64 = 30;
 const MAX_MEMORY: u64 = 1 << 30;
 
-/// The description of a program, for messages.
+/// The description of a program in messages.
 const PROGRAM_DESCRIPTION: &str = "a program for Linux (ELF, or a script that begins with #!)";
 
-/// Returns the form of a file, if the file is valid; a rejection names the forms that the assignment accepts.
+/// Returns the form of a file, if the file is valid. If it is not, the error names the forms that the assignment
+/// accepts.
 pub(super) async fn examine(
     member: &Member,
     file: &Path,
@@ -49,7 +50,7 @@ pub(super) async fn examine(
     let wanted = program.into_iter().chain(archives).collect::<Vec<_>>().join(", or ");
     let mut words = vec!["--wanted", &wanted];
     words.extend(said.iter().flat_map(|form| ["--form", form]));
-    // The grader's own suites do not build programs, so sources are not accepted.
+    // The grader's own suites do not build sources, so sources are not accepted for them.
     if settings.suite_archive.is_none() && settings.takes(Form::Sources) {
         words.extend(["--program", &settings.program]);
     }
@@ -63,11 +64,11 @@ pub(super) async fn unpack(member: &Member, archive: &Path, folder: &Path) -> Re
     check_in_turn(member, archive, &["--into", folder]).await?.map(drop).map_err(Problem::no_suite)
 }
 
-/// Checks a file in a process of this program, in the sender's turn. Rejected files count, so that an account that
-/// sends many has to wait.
+/// Checks a file in another process of this program, when it is the sender's turn. Rejected files are counted, so that
+/// an account that sends many has to wait.
 async fn check_in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<Result<Option<Form>, String>, Problem> {
     let _turn = member.archive_turn().await?;
-    // Run the same program, even if its file was replaced by an update.
+    // Start this same program, even if an update has replaced its file.
     let mut command = Command::new("/proc/self/exe");
     command.arg("look-through").args(words).arg("--").arg(file);
     command.env_clear().stdin(Stdio::null()).stdout(Stdio::piped()).stderr(Stdio::null());

@@ -1,4 +1,4 @@
-//! The HTTP server: the API, the pages, and the rules for both.
+//! The HTTP server: the API, the pages, and rules for both.
 
 pub mod api;
 mod description;
@@ -21,8 +21,8 @@ use utoipa_axum::router::OpenApiRouter;
 /// The maximum size of a request's body that is not an upload, in bytes.
 const MAX_BODY: usize = 1 << 20;
 
-/// The maximum size of a body before sign-in, such as a token or a learning platform's message, in bytes. Thousands may
-/// be sent at the same time.
+/// The maximum size in bytes of a body from a sender who is not signed in, such as a token or a learning platform's
+/// message. Thousands may be sent at the same time.
 const MAX_GUEST_BODY: usize = 32 << 10;
 
 fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {
@@ -32,14 +32,14 @@ fn api_router() -> (Router<App>, utoipa::openapi::OpenApi) {
     (router, description)
 }
 
-/// Returns the description of the API, in the form that is served and committed.
+/// Returns the description of the API as JSON. The server serves this text, and `schemas/` contains it.
 pub fn openapi() -> String {
     let mut text = api_router().1.to_pretty_json().unwrap_or_default();
     text.push('\n');
     text
 }
 
-/// Returns the router with all routes.
+/// Returns the router for all requests.
 pub fn router(app: App) -> Router {
     let (api, _) = api_router();
     let client_address = app.client_address.clone().unwrap_or(ClientIpSource::ConnectInfo);
@@ -49,7 +49,7 @@ pub fn router(app: App) -> Router {
         .merge(pages)
         .fallback(pages::no_page)
         .method_not_allowed_fallback(pages::wrong_method)
-        // Every reader of a body enforces its own limit.
+        // Each function that reads a body enforces its own limit.
         .layer(DefaultBodyLimit::disable())
         .layer(middleware::from_fn_with_state(app.clone(), guard::check_site))
         .layer(middleware::from_fn_with_state(app.clone(), pages::show_others))

@@ -1,4 +1,4 @@
-//! Rejections in the form of HTTP answers.
+//! Turns rejections into HTTP answers.
 use crate::problem::Problem;
 use axum::{
     http::{HeaderValue, StatusCode, header},
@@ -6,7 +6,7 @@ use axum::{
 };
 
 impl Problem {
-    /// Returns the status of the answer.
+    /// Returns the HTTP status of the answer.
     pub(super) fn status(&self) -> StatusCode {
         StatusCode::from_u16(self.status).unwrap_or(StatusCode::INTERNAL_SERVER_ERROR)
     }
@@ -27,7 +27,7 @@ impl IntoResponse for Problem {
             }
             _ => {}
         }
-        // Pages show the rejection in their own form.
+        // Pages show the rejection in their own form, so they need the rejection itself.
         response.extensions_mut().insert(self);
         response
     }

@@ -24,22 +24,21 @@ use std::{
 use tempfile::TempPath;
 use tokio::io::AsyncWriteExt;
 
-/// The maximum total pause of an upload, in multiples of the maximum single pause.
+/// The maximum sum of all pauses in an upload, in multiples of the longest single pause.
 const MAX_PAUSES: u32 = 20;
 
-/// Returns the time in which an upload of a size must arrive to count as arrived at its start: half a minute, and a
-/// second for each 32 KiB. Without this limit, an upload could start before the due date and its content be written
-/// later.
+/// Returns the time within which an upload of `size` bytes must arrive to count as arrived when it began. The time is
+/// half a minute, and one more second for each 32 KiB. Without this limit, a student could begin an upload before the
+/// due date and write its content afterwards.
 pub(super) fn fair_time(size: u64) -> Duration {
     Duration::from_secs(30 + size / (32 << 10))
 }
 
-/// The maximum number of bytes of a form around its file: boundaries, names, short fields, and the read buffer of a
-/// connection.
+/// The maximum number of bytes in a form in addition to its file: boundaries, names, short fields, and the read buffer
+/// of the connection.
 const FORM_OVERHEAD: u64 = 1024 * 1024;
 
-/// Counts the bytes of a form that have arrived but are not processed yet. They are in memory, so their number is
-/// limited.
+/// Counts the bytes of a form that have arrived but are not processed yet. They are in memory, so there is a limit.
 #[derive(Clone, Default)]
 struct BufferedBytes(Arc<AtomicU64>);
 
@@ -54,25 +53,25 @@ impl BufferedBytes {
     }
 }
 
-/// A file that was received.
+/// A file that a request contained, with the other fields of the upload.
 pub(super) struct ReceivedFile {
-    /// The temporary file with the content.
+    /// The temporary file that contains the received bytes.
     pub(super) file: TempPath,
-    /// The sender's name for the file.
+    /// The name that the sender gave the file.
     pub(super) name: Option<String>,
-    /// The upload's form (a program, sources, traces), if the request named it.
+    /// The name of the submission's form (`program`, `sources` or `traces`), if the request contains it.
     pub(super) form: Option<String>,
     /// The sender's key for the upload.
     pub(super) key: Option<String>,
 }
 
-/// The folder for uploads, and their maximum pause.
+/// The folder in which uploads are received, and the longest pause that is allowed.
 struct Place<'a> {
     incoming: &'a Path,
     patience: Duration,
 }
 
-/// Receives the body of a request, which is the file itself, or a form with a field `file`.
+/// Receives the body of a request. The body is the file itself, or a form with a field `file`.
 pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<ReceivedFile, Problem> {
     if let Err(problem) = app.ensure_room() {
         return Err(reject(app, request, most, problem).await);
@@ -80,8 +79,8 @@ pub(super) async fn receive(app: &App, request: Request, most: u64) -> Result<Re
     receive_at(&Place { incoming: &app.incoming, patience: app.patience }, request, most).await
 }
 
-/// Rejects an upload before anything is stored. The body is read and dropped, because many programs read the answer
-/// only after they have sent everything; otherwise they would only see a broken connection.
+/// Rejects an upload before anything is stored. The body is still read, because many programs read the answer only
+/// after they have sent everything. Otherwise such a program would see only a broken connection.
 pub(super) async fn reject(app: &App, request: Request, most: u64, problem: Problem) -> Problem {
     if request.headers().contains_key(header::EXPECT) {
         return problem;
@@ -99,8 +98,9 @@ pub(super) async fn reject(app: &App, request: Request, most: u64, problem: Prob
     problem
 }
 
-/// Receives a form that arrives in pieces of `size` bytes, into a folder that is empty again afterwards; only the
-/// fuzzer of uploads and tests call it. Returns the size of the file, and the form's name, kind and key.
+/// Receives a form that arrives in pieces of `size` bytes. Files are written into a folder that is empty again
+/// afterwards. Only tests and the fuzzer of uploads call this. Returns the size of the file, and the form's name, kind
+/// and key.
 ///
 /// # Errors
 ///
@@ -128,7 +128,7 @@ pub(super) fn is_form(request: &Request) -> bool {
     kind.is_some_and(|value| value.trim_start().to_ascii_lowercase().starts_with("multipart/form-data"))
 }
 
-/// Returns the size of the body that a request announces.
+/// Returns the size of the body, as the request's head announces it.
 pub(super) fn announced_size(request: &Request) -> Option<u64> {
     request.headers().get(header::CONTENT_LENGTH).and_then(|value| value.to_str().ok()?.parse().ok())
 }
@@ -167,14 +167,14 @@ async fn receive_at(place: &Place<'_>, request: Request, most: u64) -> Result<Re
         }
     }
     let file = file.ok_or_else(|| Problem::invalid("the form has no file"))?;
-    // A browser sends an empty field if no file was chosen.
+    // If no file was chosen, browsers send an empty file without a name.
     if name.as_deref() == Some("") && std::fs::metadata(&file)?.len() == 0 {
         return Err(Problem::invalid("no file was chosen"));
     }
     Ok(ReceivedFile { file, name, form: form.filter(|form| !form.is_empty()), key: key.filter(|key| !key.is_empty()) })
 }
 
-/// Returns a short field of a form.
+/// Reads a short text field of a form.
 async fn short_text(place: &Place<'_>, mut field: axum::extract::multipart::Field<'_>) -> Result<String, Problem> {
     let mut bytes = Vec::new();
     loop {
@@ -187,7 +187,7 @@ async fn short_text(place: &Place<'_>, mut field: axum::extract::multipart::Fiel
     }
 }
 
-/// Writes a stream into a new file of the server.
+/// Writes a stream into a new file in the folder for uploads.
 async fn write_file<E: Display>(
     place: &Place<'_>,
     mut stream: impl Stream<Item = Result<Bytes, E>> + Unpin,
@@ -222,7 +222,7 @@ async fn write_file<E: Display>(
     Ok(path)
 }
 
-/// Returns the browser's name of a file in a form that is safe in reports and messages.
+/// Returns the name that a browser gave a file, without characters that are unsafe in reports and messages.
 pub(super) fn plain_name(name: &str) -> String {
     let last = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let safe = |c: char| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' };
@@ -231,17 +231,17 @@ pub(super) fn plain_name(name: &str) -> String {
     if is_file_name(plain) { plain.to_owned() } else { "submission".to_owned() }
 }
 
-/// Returns whether a file with this beginning is a program.
+/// Returns whether a file that begins with these bytes is a program.
 pub(super) fn is_program(start: &[u8]) -> bool {
     FileKind::from_start(start) == FileKind::Program
 }
 
-/// Returns the form of an archive, if the archive is valid: sources must contain the `program`, unless the suite builds
-/// it. This check runs in a separate process (`web::look`).
+/// Returns the form of an archive, if the archive is valid. Sources must contain the file `program`, unless the suite
+/// builds it. This function runs in a separate process (`web::look`).
 ///
 /// # Errors
 ///
-/// Fails if the archive is rejected, with the reason.
+/// Fails if the archive is rejected. The error is the reason.
 pub fn look_through(file: &Path, said: Option<&str>, wanted: &str, program: Option<&str>) -> Result<Form, String> {
     let said = said.and_then(Form::from_name);
     let opened = File::open(file).map_err(|error| error.to_string())?;

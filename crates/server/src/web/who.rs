@@ -1,5 +1,5 @@
-//! The roles of requests: the type of a handler's argument names the role that it serves, and the handler is not called
-//! for others.
+//! Finds the role of a request's sender. The type of a handler's argument names the role that the handler serves;
+//! requests of other senders do not reach the handler.
 use super::input::SignedIn;
 use crate::{
     domain::{Admin, App, Member, Person, Remote, Secrets, Staff, Visitor},
@@ -16,28 +16,29 @@ use std::{
     sync::{Arc, OnceLock},
 };
 
-/// The session of a request, if it was extended and the browser must therefore extend its cookie.
+/// The session whose cookie must be sent again, because this request extended it.
 #[derive(Debug, Clone, Default)]
 pub(super) struct RenewedSession(Arc<OnceLock<String>>);
 
 impl RenewedSession {
-    /// Returns the content of the cookie, if it must be sent again.
+    /// Returns the secret of the session if the cookie must be sent again.
     pub(super) fn session(&self) -> Option<&str> {
         self.0.get().map(String::as_str)
     }
 }
 
-/// Returns the name of the session's cookie. Over HTTPS, its prefix prevents other hosts from setting the cookie.
+/// Returns the name of the session's cookie. Over HTTPS it has a prefix that prevents other hosts from setting the
+/// cookie.
 pub(super) fn cookie_name(secure: bool) -> &'static str {
     if secure { "__Host-fosssim" } else { "fosssim" }
 }
 
-/// Returns the name of the cookie of a browser during a launch from a learning platform.
+/// Returns the name of the cookie that recognizes a browser during a sign-in from a learning platform.
 pub(super) fn browser_cookie(secure: bool) -> &'static str {
     if secure { "__Host-fosssim-lti" } else { "fosssim-lti" }
 }
 
-/// Returns the name of the cookie of a browser during a sign-in at a provider.
+/// Returns the name of the cookie that recognizes a browser during a sign-in at a provider.
 pub(super) fn provider_cookie(secure: bool) -> &'static str {
     if secure { "__Host-fosssim-provider" } else { "fosssim-provider" }
 }
@@ -60,19 +61,19 @@ pub(super) fn secrets(headers: &HeaderMap, secure: bool) -> Secrets {
 
 async fn read_secrets(parts: &mut Parts, app: &App) -> Secrets {
     let said = ClientIp::from_request_parts(parts, app).await.ok().map(|ClientIp(address)| address);
-    // The header of the proxy is missing, so the request bypassed the proxy.
+    // If the proxy's header is missing, the request bypassed the proxy.
     let peer = || parts.extensions.get::<ConnectInfo<SocketAddr>>().map(|ConnectInfo(peer)| peer.ip());
     let address = said.or_else(peer).map(|address| address.to_canonical());
     Secrets { address, ..secrets(&parts.headers, app.is_secure()) }
 }
 
-/// The course in a request's address; other parts are ignored.
+/// The course in a request's address. Other parts of the address are ignored.
 #[derive(Deserialize)]
 struct InCourse {
     course: String,
 }
 
-/// Declares roles, and the extraction of each from the head of a request.
+/// Declares the roles that handlers can take as arguments, and how each is found from the head of a request.
 macro_rules! roles {
     ($($role:ty: |$parts:ident, $app:ident| $tell:expr;)*) => {
         $(impl FromRequestParts<App> for $role {
@@ -94,7 +95,7 @@ roles! {
         if let (true, Some(secret), Some(renewed)) =
             (person.is_renewed(), secrets.session, parts.extensions.get::<RenewedSession>())
         {
-            // Another extractor of the same request may have stored the session already.
+            // Another argument of the same handler may have stored the session already.
             drop(renewed.0.set(secret));
         }
         Ok(person)

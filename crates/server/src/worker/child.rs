@@ -1,5 +1,5 @@
-//! A child process that never outlives its owner. It leads a process group that is killed as a whole, and the kernel
-//! kills it when this process dies for any reason. A [`guard`](super::guard) process is between the two.
+//! A child process that never outlives its owner. The child leads a process group, which is killed as a whole. If this
+//! process ends for any reason, the kernel kills the child. A [`guard`](super::guard) process is between the two.
 use super::guard;
 use std::{
     io,
@@ -9,7 +9,7 @@ use std::{
 };
 use tokio::sync::watch;
 
-/// The way a child ended.
+/// How a child process ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
     /// The process exited with this code.
@@ -18,17 +18,19 @@ pub(super) enum End {
     Signal(i32),
 }
 
-/// A running child, which is killed when the value is dropped.
+/// A running child process. It is killed when this value is dropped.
 #[derive(Debug)]
 pub(super) struct Child {
-    /// The group's number while it may be used: until the leader is reaped, no other process can have the number.
+    /// The number of the process group, while it may be used. No other process can get this number before the leader is
+    /// reaped.
     group: Arc<Mutex<Option<libc::pid_t>>>,
     end: watch::Receiver<Option<End>>,
 }
 
-/// Limits the memory and the processor time of a command, and lets the kernel kill it when this process ends.
+/// Limits a command's memory in bytes and its processor time in seconds, and makes the kernel kill it when this process
+/// ends.
 pub(crate) fn set_limits(command: &mut Command, memory: u64, seconds: u64) {
-    // SAFETY: these calls may be made between fork and exec.
+    // SAFETY: only calls that are allowed between fork and exec are made here.
     unsafe {
         command.pre_exec(move || {
             libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
@@ -45,15 +47,15 @@ impl Child {
     /// Starts a child without input.
     ///
     /// # Errors
-    /// Fails if it can't be started.
+    /// Fails if the child can't be started.
     pub(super) fn start(mut command: Command) -> io::Result<Self> {
         command.stdin(Stdio::null()).stdout(Stdio::null()).process_group(0);
         let parent = std::process::id();
-        // SAFETY: the called functions may be called between fork and exec.
+        // SAFETY: only functions that are allowed between fork and exec are called here.
         unsafe {
             command.pre_exec(move || {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The parent ended before the preceding call, so this process must end, too.
+                // The parent ended before the kernel was told to kill this process, so it must end by itself.
                 if libc::getppid().unsigned_abs() != parent {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
@@ -64,8 +66,8 @@ impl Child {
         let (end_sender, end) = watch::channel(None);
         let group = Arc::new(Mutex::new(None));
         let known = group.clone();
-        // For the kernel, the parent is the thread that forked, so that thread must outlive the child, and waits for
-        // it.
+        // For the kernel, the parent is the thread that forked. Therefore that thread must outlive the child, and it
+        // waits for it.
         std::thread::Builder::new().name("grader".to_owned()).spawn(move || {
             let mut child = match command.spawn() {
                 Ok(child) => child,
@@ -92,29 +94,29 @@ impl Child {
         Ok(Self { group, end })
     }
 
-    /// Waits for the child's end.
+    /// Waits until the child has ended, and returns how it ended.
     pub(super) async fn wait(&self) -> End {
         let mut end = self.end.clone();
         match end.wait_for(Option::is_some).await {
             Ok(end) => (*end).unwrap_or(End::Signal(0)),
-            // The waiting thread has ended.
+            // The thread that waits for the child has ended without an answer.
             Err(_) => End::Signal(0),
         }
     }
 
-    /// Requests that the child stops.
+    /// Asks the child to stop, with a signal.
     pub(super) fn interrupt(&self) {
         self.signal(libc::SIGTERM, false);
     }
 
-    /// Ends the child and its group.
+    /// Kills the child and its process group.
     pub(super) fn kill(&self) {
         self.signal(libc::SIGKILL, true);
     }
 
     fn signal(&self, signal: i32, whole_group: bool) {
         if let Some(number) = *self.group.lock().unwrap_or_else(PoisonError::into_inner) {
-            // SAFETY: the leader is not reaped while the number is known.
+            // SAFETY: the leader is not reaped as long as the number is known.
             unsafe { libc::kill(if whole_group { -number } else { number }, signal) };
         }
     }
@@ -126,8 +128,8 @@ impl Drop for Child {
     }
 }
 
-/// Waits until a child has ended, without freeing its number. A stopped child is continued; otherwise the wait might
-/// never end.
+/// Waits until a child has ended, but keeps its number in use. If the child was stopped, it is continued, because the
+/// wait might never end otherwise.
 fn wait_without_reaping(number: libc::pid_t) {
     let wait = |options| {
         // SAFETY: a zeroed siginfo_t is valid, and the call writes it only.
@@ -140,9 +142,9 @@ fn wait_without_reaping(number: libc::pid_t) {
     loop {
         match wait(libc::WEXITED | libc::WSTOPPED | libc::WNOWAIT) {
             (0, libc::CLD_STOPPED) => {
-                // Only a child that has ended stays to be reaped; wait again for other events.
+                // Only a child that has ended remains to be reaped. After other events, wait again.
                 wait(libc::WSTOPPED | libc::WNOHANG);
-                // SAFETY: the child is not reaped.
+                // SAFETY: the child is not reaped yet, so the number still belongs to it.
                 unsafe { libc::kill(number, libc::SIGCONT) };
             }
             (0, _) => return,

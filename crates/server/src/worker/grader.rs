@@ -1,4 +1,5 @@
-//! The interface to the grader, which is the program `fosssim-oracle` as a child process ([`super::Program`]).
+//! The interface to the grader. The grader is the program `fosssim-oracle`, which runs as a child process
+//! ([`super::Program`]).
 use crate::task::{Outcome, Task};
 use std::{
     future::Future,
@@ -7,52 +8,52 @@ use std::{
 use thiserror::Error;
 use tokio_util::sync::CancellationToken;
 
-/// The result of a grading, whose files are still in the working folder.
+/// The result of a grading, while its files are still in the working folder.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct GradingOutput {
-    /// The result, without files.
+    /// The outcome. Its list of files is still empty.
     pub outcome: Outcome,
-    /// The result's files.
+    /// The files that the grading produced.
     pub files: Vec<NewFile>,
 }
 
-/// A file that belongs to a result.
+/// A file that a grading produced, before it is stored.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct NewFile {
     /// The file's name.
     pub name: String,
     /// The file's media type.
     pub media_type: String,
-    /// The place of the file.
+    /// The path of the file.
     pub path: PathBuf,
 }
 
-/// The name of the file for a grader's progress, such as `3/85`: the number of scenes with a verdict, and of all
-/// scenes.
+/// The name of the file into which the grader writes its progress, such as `3/85`. The first number counts the scenes
+/// that have a verdict, and the second counts all scenes.
 pub const PROGRESS_FILE: &str = "progress";
 
-/// The reason why there is no verdict, which is never the submission's fault.
+/// The reason why a grading has no verdict. It is never the submission's fault.
 #[derive(Debug, Error)]
 pub enum GraderFault {
-    /// The grading failed; a retry may succeed.
+    /// The grader failed; a retry may succeed.
     #[error("{0}")]
     Failed(String),
-    /// The grading was stopped on request.
+    /// The grading was stopped because the worker asked for it.
     #[error("the grading was stopped")]
     Stopped,
 }
 
 /// A program that grades submissions.
 pub trait Grader: Clone + Send + Sync + 'static {
-    /// Checks that the grader can grade at present; it may use the empty folder freely.
+    /// Checks that the grader can grade at present. `folder` is empty, and the grader may write into it.
     ///
     /// # Errors
     ///
-    /// Fails if it can't, with the reason, which is for staff only.
+    /// Fails if the grader can't grade. The error is the reason, which only staff should see.
     fn prove(&self, folder: &Path, stop: CancellationToken) -> impl Future<Output = Result<(), String>> + Send;
 
-    /// Grades the submission at `submission`, with the suite's archive at `suite` if there is one; it may use `folder`
-    /// freely. After `stop` is canceled, it ends soon with everything that it started.
+    /// Grades the file `submission`. If the suite is an archive, it is the file `suite`. The grader may write into
+    /// `folder`. After `stop` is canceled, the grading ends soon, and so does everything that it started.
     fn grade(
         &self,
         task: &Task,

@@ -1,5 +1,5 @@
-//! The process between a worker and its grader. It only waits. A grader that kills or stops its parent affects only the
-//! guard, and not the worker with its other jobs.
+//! The guard, a process between a worker and its grader. It only waits. If a grader kills or stops its parent, that
+//! affects only the guard, not the worker with its other jobs.
 use std::{
     io,
     sync::atomic::{AtomicI32, Ordering},
@@ -8,7 +8,8 @@ use std::{
 /// The grader's process number, for the guard's signal handler.
 static GRADER_PID: AtomicI32 = AtomicI32::new(0);
 
-/// Forks. The child returns and becomes the grader; this process becomes its guard, and ends in the same way.
+/// Forks. In the child, this function returns, and the child becomes the grader. This process becomes the grader's
+/// guard, and ends in the same way as the grader.
 ///
 /// # Safety
 ///
@@ -18,7 +19,8 @@ static GRADER_PID: AtomicI32 = AtomicI32::new(0);
 ///
 /// Fails if no other process can be created.
 pub(super) unsafe fn run_guard() -> io::Result<()> {
-    // SAFETY: these calls may be made between fork and exec, and use no memory of this process except for the text.
+    // SAFETY: these calls are allowed between fork and exec, and the only memory of this process that they use is the
+    // constant text.
     unsafe {
         // If memory runs short, the grader is killed before the worker.
         let file = libc::open(c"/proc/self/oom_score_adj".as_ptr(), libc::O_WRONLY | libc::O_CLOEXEC);
@@ -35,11 +37,12 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
             -1 => Err(io::Error::last_os_error()),
             0 => {
                 libc::prctl(libc::PR_SET_PDEATHSIG, libc::SIGKILL);
-                // The guard ended before the preceding call.
+                // The guard ended before the kernel was told to kill this process.
                 if libc::getppid() != guard {
                     return Err(io::Error::from_raw_os_error(libc::ESRCH));
                 }
-                // Wait until the guard has closed its files, so that its end delays no other process.
+                // Wait until the guard has closed its copies of open files, so that other processes are not held up
+                // when the guard ends.
                 libc::close(ready[1]);
                 libc::read(ready[0], ready.as_mut_ptr().cast(), 1);
                 libc::close(ready[0]);
@@ -50,19 +53,19 @@ pub(super) unsafe fn run_guard() -> io::Result<()> {
     }
 }
 
-/// Forwards the stop signal to the grader.
+/// Passes a signal on to the grader.
 extern "C" fn pass_on(signal: libc::c_int) {
-    // SAFETY: kill may be called in a signal handler; the grader is not reaped before the guard ends.
+    // SAFETY: kill may be called in a signal handler, and the grader is not reaped before the guard ends.
     unsafe { libc::kill(GRADER_PID.load(Ordering::Relaxed), signal) };
 }
 
-/// Waits for the grader, and ends in the same way.
+/// Waits for the grader, and then ends in the same way as the grader.
 unsafe fn watch(grader: libc::pid_t) -> ! {
     GRADER_PID.store(grader, Ordering::Relaxed);
-    // SAFETY: system calls on numbers, and structures that are zeroed first.
+    // SAFETY: these system calls use only numbers, and structures that were filled with zeros.
     unsafe {
-        // The worker's signal handlers would write to files that are closed here. The worker learns that the grader has
-        // started when one of these files is closed in all other processes.
+        // The worker's signal handlers would write to files that are closed here. The worker notices that the grader
+        // has started when one of these files is closed in all other processes.
         for signal in [libc::SIGINT, libc::SIGHUP, libc::SIGQUIT, libc::SIGCHLD, libc::SIGUSR1, libc::SIGUSR2] {
             libc::signal(signal, libc::SIG_DFL);
         }

@@ -1,5 +1,5 @@
-//! Checks whether a worker can grade. A worker with a broken grader would fail on each job immediately, and so take all
-//! jobs of the queue.
+//! Checks whether a worker can grade. A worker with a broken grader would fail on each job immediately, and would so
+//! take all jobs from the queue.
 //!
 //! Therefore a worker runs a check before its first claim, and again after every fault. Until the check succeeds it
 //! claims nothing, and its jobs move to another worker without counting a failure.
@@ -15,29 +15,29 @@ use std::{
 use tokio::sync::{Mutex, Notify};
 use tokio_util::sync::CancellationToken;
 
-/// The wait after a failed check; it doubles up to the maximum.
+/// The wait after the first failed check. It doubles after each further one, up to a maximum.
 const FIRST_WAIT: Duration = Duration::from_secs(1);
 const MAX_WAIT: Duration = Duration::from_secs(60);
 
-/// The health of a worker. Clones are cheap, and all slots share it.
+/// The health of a worker. Clones are cheap and share the same state, so all slots have the same health.
 #[derive(Debug, Clone)]
 pub(super) struct Health<G> {
     pub(super) grader: G,
-    /// The folder for the folders of jobs and checks.
+    /// The folder in which the folders for jobs and checks are created.
     pub(super) folder: PathBuf,
     is_proven: Arc<AtomicBool>,
-    /// The lock of the one slot that repeats checks until one succeeds; other slots wait for it.
+    /// The lock of the slot that repeats checks until one succeeds. Other slots wait for this lock.
     asking: Arc<Mutex<()>>,
     /// The lock that is held during a check.
     proving: Arc<Mutex<()>>,
-    /// The reason why the last check failed.
+    /// The reason why the last check failed; `None` if it succeeded.
     fault: Arc<std::sync::Mutex<Option<String>>>,
-    /// The notification that the worker became able or unable to grade.
+    /// Notifies waiting tasks when the worker becomes able or unable to grade.
     change: Arc<Notify>,
 }
 
 impl<G: Grader> Health<G> {
-    /// Creates the health of a worker with a grader, whose folders are created in `folder`.
+    /// Creates the health of a worker that uses this grader. Folders for checks are created in `folder`.
     pub(super) fn new(grader: G, folder: PathBuf) -> Self {
         Self {
             grader,
@@ -50,12 +50,12 @@ impl<G: Grader> Health<G> {
         }
     }
 
-    /// Returns whether the worker may claim jobs.
+    /// Returns whether the last check succeeded, so that the worker may claim jobs.
     pub(super) fn is_proven(&self) -> bool {
         self.is_proven.load(Ordering::Acquire)
     }
 
-    /// Returns the reason why the last check failed.
+    /// Returns the reason why the last check failed; `None` if it succeeded.
     pub(super) fn fault(&self) -> Option<String> {
         self.fault.lock().unwrap_or_else(PoisonError::into_inner).clone()
     }
@@ -65,7 +65,7 @@ impl<G: Grader> Health<G> {
         self.change.notified().await;
     }
 
-    /// Waits until the worker can grade; false if it must stop before.
+    /// Waits until the worker can grade. Returns false if the worker must stop before that.
     pub(super) async fn wait_until_able(&self, stop: &CancellationToken) -> bool {
         let mut wait = FIRST_WAIT;
         if self.is_proven() {
@@ -90,7 +90,7 @@ impl<G: Grader> Health<G> {
         false
     }
 
-    /// Checks after a fault whether the worker can still grade. If it can, the job may be at fault.
+    /// Checks after a fault whether the worker can still grade. If it can, the job may be the cause of the fault.
     pub(super) async fn check_after_fault(&self, stop: &CancellationToken) -> bool {
         self.is_proven.store(false, Ordering::Release);
         self.prove(stop).await

@@ -1,4 +1,4 @@
-//! The source of jobs for workers with access to the database: those in the server's process, and separate ones.
+//! The source of jobs for workers that access the database directly, in the server's process or in their own.
 use super::{GRACE_PERIOD, JobSource, SourceError};
 use crate::{
     db::{Database, DbError},
@@ -12,25 +12,25 @@ use crate::{
 use std::{path::Path, time::Duration};
 use tokio::sync::Mutex;
 
-/// The time between two searches for jobs without a notification.
+/// The time after which jobs are searched even without a notification.
 const SEARCH_INTERVAL: Duration = Duration::from_secs(1);
 
-/// The minimum time that a job may take in addition to its grading.
+/// The minimum extra time that a job may take beyond its grading.
 const MIN_MARGIN: Duration = Duration::from_secs(60);
 
-/// The database and the store, as a source of jobs.
+/// A source of jobs that uses the database and the store directly.
 #[derive(Debug)]
 pub struct LocalSource {
     database: Database,
     store: Store,
     notifier: Notifier,
-    /// The notifications for this clone.
+    /// The notifications that wake this worker.
     subscription: Mutex<Subscription>,
     policy: QueuePolicy,
     worker: String,
-    /// The worker's version.
+    /// The worker's version, which the server shows.
     version: String,
-    /// The number of the worker's token, if it has one.
+    /// The number of the worker's token; `None` for the server's own workers.
     token: Option<i64>,
 }
 
@@ -58,7 +58,7 @@ impl From<StoreError> for SourceError {
 }
 
 impl LocalSource {
-    /// Creates a source for the worker with a name.
+    /// Creates a source for the worker called `worker`.
     pub fn new(database: Database, store: Store, notifier: Notifier, policy: QueuePolicy, worker: String) -> Self {
         let subscription = Mutex::new(notifier.subscribe());
         Self {
@@ -73,7 +73,7 @@ impl LocalSource {
         }
     }
 
-    /// Sets the token of the worker.
+    /// Sets the number of the worker's token.
     pub fn with_token(self, token: i64) -> Self {
         Self { token: Some(token), ..self }
     }
@@ -84,7 +84,7 @@ impl LocalSource {
     }
 }
 
-/// Returns the maximum duration of a job: that of its grading, with additional time for transfers, storage and waits.
+/// Returns the maximum duration of a job: the limit of its grading, and time for transfers, storage and waits.
 fn max_duration(task: &Task, policy: &QueuePolicy) -> Duration {
     Duration::from_secs(task.seconds) + GRACE_PERIOD + MIN_MARGIN.max(policy.lease * 10)
 }
@@ -108,7 +108,7 @@ impl JobSource for LocalSource {
                     let renew_every = u64::try_from(renew_every.as_millis()).unwrap_or(u64::MAX);
                     return Ok(Some(ClaimedJob { lease: claim.lease, renew_every, task }));
                 }
-                // The task cannot be read, because another version of the program wrote it.
+                // The task cannot be read, because another version of this program wrote it.
                 Err(error) => {
                     self.fail(&claim.lease, &format!("the task can't be read: {error}")).await?;
                 }
@@ -121,7 +121,7 @@ impl JobSource for LocalSource {
     }
 
     async fn renew(&self, lease: &Lease, progress: Option<Progress>) -> Result<LeaseAnswer, SourceError> {
-        // Check for a jump of the clock before it can end a lease.
+        // Check whether the clock has jumped, before a jump can end a lease.
         ledger::tick(&self.database, &self.policy).await?;
         let mut transaction = self.database.begin().await?;
         let task = queue::payload(&mut transaction, lease).await?.and_then(|text| serde_json::from_str(&text).ok());

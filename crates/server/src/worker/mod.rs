@@ -1,5 +1,5 @@
-//! Workers fetch jobs from a [`JobSource`], pass them to a [`Grader`], and return the results. A worker has no data of
-//! courses and students, only leases.
+//! Workers fetch jobs from a [`JobSource`], pass them to a [`Grader`], and return the results. A worker has leases, but
+//! no data about courses or students.
 
 mod child;
 mod grader;

@@ -1,5 +1,5 @@
 //! The grader as a child process: `fosssim-oracle grade`. A panic, an endless loop or a lack of memory in the grader
-//! does not stop the worker, and all leftovers of the child are removed with the job.
+//! does not stop the worker, and everything that the child leaves behind is removed with the job.
 use super::{
     Grader, GraderFault, GradingOutput, NewFile, PROGRESS_FILE,
     child::{Child, End},
@@ -22,16 +22,18 @@ use tokio_util::sync::CancellationToken;
 /// The maximum time for the grader to write its reports after it was stopped.
 pub(super) const GRACE_PERIOD: Duration = Duration::from_secs(20);
 
-/// The maximum length of the grader's messages for the administrator.
+/// The maximum length of a message of the grader that administrators see.
 const MAX_MESSAGE_LENGTH: usize = 2000;
 
-/// The name of the page for staff, which shows everything.
+/// The file name of the page for staff, which includes everything.
 pub const STAFF_PAGE: &str = "staff.html";
 
-/// The name of the page that students see after hidden groups are published; written only if there are any.
+/// The file name of the page that students see after hidden groups are published. It is written only if there are
+/// hidden groups.
 pub const PUBLISHED_PAGE: &str = "published.html";
 
-/// The reports of a grading: format, file, media type. Two pages are written without a format.
+/// The reports of a grading: the option that requests the report, the file name, and the media type. Two pages are
+/// written without an option.
 pub const REPORTS: [(&str, &str, &str); 5] = [
     ("json", "grade.json", "application/json"),
     ("text", "report.txt", "text/plain; charset=utf-8"),
@@ -40,7 +42,7 @@ pub const REPORTS: [(&str, &str, &str); 5] = [
     ("", PUBLISHED_PAGE, "text/html; charset=utf-8"),
 ];
 
-/// The program `fosssim-oracle`, or one with the same interface.
+/// The grader as a program: `fosssim-oracle`, or one with the same interface.
 #[derive(Debug, Clone)]
 pub struct Program {
     path: PathBuf,
@@ -48,12 +50,12 @@ pub struct Program {
 }
 
 impl Program {
-    /// Creates the grader from its path, with the number of scenes that run in parallel.
+    /// Creates the grader from the path of its program. `threads` is the number of scenes that run in parallel.
     pub fn new(path: PathBuf, threads: usize) -> Self {
         Self { path, threads }
     }
 
-    /// Returns the grader's SHA-256; empty if the file can't be read.
+    /// Returns the SHA-256 digest of the grader's file; empty if the file can't be read.
     async fn digest(&self) -> String {
         digest_of_file(&self.path).await.map_or_else(|_| String::new(), |grader| grader.digest.to_string())
     }
@@ -67,7 +69,7 @@ impl Program {
             Form::Traces => drop(command.arg("--traces")),
         }
         match &task.suite {
-            // Without a suite's name, the grader uses its default.
+            // Without a name, the grader uses its default suite.
             Suite::Named(name) if name.is_empty() => {}
             Suite::Named(name) => drop(command.arg("--suite").arg(name)),
             Suite::Archive(_) => drop(command.arg("--suite").arg(folder.join("suite/suite.toml"))),
@@ -78,8 +80,8 @@ impl Program {
         if let Some(hints) = &task.hints {
             command.arg("--hints").arg(hints);
         }
-        // Reports show as much as students may see. All of them except the page contain hidden groups; the server shows
-        // these reports to staff only.
+        // Reports contain only what students may see, except for hidden groups. Only the page leaves hidden groups out,
+        // so the server shows the other reports to staff only.
         command.args(["--for", "student"]);
         for (format, file, _) in REPORTS.into_iter().filter(|(format, _, _)| !format.is_empty()) {
             command.arg("--format").arg(format!("{format}={}", folder.join(file).display()));
@@ -94,17 +96,17 @@ impl Program {
     }
 }
 
-/// The scene for a check, a small one of the grader.
+/// The scene with which the grader is checked. It is a small scene that the grader contains.
 const CHECK_SCENE: &str = "ContinuousTimeTests/diagonal-bullets-both-ways";
 
-/// The number of bytes that must be writable in a folder for jobs.
+/// The number of bytes that the folder for jobs must have space for.
 const REQUIRED_BYTES: usize = 8 << 20;
 
-/// The maximum duration of a step of a check.
+/// The maximum duration of one step of a check.
 const CHECK_TIMEOUT: Duration = Duration::from_secs(60);
 
 impl Program {
-    /// Runs the grader for a check, and returns its exit code.
+    /// Runs the grader as a step of a check, and returns its exit code.
     async fn step(&self, folder: &Path, arguments: &[&str], stop: &CancellationToken) -> Result<i32, String> {
         let messages = folder.join("messages.txt");
         let mut command = Command::new(&self.path);
@@ -130,7 +132,7 @@ impl Program {
         }
     }
 
-    /// Grades an example, and checks the result.
+    /// Grades an example submission, and checks that the verdict is the expected one.
     async fn try_example(
         &self,
         folder: &Path,
@@ -151,7 +153,7 @@ impl Program {
     }
 }
 
-/// Runs a command in a folder, without the server's environment variables, which may contain secrets.
+/// Makes a command run in a folder, without the server's environment variables, which may contain secrets.
 pub(super) fn isolate(command: &mut Command, folder: &Path) {
     command.env_clear().current_dir(folder);
     for name in ["PATH", "HOME", "LANG", "TMPDIR"] {
@@ -162,9 +164,9 @@ pub(super) fn isolate(command: &mut Command, folder: &Path) {
 }
 
 impl Grader for Program {
-    /// Checks that the grader works: there is enough free space, the reference's own trace of a scene is accepted, and
-    /// a program that does nothing runs in the sandbox and is not accepted. A grader that records no traces, as in
-    /// tests, is only started.
+    /// Checks that the grader works. The disk must have enough free space, and the grader must accept the reference's
+    /// own trace of a scene. It must also run a program that does nothing in the sandbox, and not accept it. A grader
+    /// that records no traces, as in tests, is only started.
     async fn prove(&self, folder: &Path, stop: CancellationToken) -> Result<(), String> {
         let room = folder.join("room");
         fs::write(&room, vec![1; REQUIRED_BYTES])
@@ -198,13 +200,13 @@ impl Grader for Program {
                 place_program(submission, folder, &task.submission.name).map_err(fault_about("place the program"))?
             }
             Form::Sources => unpack(submission, folder.join("submission")).await?.0,
-            // The top folder is kept, because it may be the group of all scenes.
+            // The archive's top folder is kept, because it may be the group of all scenes.
             Form::Traces => unpack(submission, folder.join("submission")).await?.1,
         };
         if let Some(suite) = suite {
             unpack(suite, folder.join("suite")).await?;
         }
-        // The digest is computed before the grader runs, because another one may be installed during the run.
+        // The digest is computed before the grader runs, because another version may be installed during the run.
         let grader = self.digest().await;
         let messages = folder.join("messages.txt");
         let mut command = self.command(task, &program, folder);
@@ -238,7 +240,7 @@ impl Grader for Program {
     }
 }
 
-/// Returns the end of a grader, and whether it exceeded the time limit.
+/// Waits until the grader ends. Returns how it ended, and whether it exceeded the time limit.
 async fn wait_for_end(child: &Child, most: Duration, stop: &CancellationToken) -> Result<(End, bool), GraderFault> {
     let (mut left, mut is_late) = (most, false);
     loop {
@@ -265,8 +267,8 @@ fn fault_about(what: &'static str) -> impl Fn(io::Error) -> GraderFault {
     move |error| GraderFault::Failed(format!("cannot {what}: {error}"))
 }
 
-/// Unpacks an archive into a new folder, and returns that folder and the folder at the archive's top. The archive was
-/// checked at the upload.
+/// Unpacks an archive into a new folder. Returns that folder, and the folder at the archive's top. The archive was
+/// already checked when it was uploaded.
 async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), GraderFault> {
     let archive = archive.to_owned();
     let unpacking = tokio::task::spawn_blocking(move || {
@@ -280,7 +282,8 @@ async fn unpack(archive: &Path, folder: PathBuf) -> Result<(PathBuf, PathBuf), G
     unpacked.map_err(|error| GraderFault::Failed(format!("cannot unpack an archive: {error}")))
 }
 
-/// Links the submission under its own name, as an executable, so that reports and messages contain that name.
+/// Creates a link to the submission under its own name, and makes it executable. Reports and messages then contain that
+/// name.
 fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<PathBuf> {
     if name.is_empty() || name.starts_with('.') || name.contains(['/', '\0']) {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, "the submission's name must be a plain file name"));
@@ -293,7 +296,7 @@ fn place_program(submission: &Path, folder: &Path, name: &str) -> io::Result<Pat
     Ok(program)
 }
 
-/// Returns the end of the grader's output, on one line.
+/// Returns the last part of the grader's output, on one line.
 fn last_output(file: &Path) -> String {
     let bytes = fs::read(file).unwrap_or_default();
     let from = bytes.len().saturating_sub(MAX_MESSAGE_LENGTH);

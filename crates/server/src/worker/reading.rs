@@ -1,12 +1,12 @@
-//! The parts of a grader's result that the service reads; the rest is for people.
+//! Reads the parts of a grader's result that the service uses. The other parts are for people.
 use crate::{grade_file::GradeFile, task::Outcome};
 use std::{fs, path::Path};
 
-/// The supported schemas of `grade.json`. During an upgrade, a grader may be older than the server; the parts that are
-/// read are the same in all of them.
+/// The versions of the form of `grade.json` that are supported. During an upgrade, a grader may be older than the
+/// server. The parts that are read here are the same in all supported versions.
 const SUPPORTED_SCHEMAS: std::ops::RangeInclusive<u32> = 3..=4;
 
-/// Reads a grade. Numbers are kept as the text that the grader wrote.
+/// Reads a `grade.json`. Numbers are kept as the text that the grader wrote.
 pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
     let bytes = fs::read(file).map_err(|error| format!("the grader wrote no grade.json: {error}"))?;
     let damaged = |error: serde_json::Error| format!("grade.json can't be read: {error}");

@@ -1,4 +1,4 @@
-//! The source of jobs for workers on other machines: a server over HTTP. The workers have a token, but no access to the
+//! A source of jobs for workers on other machines: a server, over HTTP. The workers have a token, but no access to the
 //! database.
 use super::{JobSource, SourceError};
 use crate::{
@@ -29,7 +29,7 @@ const FILE_TIMEOUT: Duration = Duration::from_secs(900);
 /// The maximum size of an answer, in bytes.
 const MAX_ANSWER_BYTES: u64 = 1 << 20;
 
-/// A server over HTTP, as a source of jobs. Clones are cheap.
+/// A server on another machine as a source of jobs. Clones are cheap.
 #[derive(Clone)]
 pub struct RemoteSource(Arc<Parts>);
 
@@ -38,7 +38,7 @@ struct Parts {
     server: String,
     authorization: String,
     name: String,
-    /// The time between two reports that the worker is alive in milliseconds, as the server requires.
+    /// The time between two reports that the worker is alive, in milliseconds. The server sets it.
     tick_every: AtomicU64,
 }
 
@@ -49,12 +49,12 @@ impl fmt::Debug for RemoteSource {
 }
 
 impl RemoteSource {
-    /// Creates a source from a server's address, for a worker with a name.
+    /// Creates a source for the worker called `name`, from the server's address and the worker's token.
     pub fn new(server: &str, token: &str, name: &str) -> Self {
         let agent = Agent::config_builder()
-            // The status is checked here, with the server's message about it.
+            // The status is checked below, so that the error contains the server's message.
             .http_status_as_error(false)
-            // The token is sent only to this server.
+            // The token must be sent only to this server.
             .max_redirects(0)
             .timeout_connect(Some(ANSWER_TIMEOUT))
             .timeout_recv_response(Some(ANSWER_TIMEOUT))
@@ -71,7 +71,7 @@ impl RemoteSource {
         }))
     }
 
-    /// Calls the server on a thread that may block.
+    /// Sends a request to the server in a thread that may block.
     async fn call<T: Send + 'static>(
         &self,
         ask: impl FnOnce(&Parts) -> Result<T, SourceError> + Send + 'static,
@@ -90,7 +90,7 @@ impl RemoteSource {
     }
 }
 
-/// Returns a lease in the form of the header.
+/// Returns a lease as text for the header.
 fn format_lease(lease: &Lease) -> String {
     format!("{}:{}:{}", lease.job, lease.attempt, lease.key)
 }
@@ -112,7 +112,7 @@ impl Parts {
         serde_json::from_slice(&text).map_err(|error| SourceError::Refused(format!("the server's answer: {error}")))
     }
 
-    /// Returns a request with the worker's identity and the job's lease.
+    /// Adds the worker's identity, and the job's lease if there is one, to a request.
     fn sign<B>(&self, request: RequestBuilder<B>, lease: Option<&str>) -> RequestBuilder<B> {
         let request = request.header("Authorization", &self.authorization).header("Fosssim-Worker", &self.name);
         match lease {
@@ -128,8 +128,8 @@ impl Parts {
     }
 }
 
-/// Returns the answer, or the error for its status: a server that does not answer at present, or one that rejects
-/// permanently.
+/// Returns the answer if its status means success. Otherwise returns an error: either the server does not answer at
+/// present, or it rejects the request permanently.
 fn check_status(mut answer: Response<Body>) -> Result<Response<Body>, SourceError> {
     let status = answer.status();
     if status.is_success() {
@@ -138,7 +138,7 @@ fn check_status(mut answer: Response<Body>) -> Result<Response<Body>, SourceErro
     let body = answer.body_mut().with_config().limit(MAX_ANSWER_BYTES).read_to_vec().unwrap_or_default();
     let problem: serde_json::Value = serde_json::from_slice(&body).unwrap_or_default();
     let text = format!("{status}: {}", problem["detail"].as_str().unwrap_or_default());
-    // Errors of this program, and missing things, are permanent; errors of a proxy are temporary.
+    // If this program makes an error, or something is missing, a retry does not help. An error of a proxy is temporary.
     match status.as_u16() {
         401 if problem["type"] == "urn:fosssim:unknown-secret" => Err(SourceError::Dismissed),
         400 | 403 | 404 | 409 | 413 | 422 => Err(SourceError::Refused(text)),

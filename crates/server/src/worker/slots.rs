@@ -1,4 +1,4 @@
-//! The slots of a worker; each runs one job at a time.
+//! The slots of a worker. Each slot runs one job at a time.
 use super::{
     Grader, GraderFault, JobSource, PROGRESS_FILE, SourceError,
     health::{Health, job_folder},
@@ -19,24 +19,24 @@ use tokio_util::sync::CancellationToken;
 /// The time that a slot waits for a job before it requests one again.
 const JOB_WAIT: Duration = Duration::from_secs(20);
 
-/// The wait after the source did not answer; it doubles up to the maximum.
+/// The wait after the source did not answer for the first time. It doubles each further time, up to a maximum.
 const FIRST_WAIT: Duration = Duration::from_millis(200);
 const MAX_WAIT: Duration = Duration::from_secs(5);
 
-/// The maximum number of tries to fetch the files of a job while the source does not answer.
+/// The maximum number of tries to fetch a job's files while the source does not answer.
 const MAX_FETCHES: u32 = 5;
 
-/// The time between two reports of a grading's progress.
+/// The minimum time between two reports of a grading's progress.
 const REPORT_INTERVAL: Duration = Duration::from_secs(1);
 
-/// A number of scenes that no suite exceeds.
+/// A number of scenes that is larger than that of any suite. Larger numbers in a progress file are ignored.
 const MAX_SCENES: u32 = 1_000_000;
 
-/// The name of a job's folder for the grader.
+/// The name of the folder in a job's folder that the grader may write into.
 const WORK_FOLDER: &str = "work";
 
-/// Runs jobs, one in each slot, until `stop` is canceled; then returns unfinished jobs, and ends. The folders of jobs
-/// are created in `folder`, which its owner empties, not the slots.
+/// Runs jobs, one in each slot, until `stop` is canceled. Unfinished jobs are then given back. The folders of jobs are
+/// created in `folder`. The caller must empty it; the slots do not.
 ///
 /// # Errors
 ///
@@ -107,11 +107,11 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
     }
 }
 
-/// The end of a job, for the source.
+/// How a job ended, for the report to the source.
 enum JobEnding {
     Finished(Box<Outcome>),
     Failed(String),
-    /// The job was returned, because the worker must stop.
+    /// The job is given back, because the worker must stop.
     GivenBack,
     /// The lease is lost, so there is nothing to report.
     Lost,
@@ -143,10 +143,10 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
             match ending {
                 Some(ending) => ending,
                 None => {
-                    // The grader ends its children before the result is reported and the folder removed.
+                    // The grader's children end before the result is reported and the folder is removed.
                     halt.cancel();
                     match grading.await {
-                        // The grading finished at the same moment.
+                        // The grading ended at the same moment as the wait for it.
                         JobEnding::Finished(outcome) if !lost.is_cancelled() => JobEnding::Finished(outcome),
                         _ if lost.is_cancelled() => JobEnding::Lost,
                         _ => JobEnding::GivenBack,
@@ -155,7 +155,7 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
             }
         }
     };
-    // A failure of the grader may be the machine's fault, which does not count as a failure of the job.
+    // If the grader failed, the machine may be the cause. In that case it does not count as a failure of the job.
     let ending = match ending {
         JobEnding::Failed(fault) if !health.check_after_fault(&stop).await => {
             tracing::warn!(job = job.lease.job, fault, "the job goes to another worker");
@@ -167,7 +167,8 @@ async fn run<D: JobSource, G: Grader>(source: D, health: Health<G>, job: Claimed
     keeping.abort();
 }
 
-/// Renews a lease until it is lost, at the interval that the source requests, and after progress of the grading.
+/// Renews a lease until it is lost. This happens at the interval that the source requires, and whenever the grading
+/// makes progress.
 async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Option<PathBuf>, lost: CancellationToken) {
     let mut renewed = tokio::time::Instant::now();
     let mut told = None;
@@ -185,13 +186,13 @@ async fn keep<D: JobSource>(source: D, lease: Lease, every: Duration, file: Opti
                 tracing::warn!(job = lease.job, attempt = lease.attempt, "the lease is lost");
                 return lost.cancel();
             }
-            // The grading continues; when it ends, the source decides whether its result counts.
+            // The grading continues. When it ends, the source decides whether the result still counts.
             Err(error) => tracing::warn!(job = lease.job, %error, "the lease can't be renewed"),
         }
     }
 }
 
-/// Returns the progress in a grader's file, such as `3/85`.
+/// Reads the progress from a file that the grader wrote, such as `3/85`.
 fn progress_in(file: &Path) -> Option<Progress> {
     let mut text = String::new();
     File::open(file).ok()?.take(64).read_to_string(&mut text).ok()?;
@@ -206,7 +207,7 @@ impl From<SourceError> for GraderFault {
     }
 }
 
-/// Fetches the files of the job, grades, and stores the result.
+/// Fetches a job's files, grades the submission, and stores the reports.
 async fn attempt<D: JobSource, G: Grader>(
     source: &D,
     grader: &G,
@@ -237,7 +238,7 @@ async fn attempt<D: JobSource, G: Grader>(
     Ok(Outcome { seconds, files, ..graded.outcome })
 }
 
-/// Repeats a request to a source that does not answer, so that a short failure of the network does not count as a
+/// Repeats a request while the source does not answer, so that a short failure of the network does not count as a
 /// failure of the job.
 async fn retry_request<T, F: Future<Output = Result<T, SourceError>>>(ask: impl Fn() -> F) -> Result<T, SourceError> {
     let mut wait = FIRST_WAIT;
@@ -252,8 +253,8 @@ async fn retry_request<T, F: Future<Output = Result<T, SourceError>>>(ask: impl 
     ask().await
 }
 
-/// Reports the result to the source, with any number of tries, because a lost result would have to be computed again. A
-/// worker that must stop tries only a few times; then the lease expires.
+/// Reports the result to the source. The number of tries is not limited, because a lost result would have to be
+/// computed again. Only a worker that must stop gives up after a few tries; its lease then expires.
 async fn report_ending<D: JobSource>(source: &D, lease: &Lease, ending: JobEnding, stop: &CancellationToken) {
     let mut wait = FIRST_WAIT;
     let mut tries_after_stop = 3;

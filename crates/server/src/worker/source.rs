@@ -1,5 +1,5 @@
-//! The interface between workers and the source of their jobs, which also receives the results: the database, or a
-//! server over HTTP.
+//! The interface between workers and the source of their jobs, which also receives the results. The source is the
+//! database, or a server over HTTP.
 use crate::{
     queue::{Lease, Progress},
     store::{Artifact, Digest},
@@ -9,30 +9,30 @@ use crate::{
 use std::{future::Future, path::Path, time::Duration};
 use thiserror::Error;
 
-/// The reason why a request to a source failed.
+/// The reason why a request to the source failed.
 #[derive(Debug, Error)]
 pub enum SourceError {
-    /// A retry may succeed.
+    /// The source does not answer at present; a retry may succeed.
     #[error("{0}")]
     Away(String),
-    /// A retry cannot succeed.
+    /// The source rejects the request; a retry cannot succeed.
     #[error("{0}")]
     Refused(String),
-    /// The worker's token is unknown or revoked.
+    /// The source no longer accepts the worker, because its token is unknown or was revoked.
     #[error("its token is unknown or revoked; an administrator can create another one on the page \"Administration\"")]
     Dismissed,
 }
 
-/// The source of workers' jobs, which also receives their results.
+/// A source of jobs for workers. It also receives the results.
 pub trait JobSource: Clone + Send + Sync + 'static {
-    /// Returns the next job, if there is one. The call must not be interrupted; otherwise the source might assign a job
-    /// that no worker receives.
+    /// Claims the next job; `None` if there is no job. The call must not be interrupted. Otherwise the source might
+    /// assign a job that no worker receives.
     fn claim(&self) -> impl Future<Output = Result<Option<ClaimedJob>, SourceError>> + Send;
 
-    /// Waits until there may be a job, at most for `patience`. The call may be interrupted.
+    /// Waits until there may be a job, but not longer than `patience`. The call may be interrupted.
     fn wait(&self, patience: Duration) -> impl Future<Output = ()> + Send;
 
-    /// Extends the lease, and reports the progress of the grading, if it is known.
+    /// Extends a lease, and reports the progress of the grading if it is known.
     fn renew(
         &self,
         lease: &Lease,
@@ -43,13 +43,13 @@ pub trait JobSource: Clone + Send + Sync + 'static {
     fn finish(&self, lease: &Lease, outcome: &Outcome)
     -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
-    /// Returns the job without counting a failure.
+    /// Gives the job back to the queue. This does not count as a failure.
     fn release(&self, lease: &Lease) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
-    /// Reports that the try failed because of the grader or the machine, not of the submission.
+    /// Reports that a try failed because of the grader or the machine, and not because of the submission.
     fn fail(&self, lease: &Lease, fault: &str) -> impl Future<Output = Result<LeaseAnswer, SourceError>> + Send;
 
-    /// Copies an artifact of the job into a new file.
+    /// Copies one of the job's artifacts into a new file.
     fn fetch(
         &self,
         lease: &Lease,
@@ -57,10 +57,11 @@ pub trait JobSource: Clone + Send + Sync + 'static {
         file: &Path,
     ) -> impl Future<Output = Result<(), SourceError>> + Send;
 
-    /// Stores a file for the result of the job.
+    /// Stores a file that belongs to the job's result.
     fn store(&self, lease: &Lease, file: &Path) -> impl Future<Output = Result<Artifact, SourceError>> + Send;
 
-    /// Reports regularly that this worker is alive, with its slots and the reason why it can't grade, if it can't.
+    /// Reports that this worker is alive, with its number of slots. If the worker can't grade, `fault` is the reason.
+    /// Workers call this regularly.
     fn tick(&self, slots: usize, fault: Option<&str>) -> impl Future<Output = Result<(), SourceError>> + Send;
 
     /// Returns the time between two calls of [`tick`](Self::tick).

@@ -1,4 +1,4 @@
-//! The check whether a suite can be used, which the grader makes before a submission is graded by it.
+//! Checks that a suite is usable, before any submission is graded with it.
 use super::{
     child::{Child, End, set_limits},
     program::isolate,
@@ -6,20 +6,20 @@ use super::{
 use crate::health::without_paths;
 use std::{fs, path::Path, process::Command, time::Duration};
 
-/// The limit of wall time and processor time for the grader, in seconds.
+/// The maximum wall time and processor time of the grader's check, in seconds.
 const MAX_SECONDS: u64 = 60;
 
-/// The limit of the grader's memory, in bytes.
+/// The maximum memory of the grader's check, in bytes.
 const MAX_MEMORY: u64 = 2 << 30;
 
-/// The maximum length of the shown output.
+/// The maximum length of the grader's output in the message.
 const MAX_MESSAGE_LENGTH: usize = 2000;
 
-/// Checks the suite in a folder with the grader. A grader without the command `suite check` has no objections.
+/// Checks the suite in a folder with the grader. If the grader has no command `suite check`, the suite is accepted.
 ///
 /// # Errors
 ///
-/// Fails with the grader's objections, without the folders of this machine.
+/// Fails if the grader rejects the suite. The error contains the grader's output, without paths of this machine.
 pub async fn check_suite(grader: &Path, folder: &Path) -> Result<(), String> {
     let messages = tempfile::NamedTempFile::new_in(folder).map_err(|error| error.to_string())?;
     let mut command = Command::new(grader);

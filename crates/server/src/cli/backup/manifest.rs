@@ -7,15 +7,15 @@ use std::{fs, path::Path};
 /// The version of the format of backups.
 pub(super) const SCHEMA: u32 = 1;
 
-/// The name of the manifest's file, which every backup has.
+/// The name of the manifest's file in a backup's folder.
 const MANIFEST_FILE: &str = "backup.json";
 
-/// The contents of a backup.
+/// The manifest: the versions that a backup needs, and the files that it contains.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Manifest {
     /// The version of the backup's format.
     pub(super) schema: u32,
-    /// The version of the program that made the backup.
+    /// The version of fosssim-server that made the backup.
     pub(super) version: String,
     /// The version of the database's tables.
     pub(super) tables: i64,
@@ -23,16 +23,16 @@ pub(super) struct Manifest {
     pub(super) artifacts: Artifacts,
 }
 
-/// The copy of the database.
+/// The copy of the database, as one file.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Copy {
-    /// The copy's name in the folder.
+    /// The name of the copy's file in the backup's folder.
     pub(super) file: String,
     pub(super) sha256: Digest,
     pub(super) bytes: u64,
 }
 
-/// The store's files; the name of each is its digest.
+/// The files of the store. The name of each file is its digest.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Artifacts {
     pub(super) count: u64,

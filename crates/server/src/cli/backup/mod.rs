@@ -1,5 +1,5 @@
-//! The commands `backup` and `restore`: all data of the server in a folder with a manifest. The database is copied
-//! first, because an artifact is in the store before the database refers to it.
+//! The commands `backup` and `restore`, which copy all data of the server into a folder with a manifest, and back. The
+//! database is copied first, because an artifact is in the store before the database refers to it.
 mod manifest;
 mod postgres;
 mod restore;
@@ -76,7 +76,7 @@ async fn fill(folder: &Path, database: &Database, store: &Store, address: &Addre
     Ok(manifest)
 }
 
-/// Copies the store's artifacts into a folder that is also a store.
+/// Copies all artifacts of the store into a folder of the backup, which has the form of a store.
 async fn copy_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
     let mut copied = Artifacts::default();
     fs::create_dir_all(folder)?;
@@ -88,8 +88,8 @@ async fn copy_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
         let file = place.join(rest);
         match store.fetch(&digest, &file).await {
             Ok(()) => {}
-            // The artifact was removed since, or exists twice because the sweep moved it to the trash; nothing refers
-            // to it.
+            // Nothing refers to this artifact: it was removed in the meantime, or was listed twice because the sweep
+            // moved it to the trash.
             Err(crate::store::StoreError::Missing(_)) => continue,
             Err(_) if file.exists() => continue,
             Err(error) => return Err(error.into()),

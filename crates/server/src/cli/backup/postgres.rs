@@ -35,7 +35,7 @@ async fn run(program: &str, address: &str, words: &[&str], file: &Path) -> Resul
     Ok(())
 }
 
-/// Copies a database into a file.
+/// Copies a PostgreSQL database into a file, with `pg_dump`.
 pub(super) async fn dump(address: &str, file: &Path) -> Result<()> {
     run("pg_dump", address, &["--format=custom", "--no-owner", "--no-privileges", "--file"], file).await
 }

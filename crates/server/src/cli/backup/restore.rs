@@ -1,5 +1,5 @@
-//! The command `restore`, which turns a backup into a data folder. The database comes last, so that a server that is
-//! started too early finds no database instead of an incomplete one.
+//! The command `restore`, which turns a backup into a data folder. The database is restored last, so that a server that
+//! is started too early finds no database rather than an incomplete one.
 use super::{
     super::{arguments::RestoreArguments, folders::ServiceFolders},
     manifest::{Artifacts, Manifest},
@@ -38,13 +38,13 @@ pub(in crate::cli) async fn restore(arguments: &RestoreArguments) -> Result<()> 
     }
     let restored = fill(arguments, &manifest, &copy).await;
     if restored.is_err() {
-        // The incomplete data folder is useless, and was empty before.
+        // The data folder was empty before, and an incomplete one is useless.
         drop(fs::remove_dir_all(&place.data));
     }
     restored
 }
 
-/// Fills an empty data folder.
+/// Copies the artifacts and the database of a backup into an empty data folder.
 async fn fill(arguments: &RestoreArguments, manifest: &Manifest, copy: &Path) -> Result<()> {
     let (place, from) = (&arguments.place, arguments.backup.as_path());
     let folders = ServiceFolders::open(place)?;
@@ -96,7 +96,7 @@ fn copy_database(copy: &Path, file: &Path) -> Result<()> {
     Ok(fs::rename(&partial, file)?)
 }
 
-/// Stores all files of a folder of artifacts. Each file's bytes must match its name.
+/// Stores all files of a folder of artifacts. The digest of each file's bytes must be its name.
 async fn put_artifacts(store: &Store, folder: &Path) -> Result<Artifacts> {
     let mut put = Artifacts::default();
     if !folder.exists() {

@@ -1,4 +1,4 @@
-//! Tokens, sessions and links that sign in. Each is 256 random bits; the database stores only the digest.
+//! Tokens, sessions and sign-in links. Each is a secret of 256 random bits; the database stores only its digest.
 use crate::domain::view::Account;
 use crate::{
     db::{DbError, FromRow, Transaction, from_row},
@@ -14,23 +14,23 @@ use utoipa::ToSchema;
 /// The lifetime of a session after its last use, in milliseconds.
 const SESSION_LIFETIME: i64 = 14 * 24 * 3600 * 1000;
 
-/// The maximum number of sessions of an account; a further one ends the oldest.
+/// The maximum number of sessions of an account. Another session ends the oldest one.
 const MAX_SESSIONS: i64 = 50;
 
 /// The lifetime of a sign-in link, in milliseconds.
 const LINK_LIFETIME: i64 = 7 * 24 * 3600 * 1000;
 
-/// The age up to which a session may create further ways to sign in, such as tokens, in milliseconds.
+/// The age in milliseconds up to which a session may create further ways to sign in, such as tokens.
 const RECENT_AGE: i64 = 12 * 3600 * 1000;
 
 /// The time between two updates of a session's last use, in milliseconds.
 const SEEN_INTERVAL: i64 = 3600 * 1000;
 
-/// The prefix of people's tokens, which shows people and scanners the kind of token.
+/// The prefix of people's tokens, by which people and secret scanners recognize such a token.
 pub(in crate::domain) const PERSON_PREFIX: &str = "fso_";
 pub(in crate::domain) const WORKER_PREFIX: &str = "fsw_";
 
-/// A new secret, which is shown once.
+/// A new secret, which is shown to its owner once.
 #[derive(Clone, PartialEq, Eq)]
 pub struct NewSecret(String);
 
@@ -58,7 +58,7 @@ impl fmt::Debug for NewSecret {
 /// A token, without its secret.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct TokenInfo {
-    /// The token's number.
+    /// The token's number in the database, by which it is revoked.
     pub id: i64,
     /// The token's name, given by its owner.
     pub name: String,
@@ -73,42 +73,43 @@ from_row! { TokenInfo { id, name, created_at } }
 pub struct NewToken {
     #[serde(flatten)]
     pub(in crate::domain) info: TokenInfo,
-    /// The secret itself.
+    /// The token's secret, which the owner sends with requests.
     pub token: String,
 }
 
-/// A link that signs in once, valid for a week.
+/// A link with which an account signs in once. It is valid for a week.
 #[derive(Serialize, ToSchema)]
 pub struct Link {
-    /// The link; `None` if the account existed.
+    /// The link's address; `None` if the account existed already.
     pub link: Option<String>,
 }
 
 /// The way in which a person signed in.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::domain) enum SignInMethod {
-    /// By a provider, a learning platform, or a link from the server or an administrator.
+    /// The person signed in through a provider or a learning platform, or with a link from the server or an
+    /// administrator.
     Own,
-    /// By a link from a course's staff, who may have used it themselves.
+    /// The person signed in with a link from a course's staff, who may have used it themselves.
     Vouched,
-    /// By a token, given by its number; the session ends with the token.
+    /// The person signed in with the token of this number. The session ends with the token.
     Token(i64),
 }
 
 /// The state of a session, for a request.
 #[derive(Debug, Clone)]
 pub(in crate::domain) struct SessionState {
-    /// Whether the session came from a link of a course's staff.
+    /// Whether the session was begun with a link from a course's staff.
     pub(in crate::domain) is_vouched: bool,
-    /// Whether the session came from a token.
+    /// Whether the session was begun with a token.
     pub(in crate::domain) is_by_token: bool,
-    /// Whether the session began recently.
+    /// Whether the session is young enough to create further ways to sign in.
     pub(in crate::domain) is_recent: bool,
-    /// Whether the session's last use must be updated.
+    /// Whether the stored time of the session's last use must be updated.
     pub(in crate::domain) is_stale: bool,
 }
 
-/// Returns the digest of a secret, which the database stores. The secret is random, so it can't be guessed from the
+/// Returns the digest of a secret, as the database stores it. The secret is random, so it can't be guessed from the
 /// digest.
 pub(in crate::domain) fn digest(secret: &str) -> String {
     to_hex(&Sha256::digest(secret))
@@ -129,7 +130,7 @@ pub(in crate::domain) async fn account_of_token(
     }
 }
 
-/// Returns the account of a session. A session from a token ends with the token.
+/// Returns the account of a session and the session's state. A session that a token began ends with the token.
 pub(in crate::domain) async fn account_of_session(
     transaction: &mut Transaction,
     session: &str,
@@ -152,7 +153,7 @@ pub(in crate::domain) async fn account_of_session(
     Ok(Some((Account::from_row(&row)?, seen)))
 }
 
-/// Extends a session from the present time.
+/// Restarts a session's lifetime now.
 pub(in crate::domain) async fn extend_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
     let statement = "UPDATE session SET seen_at = {now}, expires_at = {now} + ? WHERE digest = ?";
     transaction.execute(statement, values![SESSION_LIFETIME, digest(session)]).await.map(drop)
@@ -180,13 +181,13 @@ pub(in crate::domain) async fn begin_session(
     Ok(secret)
 }
 
-/// Ends a session.
+/// Ends the session with this secret.
 pub(in crate::domain) async fn end_session(transaction: &mut Transaction, session: &str) -> Result<(), DbError> {
     transaction.execute("DELETE FROM session WHERE digest = ?", values![digest(session)]).await.map(drop)
 }
 
-/// Creates a link that signs in once, and invalidates the account's unused ones. `way` is the sign-in method of the
-/// person who requests it.
+/// Creates a link that signs in once, and invalidates the account's unused links. `way` is the sign-in method of the
+/// person who requests the link.
 pub(in crate::domain) async fn new_link(
     transaction: &mut Transaction,
     account: i64,
@@ -197,7 +198,7 @@ pub(in crate::domain) async fn new_link(
     further_link(transaction, account, by, way).await
 }
 
-/// Creates a further sign-in link, and keeps earlier ones valid.
+/// Creates another sign-in link. Earlier links stay valid.
 pub(in crate::domain) async fn further_link(
     transaction: &mut Transaction,
     account: i64,
@@ -213,7 +214,7 @@ pub(in crate::domain) async fn further_link(
     Ok(secret)
 }
 
-/// Returns the name and the courses of the owner of a link that can still be used.
+/// Returns the name and the courses of a link's owner, if the link can still be used.
 pub(in crate::domain) async fn link_owner(
     transaction: &mut Transaction,
     link: &str,
@@ -227,7 +228,7 @@ pub(in crate::domain) async fn link_owner(
     row.map(|row| Ok((row.text("name")?, row.maybe_text("courses")?))).transpose()
 }
 
-/// Uses up a link, and returns its owner and the way in which the owner signs in.
+/// Marks a link as used. Returns the link's owner, and the method by which the owner now signs in.
 pub(in crate::domain) async fn use_link(
     transaction: &mut Transaction,
     link: &str,
@@ -252,7 +253,7 @@ pub(in crate::domain) async fn end_sessions(transaction: &mut Transaction, accou
     transaction.execute("DELETE FROM session WHERE account = ?", values![account]).await.map(drop)
 }
 
-/// Ends connections with a provider that were made in sessions from staff's links.
+/// Disconnects the account from providers to which it was connected in a session from a staff link.
 async fn end_vouched_connections(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     let statement = "DELETE FROM platform_account WHERE account = ? AND vouched = 1";
     transaction.execute(statement, values![account]).await.map(drop)
@@ -268,8 +269,8 @@ pub(in crate::domain) async fn end_all(transaction: &mut Transaction, account: i
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
-/// Gives the account to its person alone. Sessions and tokens from links of a course's staff end, because staff may
-/// have used them.
+/// Makes sure that only the person can use the account. Sessions and tokens from staff links end, because staff may
+/// have used these links.
 pub(in crate::domain) async fn end_vouched(transaction: &mut Transaction, account: i64) -> Result<(), DbError> {
     transaction.execute("UPDATE account SET managed_by = NULL WHERE id = ?", values![account]).await?;
     end_vouched_connections(transaction, account).await?;
@@ -280,7 +281,7 @@ pub(in crate::domain) async fn end_vouched(transaction: &mut Transaction, accoun
     transaction.execute(statement, values![account]).await.map(drop)
 }
 
-/// Returns whether an account has more rights than a student anywhere. Staff can't sign in as such an account.
+/// Returns whether an account has more rights than a student's in some course. Staff can't sign in as such an account.
 pub(in crate::domain) async fn is_trusted(transaction: &mut Transaction, account: i64) -> Result<bool, DbError> {
     let statement = "SELECT is_admin, (SELECT count(*) FROM member
            WHERE member.account = account.id AND member.role = 'staff') AS staff
@@ -289,7 +290,7 @@ pub(in crate::domain) async fn is_trusted(transaction: &mut Transaction, account
     Ok(row.flag("is_admin")? || row.int("staff")? > 0)
 }
 
-/// Creates a token.
+/// Creates a token for an account or a worker.
 pub(in crate::domain) async fn new_token(
     transaction: &mut Transaction,
     account: Option<i64>,
@@ -313,7 +314,7 @@ pub(in crate::domain) fn is_control(c: char) -> bool {
             | '\u{e0000}'..='\u{e0fff}')
 }
 
-/// Checks a name that a person chose. The name is shown in pages, logs and tables.
+/// Checks a name that a person chose, because pages, logs and tables show it.
 pub(in crate::domain) fn check_title(what: &str, text: &str) -> Result<(), Problem> {
     let length = text.chars().count();
     if !(1..=200).contains(&length) || text.chars().any(is_control) || text.trim() != text {

@@ -1,4 +1,4 @@
-//! The limits of an account, a course, and the whole server: parallel transfers, and stored bytes.
+//! The limits on parallel transfers and on stored bytes: for an account, for a course, and for the whole server.
 use crate::domain::{
     Member, Throttle,
     accounts::turns::{ArchiveTurn, Turns},
@@ -15,25 +15,25 @@ use std::{
 };
 use tokio::sync::{OwnedSemaphorePermit, Semaphore, SemaphorePermit};
 
-/// The parallel transfers of all accounts. Each takes a connection, a file and about 100 KiB.
+/// The transfers that may run in parallel for all accounts together. Each needs a connection, a file and about 100 KiB.
 static ALL_TRANSFERS: Semaphore = Semaphore::const_new(3000);
 
-/// The time that an upload waits for others of the same account.
+/// The maximum time that an upload waits for other uploads of the same account.
 const TURN_TIMEOUT: Duration = Duration::from_secs(30);
 
 /// The maximum number of rejected archives of an account per minute.
 const MAX_REJECTED_PER_MINUTE: u32 = 30;
 
-/// The limits, and the active transfers.
+/// The limits on transfers and stored bytes, and the transfers that are running.
 #[derive(Debug, Default)]
 pub struct TransferLimits {
     /// The maximum number of parallel transfers of one account.
     pub transfers: usize,
-    /// The maximum number of stored bytes of uploads and their reports of one person; 0 for any number.
+    /// The maximum number of bytes that are stored for one person: uploads and their reports. With 0 there is no limit.
     pub student: u64,
-    /// The maximum number of stored bytes of one course; 0 for any number.
+    /// The maximum number of bytes that are stored for one course. With 0 there is no limit.
     pub course: u64,
-    /// The maximum number of stored bytes of the server; 0 for any number.
+    /// The maximum number of bytes that the server stores. With 0 there is no limit.
     pub server: u64,
     by_account: Mutex<HashMap<i64, Arc<Semaphore>>>,
     turns: Mutex<HashMap<i64, Arc<tokio::sync::Mutex<()>>>>,
@@ -41,7 +41,7 @@ pub struct TransferLimits {
     refused: Throttle,
 }
 
-/// The permission for a transfer, until it is dropped.
+/// The permission for a transfer, which ends when this value is dropped.
 #[derive(Debug)]
 pub struct Transfer {
     _of_account: OwnedSemaphorePermit,
@@ -49,7 +49,7 @@ pub struct Transfer {
 }
 
 impl TransferLimits {
-    /// Creates the limits.
+    /// Creates the limits; the last three are in bytes.
     pub fn new(transfers: usize, student: u64, course: u64, server: u64) -> Self {
         Self { transfers, student, course, server, ..Self::default() }
     }
@@ -80,7 +80,7 @@ fn find_shared<T>(all: &Mutex<HashMap<i64, Arc<T>>>, account: i64, new: impl FnO
 }
 
 impl Member {
-    /// Permits a transfer.
+    /// Begins a transfer of the account.
     ///
     /// # Errors
     ///
@@ -89,11 +89,12 @@ impl Member {
         self.app.limits.transfer(self.account.id)
     }
 
-    /// Waits until an archive of the account may be checked. It counts as rejected until it is accepted.
+    /// Waits until an archive of the account may be checked. The archive counts as rejected until
+    /// [`ArchiveTurn::note_right_archive`] is called.
     ///
     /// # Errors
     ///
-    /// Fails if too many archives wait, or too many of the account's were rejected.
+    /// Fails if too many archives wait, or too many of the account's archives were rejected.
     pub async fn archive_turn(&self) -> Result<ArchiveTurn, Problem> {
         let turn = self.app.limits.archives.wait(self.account.id).await?;
         ensure(
@@ -105,12 +106,12 @@ impl Member {
         Ok(turn)
     }
 
-    /// Records that an archive was accepted.
+    /// Records that the archive was accepted.
     pub fn note_right_archive(&self) {
         self.app.limits.refused.put_back(self.account.id);
     }
 
-    /// Returns the stored bytes of the person, the course and the server, each with its limit.
+    /// Returns the stored bytes of the person, of the course and of the server, and the limit for each.
     async fn shares(&self, transaction: &mut Transaction) -> Result<[RoomShare; 3], Problem> {
         let limits = &self.app.limits;
         let statement =
@@ -148,7 +149,7 @@ impl Member {
     }
 }
 
-/// A number of stored bytes, and its limit, where 0 means any number.
+/// A number of stored bytes, and its limit. A limit of 0 means that there is no limit.
 #[derive(Debug, Clone, Copy)]
 struct RoomShare {
     bytes: u64,
@@ -156,7 +157,7 @@ struct RoomShare {
 }
 
 impl RoomShare {
-    /// Returns whether four fifths of the limit are used.
+    /// Returns whether at least four fifths of the limit are used.
     fn is_nearly_all(self) -> bool {
         self.most > 0 && self.bytes >= self.most / 5 * 4
     }

@@ -1,4 +1,5 @@
-//! People from another service: a learning platform, or a provider. An issuer and a subject identify a person.
+//! People whom another service identifies, by an issuer and a subject. The service is a learning platform, or a
+//! provider.
 use crate::{
     db::{DbError, Transaction},
     domain::accounts::identity,
@@ -6,13 +7,13 @@ use crate::{
     values,
 };
 
-/// A person as an issuer describes them.
+/// A person, as the issuer describes them.
 pub(in crate::domain) struct Newcomer<'a> {
-    /// The platform's issuer. A provider's has a prefix, so that no platform can claim to be it.
+    /// The platform's issuer. A provider's issuer has a prefix here, so that no platform can claim to be the provider.
     pub(in crate::domain) issuer: &'a str,
     pub(in crate::domain) subject: &'a str,
     pub(in crate::domain) name: Option<&'a str>,
-    /// The base of the login; the part before the @ of an address.
+    /// A name from which the login is made; of an e-mail address, only the part before the @.
     pub(in crate::domain) nickname: Option<&'a str>,
 }
 
@@ -24,8 +25,7 @@ impl Newcomer<'_> {
         known.map(|row| row.int("account")).transpose()
     }
 
-    /// Assigns an account to the person. If the session came from a link of staff, the assignment is marked as vouched
-    /// for.
+    /// Assigns an account to the person. If the session came from a link of staff, the assignment is marked as such.
     pub(in crate::domain) async fn join(
         &self,
         transaction: &mut Transaction,
@@ -37,8 +37,8 @@ impl Newcomer<'_> {
         transaction.execute(statement, values![self.issuer, self.subject, account, is_vouched]).await.map(drop)
     }
 
-    /// Finds the person's account, or creates it with the issuer's name. It never takes an existing account of the same
-    /// name or address, because people choose these themselves.
+    /// Finds the person's account, or creates it with the issuer's name. An existing account with the same name or
+    /// address is never used, because people choose names and addresses themselves.
     pub(in crate::domain) async fn find_or_make(&self, transaction: &mut Transaction) -> Result<i64, DbError> {
         let name = self.name.map(clean_name).filter(|name| !name.is_empty());
         if let Some(account) = self.find(transaction).await? {
@@ -68,7 +68,7 @@ impl Newcomer<'_> {
     }
 }
 
-/// Returns a name in the form that this service shows.
+/// Returns a name without characters that this service does not show, and shortened.
 fn clean_name(name: &str) -> String {
     let plain: String = name.chars().map(|c| if identity::is_control(c) { ' ' } else { c }).collect();
     plain.trim().chars().take(200).collect::<String>().trim().to_owned()

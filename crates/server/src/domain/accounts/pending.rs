@@ -1,6 +1,6 @@
-//! Sign-ins that another service must confirm: a learning platform, or a provider. The data for the answer are signed
-//! and not stored, so any number of sign-ins may begin. Each can be answered once, in the same browser, within a time
-//! limit.
+//! Sign-ins that another service must confirm: a learning platform, or a provider. The data that the answer needs are
+//! signed instead of stored, so any number of sign-ins may begin. Each sign-in can be answered once, in the same
+//! browser, within a time limit.
 use crate::{
     db::{DbError, Transaction},
     domain::{
@@ -22,31 +22,31 @@ const LOGIN_LIFETIME: i64 = 10 * 60 * 1000;
 /// address.
 const MAX_LOGINS: u32 = 3000;
 
-/// The message about a sign-in that did not begin here, was answered before, or took too long.
+/// The message for a sign-in that did not begin here, that was already answered, or that took too long.
 pub(in crate::domain) const UNKNOWN_SIGN_IN: &str = "this sign-in is unknown, used or too old";
 
 /// A sign-in that has begun, with the secrets that the answer must contain.
 pub(in crate::domain) struct BegunSignIn {
     /// The signed state, which the service returns.
     pub(in crate::domain) state: String,
-    /// The secret that the browser keeps, and shows when it returns.
+    /// A secret that the browser keeps, and sends when it returns.
     pub(in crate::domain) browser: String,
 }
 
-/// A sign-in whose browser returned.
+/// A sign-in whose browser has returned from the other service.
 pub(in crate::domain) struct PendingSignIn {
     state: String,
     expires_at: i64,
     /// The service that confirms the sign-in: a platform's number, or a provider.
     pub(in crate::domain) at: String,
-    /// The account to connect; 0 for none.
+    /// The account that is being connected; 0 if a person signs in instead.
     pub(in crate::domain) account: i64,
-    /// The path of the next page.
+    /// The path of the page that opens after the sign-in.
     pub(in crate::domain) to: String,
 }
 
 impl App {
-    /// Begins a sign-in at a service, in a browser that may have begun others there.
+    /// Begins a sign-in at a service. The browser may have begun other sign-ins there.
     pub(in crate::domain) async fn begin_sign_in(
         &self,
         at: &str,
@@ -68,7 +68,7 @@ impl App {
         Ok(BegunSignIn { state, browser })
     }
 
-    /// Returns a secret of a sign-in, which only this service can compute from the state.
+    /// Returns a secret for a sign-in. Only this service can compute it from the state.
     pub(in crate::domain) async fn word_of(&self, kind: &str, state: &str) -> Result<String, Problem> {
         let key = self.signing_key().await?;
         Ok(to_hex(hmac::sign(&key, format!("{kind} {state}").as_bytes()).as_ref()))
@@ -125,7 +125,7 @@ impl PendingSignIn {
     }
 }
 
-/// Reads a signed state, and the digest of the browser's secret in it.
+/// Reads a signed state. Returns the sign-in, and the digest of the browser's secret.
 fn parse_state(key: &hmac::Key, state: &str) -> Option<(PendingSignIn, String)> {
     let (words, tag) = state.rsplit_once('.')?;
     hmac::verify(key, words.as_bytes(), &URL_SAFE_NO_PAD.decode(tag).ok()?).ok()?;

@@ -1,5 +1,5 @@
-//! Sign-in at an OpenID Connect provider. The account of each subject of the provider is stored. An e-mail address can
-//! claim an account once, if a course's staff created the account and it has never been used.
+//! Sign-in at an OpenID Connect provider. The database stores which account belongs to each subject of the provider. An
+//! e-mail address can claim an account once, if a course's staff created the account and it has never been used.
 use crate::{
     db::Transaction,
     domain::{
@@ -16,7 +16,7 @@ use crate::{
     values,
 };
 
-/// The provider's name among the services that confirm sign-ins.
+/// The name under which pending sign-ins refer to the provider.
 const PROVIDER_SERVICE: &str = "provider";
 
 impl From<ProviderFault> for Problem {
@@ -38,7 +38,7 @@ impl App {
         format!("{}/sign-in/provider/answer", self.public)
     }
 
-    /// Computes the secrets of a sign-in with a state.
+    /// Computes the secrets for a sign-in with this state.
     async fn compute_words(&self, state: &str) -> Result<SignInWords, Problem> {
         let (nonce, verifier) = (self.word_of("nonce", state).await?, self.word_of("verifier", state).await?);
         Ok(SignInWords { state: state.to_owned(), nonce, verifier })
@@ -51,12 +51,12 @@ fn issuer(provider: &Provider) -> String {
 }
 
 impl Visitor {
-    /// Begins a sign-in at the provider, which leads to the page `to` afterwards. For a signed-in person it connects
-    /// their account.
+    /// Begins a sign-in at the provider; the page `to` opens afterwards. If a person is already signed in, their
+    /// account is connected to the provider.
     ///
     /// # Errors
     ///
-    /// Fails if there is no provider, or it does not answer, or the person lacks the permission.
+    /// Fails if there is no provider, if the provider does not answer, or if the person lacks the permission.
     pub async fn begin_at_provider(&self, to: &str, connects: Option<&Person>) -> Result<LoginAnswer, Problem> {
         let provider = self.app.known_provider()?;
         let account = match connects {
@@ -69,7 +69,7 @@ impl Visitor {
         Ok(LoginAnswer { address: address.into(), browser: begun.browser })
     }
 
-    /// Signs in the person for whom the provider gave a code, in answer to a sign-in that this browser began.
+    /// Signs in the person for whom the provider issued a code. The code must answer a sign-in that this browser began.
     ///
     /// # Errors
     /// Fails if the answer does not belong to such a sign-in, or the provider's tokens are not accepted.
@@ -104,7 +104,7 @@ fn newcomer<'a>(issuer: &'a str, person: &'a ProviderPerson) -> Newcomer<'a> {
     Newcomer { issuer, subject: &person.subject, name, nickname }
 }
 
-/// Connects an account with the provider. The account becomes the person's own, and its earlier sessions end.
+/// Connects an account to the provider. The account becomes the person's own, and its earlier sessions end.
 async fn connect(
     transaction: &mut Transaction,
     provider: &Provider,
@@ -141,7 +141,7 @@ async fn account(transaction: &mut Transaction, provider: &Provider, person: &Pr
     if newcomer.find(transaction).await?.is_none()
         && let Some(mailbox) = &person.mailbox
     {
-        // Staff made the account for the owner of this address, and it was never used.
+        // Staff created the account for the owner of this address, and the account was never used.
         let statement = "SELECT id FROM account
             WHERE login = ? AND managed_by IS NOT NULL AND disabled_at IS NULL {for update}";
         if let Some(row) = transaction.row(statement, values![mailbox]).await? {

@@ -1,6 +1,6 @@
 //! Limits the requests of an account by a bucket of tokens that refills over time. Requests count by account and not by
 //! address, because a whole lecture hall may share an address. Sign-ins count by address, because the account is not
-//! known before.
+//! known before the sign-in.
 use std::{
     collections::HashMap,
     hash::{DefaultHasher, Hash, Hasher},
@@ -9,7 +9,7 @@ use std::{
     time::Instant,
 };
 
-/// The number of buckets above which full ones are dropped.
+/// The number of buckets above which full buckets are removed from memory.
 const MAX_BUCKETS: usize = 10_000;
 
 /// The token buckets of all accounts.
@@ -17,8 +17,8 @@ const MAX_BUCKETS: usize = 10_000;
 pub struct Throttle(Mutex<HashMap<i64, (f64, Instant)>>);
 
 impl Throttle {
-    /// Takes a token from an account's bucket, which holds at most the tokens of one minute, and returns whether there
-    /// was one.
+    /// Takes a token from an account's bucket, and returns whether there was one. A bucket holds at most the tokens of
+    /// one minute.
     pub(in crate::domain) fn try_acquire(&self, account: i64, per_minute: u32, now: Instant) -> bool {
         let most = f64::from(per_minute);
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
@@ -35,7 +35,7 @@ impl Throttle {
         passes
     }
 
-    /// Returns a token to the bucket, so that its use does not count.
+    /// Puts a token back into the bucket, for a request that should not count.
     pub(in crate::domain) fn put_back(&self, account: i64) {
         let mut buckets = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((level, _)) = buckets.get_mut(&account) {
@@ -44,8 +44,8 @@ impl Throttle {
     }
 }
 
-/// Returns the bucket's number for an address and a purpose. A user of IPv6 has 2^64 addresses, so all addresses of a
-/// network share one bucket.
+/// Returns the number of the bucket for an address and a purpose. A user of IPv6 has 2^64 addresses, so all addresses
+/// of a network share one bucket.
 pub(in crate::domain) fn bucket_id(address: Option<IpAddr>, what: &str) -> i64 {
     let network = address.map(|address| match address.to_canonical() {
         IpAddr::V6(address) => Ipv6Addr::from_bits(address.to_bits() >> 64 << 64).into(),

@@ -1,5 +1,5 @@
-//! Turns for checking archives, which may occupy a processor for seconds. An account has one turn at a time, and the
-//! account with the least recent use goes first, so that no account waits for another's bad uploads.
+//! Turns for checking archives, which may occupy a processor for seconds. An account has one turn at a time. The
+//! account with the least recent use is first, so that no account has to wait for the bad uploads of another.
 use crate::problem::{Problem, ensure};
 use std::{
     collections::{BTreeMap, HashMap},
@@ -8,16 +8,16 @@ use std::{
 };
 use tokio::sync::Notify;
 
-/// The number of archives that are checked in parallel; each may need about 100 MiB, and a whole processor.
+/// The number of archives that are checked in parallel. Each may need about 100 MiB, and a whole processor.
 const MAX_RUNNING: usize = 2;
 
-/// The maximum wait for a turn.
+/// The maximum time that an archive waits for a turn.
 const WAIT_LIMIT: Duration = Duration::from_secs(60);
 
 /// The number of seconds after which used time counts half.
 const HALF_LIFE: f64 = 60.0;
 
-/// The number of accounts above which those without recent use are dropped.
+/// The number of accounts above which accounts without recent use are removed from memory.
 const MAX_ACCOUNTS: usize = 10_000;
 
 /// The turns of all accounts.
@@ -32,16 +32,16 @@ struct TurnParts {
 
 #[derive(Debug, Default)]
 struct TurnState {
-    /// The accounts that have a turn.
+    /// The accounts whose archives are being checked.
     running: Vec<i64>,
-    /// Waiting accounts, by the number of their ticket.
+    /// The waiting accounts, by the numbers of their tickets.
     waiting: BTreeMap<u64, i64>,
     next: u64,
-    /// The seconds that each account used, with the time of the last update.
+    /// For each account, the seconds of checking that it used recently, and the time when they were last updated.
     taken: HashMap<i64, (f64, Instant)>,
 }
 
-/// A turn, or a position in the queue, until it is dropped.
+/// A turn, or a position in the queue for one. It ends when this value is dropped.
 #[derive(Debug)]
 pub struct ArchiveTurn {
     turns: Turns,
@@ -84,7 +84,7 @@ impl Turns {
         loop {
             let changed = self.0.changed.notified();
             tokio::pin!(changed);
-            // A notification after this line is not missed.
+            // After this line, no notification is missed.
             changed.as_mut().enable();
             {
                 let mut state = self.state();

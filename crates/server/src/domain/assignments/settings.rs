@@ -21,37 +21,38 @@ use utoipa::{
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 #[serde(default, deny_unknown_fields)]
 pub struct Settings {
-    /// A suite of the grader, such as `t2m2`; the grader's default if none is named. An uploaded suite has precedence.
+    /// The name of a suite of the grader, such as `t2m2`. An empty name means the grader's default suite. An uploaded
+    /// suite has precedence.
     #[schema(pattern = "^([A-Za-z0-9_][A-Za-z0-9._-]*(@[A-Za-z0-9_][A-Za-z0-9._-]*)?)?$", max_length = 100)]
     pub suite: String,
-    /// The digest of an archive with a `suite.toml`, which is uploaded by a separate request.
+    /// The digest of an uploaded archive with a `suite.toml`. The archive is uploaded by a separate request.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(value_type = Option<crate::schema::Digest>)]
     pub suite_archive: Option<String>,
-    /// The rule books: `parity`, `fair` or `both`; null for the suite's choice.
+    /// The rule books by which traces are judged: `parity`, `fair` or `both`. With null, the suite chooses.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(pattern = "^(parity|fair|both)$")]
     pub rules: Option<String>,
-    /// The level of detail in reports: `none`, `where`, `what` or `full`; null for the suite's choice.
+    /// The level of detail in reports for students: `none`, `where`, `what` or `full`. With null, the suite chooses.
     #[serde(skip_serializing_if = "Option::is_none")]
     #[schema(pattern = "^(none|where|what|full)$")]
     pub hints: Option<String>,
     /// The accepted forms of submissions: `program`, `sources`, `traces`.
     #[schema(value_type = Vec<Form>, min_items = 1)]
     pub forms: Vec<String>,
-    /// The name of the program in a folder of sources.
+    /// The name of the executable that a submission of sources builds.
     #[schema(value_type = crate::schema::FileName)]
     pub program: String,
-    /// The number of seconds after which a grading is stopped; its results so far count. At most an hour.
+    /// The number of seconds after which a grading is stopped, at most 3600. The results until then count.
     #[schema(minimum = 1, maximum = 3600)]
     pub seconds: u64,
-    /// The maximum size of an upload, in bytes. At most a gigabyte.
+    /// The maximum size of an upload, in bytes, at most a gigabyte.
     #[schema(minimum = 1, maximum = 1_073_741_824)]
     pub max_bytes: u64,
-    /// The maximum number of submissions per student; 0 for any number.
+    /// The maximum number of submissions per student. With 0 there is no limit.
     #[schema(maximum = 4_294_967_295_i64)]
     pub attempts: u32,
-    /// The maximum number of submissions per student within an hour; 0 for any number.
+    /// The maximum number of submissions per student within an hour. With 0 there is no limit.
     #[schema(maximum = 4_294_967_295_i64)]
     pub per_hour: u32,
     /// The due date, in milliseconds since 1970, or as a date with its time zone (ISO 8601). Students cannot submit
@@ -71,11 +72,11 @@ pub struct Settings {
     pub time_zone: Option<Tz>,
 }
 
-/// The settings that always have a value.
+/// The settings that cannot be null.
 const REQUIRED_SETTINGS: [&str; 9] =
     ["suite", "forms", "program", "seconds", "max_bytes", "attempts", "per_hour", "late_days", "late_percent"];
 
-/// Reads a time, as a number or a date.
+/// Reads a time, given as a number of milliseconds or as a date.
 pub(crate) fn moment<'de, D: Deserializer<'de>>(deserializer: D) -> Result<Option<i64>, D::Error> {
     #[derive(Deserialize)]
     #[serde(untagged, expecting = "milliseconds since 1970, or a date such as 2026-12-01T23:59:00+01:00")]
@@ -144,7 +145,7 @@ impl Settings {
         serde_json::from_str(text).map_err(wrong)
     }
 
-    /// Returns the settings that differ from earlier ones, as text; `suite` is the name of the uploaded suite.
+    /// Describes the settings that differ from earlier ones. `suite` is the name of the uploaded suite.
     pub(in crate::domain) fn changes(&self, before: &Self, suite: &str) -> String {
         let fields = |settings: &Self| match serde_json::to_value(settings) {
             Ok(Value::Object(fields)) => fields,
@@ -196,22 +197,22 @@ impl Settings {
         serde_json::from_value(Value::Object(fields)).map_err(|error| Problem::invalid(error.to_string()))
     }
 
-    /// Returns the settings, with the grading rules of other settings.
+    /// Returns these settings with the grading rules of `other`.
     pub(in crate::domain) fn graded_as(&self, other: &Self) -> Self {
         let Self { suite, suite_archive, rules, hints, program, seconds, .. } = other.clone();
         Self { suite, suite_archive, rules, hints, program, seconds, ..self.clone() }
     }
 
-    /// Returns the settings in the database's form.
+    /// Returns the settings as JSON, as the database stores them.
     pub fn text(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Returns the settings with the suite's full name, if they are valid.
+    /// Returns the settings with the suite's full name, if all settings are valid.
     ///
     /// # Errors
     ///
-    /// The first invalid setting.
+    /// Fails with a message about the first invalid setting.
     pub fn validate(&self, suites: &Suites) -> Result<Self, Problem> {
         let settings = Self { suite: suites.or_default(&self.suite), ..self.clone() };
         settings.check(suites)?;
@@ -251,29 +252,29 @@ impl Settings {
         Ok(())
     }
 
-    /// Returns the settings for late submissions.
+    /// Returns the part of the settings that applies to late submissions.
     pub(crate) fn late_policy(&self) -> LatePolicy {
         let Self { due_at, late_days, late_percent, time_zone, .. } = *self;
         LatePolicy { due_at, late_days, late_percent, time_zone }
     }
 
-    /// Returns whether the form with this name is accepted.
+    /// Returns whether submissions in the form with this name are accepted.
     pub fn has_form(&self, form: &str) -> bool {
         self.forms.iter().any(|name| name == form)
     }
 
-    /// Returns the accepted forms as text.
+    /// Returns the accepted forms as words for a message.
     pub fn describe_forms(&self) -> String {
         let taken = Form::ALL.into_iter().filter(|form| self.takes(*form));
         taken.map(Form::describe).collect::<Vec<_>>().join(" or ")
     }
 
-    /// Returns whether the form is accepted.
+    /// Returns whether submissions in this form are accepted.
     pub fn takes(&self, form: Form) -> bool {
         self.has_form(form.name())
     }
 
-    /// Returns a worker's task for an input.
+    /// Returns the task with which a worker grades this input.
     pub(in crate::domain) fn task(&self, submission: Input) -> Task {
         Task {
             submission,

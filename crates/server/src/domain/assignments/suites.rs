@@ -3,8 +3,8 @@
 use crate::problem::Problem;
 use serde::Deserialize;
 
-/// The grader's suites, the newest version first. A server whose workers are elsewhere may have no grader. It accepts
-/// any plain name then, and the worker's grader reports whether it has such a suite.
+/// The grader's suites, the newest version of each first. A server without a grader, whose workers are elsewhere,
+/// accepts any plain name. The worker's grader then reports whether it has such a suite.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Suites {
     entries: Vec<Entry>,
@@ -28,7 +28,7 @@ struct Entry {
     groups: Vec<SuiteGroup>,
 }
 
-/// A group of a suite.
+/// A group of scenes in a suite.
 #[derive(Debug, Clone, PartialEq, Eq, Deserialize)]
 pub struct SuiteGroup {
     pub(crate) name: String,
@@ -36,7 +36,7 @@ pub struct SuiteGroup {
     pub(crate) points: serde_json::Number,
 }
 
-/// Returns whether a name is a single file name on every system, and is unambiguous in every message.
+/// Returns whether a name is a single file name on every system, and cannot be misread in messages.
 pub fn is_file_name(name: &str) -> bool {
     let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     (1..=100).contains(&name.len()) && name.chars().all(plain) && !name.starts_with(['.', '-'])
@@ -54,14 +54,14 @@ impl Suites {
     }
 
     /// Returns the suite's name for settings. An empty name becomes the grader's default, and a name without a version
-    /// gets the newest version, so that later versions of the grader change nothing. If the grader can't be called, the
-    /// name stays, and the grader chooses.
+    /// gets the newest version, so that later versions of the grader do not change the assignment. If the grader can't
+    /// be called, the name stays as it is, and the grader chooses the version.
     pub(in crate::domain) fn or_default(&self, name: &str) -> String {
         let is_meant = |entry: &&Entry| if name.is_empty() { entry.default } else { entry.suite == name };
         self.entries.iter().find(is_meant).map_or(name, |entry| &entry.name).to_owned()
     }
 
-    /// Checks that a suite exists.
+    /// Checks that the grader has a suite with this name.
     pub(in crate::domain) fn check(&self, name: &str) -> Result<(), Problem> {
         // The version follows an `@`.
         let is_name = name.is_empty() || name.split('@').count() <= 2 && name.split('@').all(is_file_name);
@@ -82,7 +82,7 @@ impl Suites {
         self.entries.iter().find(|suite| suite.name == name).map_or(&[], |suite| &suite.groups)
     }
 
-    /// Returns the existing names, as text.
+    /// Returns the names of all suites, as words for a message.
     pub fn describe(&self) -> String {
         match self.entries.iter().map(|suite| suite.name.as_str()).collect::<Vec<_>>().as_slice() {
             [] => "a name that `fosssim-oracle suite list` shows".to_owned(),

@@ -1,4 +1,4 @@
-//! The example course for trying the service, created on a new server on request.
+//! The example course, for people who try the service. A new server creates it on request.
 use crate::domain::{
     App, NewSecret, Settings,
     accounts::identity::{self, SignInMethod},
@@ -20,7 +20,8 @@ impl App {
     ///
     /// # Errors
     ///
-    /// Fails if there are other courses, or another account is called `student`, because the server is in real use.
+    /// Fails if there are other courses, or another account is called `student`, because the server is then in real
+    /// use.
     pub async fn example(&self) -> Result<Option<NewSecret>, Problem> {
         let mut transaction = self.0.database.begin().await?;
         let statement = "SELECT count(*) AS courses, count(CASE WHEN slug = ? THEN 1 END) AS examples FROM course";

@@ -1,14 +1,15 @@
-//! Imports a class from a table (CSV), as spreadsheets write it: name, login, e-mail address and role of each member.
+//! Imports a class from a table (CSV) in the form that spreadsheets write. The columns are name, login, e-mail address
+//! and role.
 use crate::domain::{Staff, courses::members::check_member};
 use crate::problem::{Problem, ensure};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use utoipa::ToSchema;
 
-/// The maximum number of lines.
+/// The maximum number of lines in a table.
 const MAX_LINES: usize = 5000;
 
-/// The columns, in their default order, each with its other names.
+/// The names of each column, in the default order of columns. The first name of each is the usual one.
 const COLUMNS: [&[&str]; 4] = [
     &["name", "fullname"],
     &["login", "username", "loginname", "userid"],
@@ -22,14 +23,14 @@ pub struct MemberLine {
     pub(crate) line: u64,
     pub(crate) name: String,
     pub(crate) login: String,
-    // The mail address to which the link can be sent. It is not stored.
+    // The mail address to which the link can be sent. The database does not store it.
     pub(crate) email: String,
     pub(crate) role: String,
-    /// The columns of the table with a value in this line that is not stored.
+    /// The headings of columns that are not stored, but have a value in this line.
     pub(crate) unused: Vec<String>,
     /// The error in the line; any error stops the whole import.
     pub(crate) error: Option<String>,
-    /// A link that signs in once; `None` if the account existed.
+    /// A link with which the member signs in once; `None` if the account existed already.
     pub(crate) link: Option<String>,
 }
 
@@ -39,7 +40,8 @@ fn column(heading: &str) -> Option<usize> {
     COLUMNS.iter().position(|names| names.contains(&plain.as_str()))
 }
 
-/// Returns the positions of the columns, from the headings in the first line; `None` if it has no headings.
+/// Returns the positions of the four columns according to the headings in the first line; `None` if the line has no
+/// headings.
 fn headings(words: &[String]) -> Result<Option<[Option<usize>; 4]>, Problem> {
     if words.iter().all(|word| column(word).is_none()) {
         return Ok(None);
@@ -87,7 +89,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
         }
         let is_beside = |(place, word): &(usize, &String)| !word.is_empty() && !places.contains(&Some(*place));
         let beside = words.iter().enumerate().filter(is_beside);
-        // A column without a known heading is an error, so that no column is ignored silently.
+        // An unknown heading is an error, so that no column is ignored silently.
         let unused: Option<Vec<String>> =
             beside.map(|(place, _)| named.get(place).filter(|name| !name.is_empty()).cloned()).collect();
         let field = |column: usize| places[column].and_then(|place| record.get(place)).map(cell).unwrap_or_default();
@@ -114,11 +116,11 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
 }
 
 impl Staff {
-    /// Adds all members of a table, if no line has an error; with `preview`, only reads the table.
+    /// Adds all members in a table if no line has an error. With `preview`, the table is only read.
     ///
     /// # Errors
     ///
-    /// Fails if it is not a table, or one of its members was changed after the event `seen`.
+    /// Fails if the text is not a table, or if a member in it was changed after the event `seen`.
     pub async fn import(&self, text: &str, preview: bool, seen: Option<i64>) -> Result<Vec<MemberLine>, Problem> {
         let mut lines = read(text)?;
         if preview || lines.iter().any(|line| line.error.is_some()) {

@@ -18,16 +18,16 @@ pub struct MemberInfo {
     pub login: String,
     /// The member's name.
     pub name: String,
-    /// `student` or `staff`.
+    /// The member's role: `student` or `staff`.
     pub role: String,
 }
 
-/// The number of people on a page.
+/// The number of people that a page shows.
 pub(in crate::domain) const PEOPLE_PER_PAGE: i64 = 200;
 
 from_row! { MemberInfo { login, name, role } }
 
-/// Checks a member's names and role.
+/// Checks the login, the name and the role of a member.
 pub(in crate::domain) fn check_member(login: &str, name: &str, role: &str) -> Result<(), Problem> {
     identity::check_slug("a login", login)?;
     identity::check_title("a name", name)?;
@@ -47,7 +47,8 @@ impl Staff {
     }
 
     /// Makes a person a member, or changes their role. A missing account is created, with a link that signs in once.
-    /// Only an administrator may add an account that another course's staff made, because that staff can sign in as it.
+    /// Only an administrator may add an account that another course's staff made, because that course's staff can sign
+    /// in as this account.
     ///
     /// # Errors
     ///
@@ -61,7 +62,8 @@ impl Staff {
         Ok(Link { link })
     }
 
-    /// Returns the number of the course's newest event, to detect changes made after the members were read.
+    /// Returns the number of the course's newest event. With this number, a later request detects changes that were
+    /// made in between.
     ///
     /// # Errors
     ///
@@ -72,9 +74,9 @@ impl Staff {
         Ok(transaction.one(statement, values![self.course]).await?.int("id")?)
     }
 
-    /// Rejects a change if another person has changed the same thing after the event `seen`; the error names the person
-    /// and the change. The check searches for a later event with the same kind and assignment, whose text begins with
-    /// `words`.
+    /// Rejects a change if another person has changed the same thing after the event `seen`. The error names that
+    /// person and their change. The search is for a later event with the same kind and assignment, whose text begins
+    /// with `words`.
     pub(in crate::domain) async fn check_seen(
         &self,
         transaction: &mut Transaction,
@@ -139,7 +141,7 @@ impl Staff {
         if is_new { Ok(self.link(transaction, account, SignInMethod::Own).await?) } else { Ok(None) }
     }
 
-    /// Checks that the course still has staff if this member loses the role.
+    /// Checks that the course still has a member of staff if this person's role ends.
     async fn check_left(&self, transaction: &mut Transaction, login: &str, role: &str) -> Result<(), Problem> {
         let statement = "SELECT count(*) AS n FROM member WHERE course = ? AND role = 'staff' AND account <> ?";
         let goes = login == self.account.login && role != "staff" && !self.account.is_admin;
@@ -149,7 +151,7 @@ impl Staff {
         Ok(())
     }
 
-    /// Returns the sign-in method for links that this person makes.
+    /// Returns the sign-in method of links that this person creates.
     fn sign_in_method(&self) -> SignInMethod {
         if self.account.is_admin { SignInMethod::Own } else { SignInMethod::Vouched }
     }
@@ -195,8 +197,8 @@ impl Staff {
     }
 
     /// Returns a new link that signs a student in once. Staff can create it only for accounts that belong to this
-    /// course alone: made here, in no other course, and without a provider or a platform. Otherwise staff could act as
-    /// a person with rights elsewhere.
+    /// course alone: this course created them, and they are in no other course and not connected to a provider or a
+    /// platform. Otherwise staff could act as a person with rights elsewhere.
     ///
     /// # Errors
     ///

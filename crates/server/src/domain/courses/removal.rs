@@ -1,6 +1,6 @@
 //! Removes people, submissions, assignments and courses with all their data. The audit log records the removal without
-//! names. Bytes in the store are removed after the last reference to them, see [`retention`](crate::retention). A job
-//! that runs at the same time loses its lease, and ends without effect.
+//! names. An artifact stays in the store until nothing refers to it, see [`retention`](crate::retention). If a removed
+//! submission is being graded, the job loses its lease and ends without effect.
 use crate::domain::{Admin, Staff};
 use crate::{
     db::{Database, DbError, Transaction},
@@ -9,7 +9,7 @@ use crate::{
     values,
 };
 
-/// The tables with rows of submissions, in the order of removal.
+/// The tables whose rows belong to submissions, in the order of removal.
 const TABLES: [&str; 10] = [
     "DELETE FROM result_file WHERE result IN (SELECT result.id FROM result JOIN {each}
         ON result.submission = CAST(wanted.value AS {int}))",
@@ -25,7 +25,8 @@ const TABLES: [&str; 10] = [
     "DELETE FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})",
 ];
 
-/// Some submissions of an assignment. They are removed in batches, so that other transactions can write in between.
+/// Selects some submissions of an assignment. They are removed in batches, so that other transactions can write in
+/// between.
 const SOME_OF_ASSIGNMENT: &str = "SELECT id FROM submission WHERE assignment = ? ORDER BY id LIMIT 500";
 const SOME_OF_COURSE: &str =
     "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)
@@ -37,8 +38,8 @@ const SELECT_BY_COURSE: &str =
     "SELECT id FROM submission WHERE assignment IN (SELECT id FROM assignment WHERE course = ?)";
 const SELECT_BY_PERSON: &str = "SELECT id FROM submission WHERE account = ?";
 
-/// Removes the jobs of the submissions that a statement selects, after waiting for jobs that are just finishing;
-/// returns the submissions' numbers as JSON.
+/// Removes the jobs of the submissions that a statement selects, and returns the submissions' numbers as JSON. Jobs
+/// that are just finishing are waited for.
 async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<String, DbError> {
     let rows = transaction.rows(which, values![value]).await?;
     let ids = rows.iter().map(|row| row.int("id")).collect::<Result<Vec<_>, _>>()?;
@@ -51,8 +52,8 @@ async fn cancel_jobs(transaction: &mut Transaction, which: &'static str, value: 
     Ok(ids)
 }
 
-/// Removes the data of the submissions that a statement selects. It waits for other transactions that write about one
-/// of them.
+/// Removes all data of the submissions that a statement selects. Transactions that write about one of these submissions
+/// are waited for.
 async fn remove_submissions(transaction: &mut Transaction, which: &'static str, value: i64) -> Result<(), DbError> {
     let ids = cancel_jobs(transaction, which, value).await?;
     let locked = "SELECT id FROM submission WHERE id IN (SELECT CAST(wanted.value AS {int}) FROM {each})
@@ -64,8 +65,8 @@ async fn remove_submissions(transaction: &mut Transaction, which: &'static str, 
     Ok(())
 }
 
-/// Removes submissions batch by batch, until a statement selects no more. The caller removes those that arrive in the
-/// meantime.
+/// Removes submissions in batches, until the statement selects no more. Submissions that arrive in the meantime are
+/// left for the caller to remove.
 async fn remove_in_batches(database: &Database, which: &'static str, value: i64) -> Result<(), DbError> {
     loop {
         let mut transaction = database.begin().await?;
@@ -111,7 +112,7 @@ impl Staff {
         remove_in_batches(&self.app.0.database, SOME_OF_ASSIGNMENT, assignment.id).await?;
         let mut transaction = self.begin().await?;
         cancel_jobs(&mut transaction, SELECT_BY_ASSIGNMENT, assignment.id).await?;
-        // No uploads are accepted after this.
+        // After this statement, no upload to the assignment is accepted.
         transaction.rows("SELECT id FROM assignment WHERE id = ? {for removal}", values![assignment.id]).await?;
         remove_submissions(&mut transaction, SELECT_BY_ASSIGNMENT, assignment.id).await?;
         let rest = [
@@ -171,8 +172,8 @@ impl Admin {
         Ok(transaction.commit().await?)
     }
 
-    /// Removes a person: their submissions with the results, their names, and every way to sign in. Their actions as
-    /// staff stay in the log, without a name.
+    /// Removes a person's submissions and results, their names, and every way to sign in. Their actions as staff stay
+    /// in the log, without a name.
     ///
     /// # Errors
     ///
@@ -207,7 +208,7 @@ impl Admin {
         let statement = "UPDATE account SET login = ?, name = 'a removed person', is_admin = 0,
             managed_by = NULL, disabled_at = {now} WHERE id = ?";
         transaction.execute(statement, values![&nobody, account]).await?;
-        // The sentences of the log contain logins, too.
+        // Sentences in the log may contain logins as well.
         let statement = "SELECT id, text FROM event WHERE text LIKE '%' || CAST(? AS TEXT) || '%'";
         let rows = transaction.rows(statement, values![login]).await?;
         for row in &rows {
@@ -219,7 +220,7 @@ impl Admin {
     }
 }
 
-/// Returns a sentence in which a name is replaced, where it is a whole word.
+/// Returns a sentence in which a name is replaced by `other`, wherever the name is a whole word.
 fn without_name(text: &str, name: &str, other: &str) -> String {
     let is_of_word = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.');
     let mut left = text;

@@ -1,5 +1,5 @@
-//! The choices of staff who come from a learning platform: the course on this server that belongs to the platform's
-//! course, and the assignment that a link opens.
+//! Choices that staff make when they come from a learning platform: which course on this server belongs to the
+//! platform's course, and which assignment a link opens.
 use crate::domain::{
     Member, Person,
     platforms::launch,
@@ -13,27 +13,27 @@ use crate::{
     values,
 };
 
-/// The target that staff must choose.
+/// The choice that staff must make: a course or an assignment.
 #[derive(Debug, Clone)]
 pub enum LinkTarget {
-    /// The course: one of the person's, or a new one.
+    /// Choose the course: one of the person's courses, or a new one.
     Course {
         /// The name of the platform.
         platform: String,
-        /// The assignment's name on the platform.
+        /// The title of the course or link on the platform.
         title: String,
-        /// A proposed name for a new course.
+        /// The proposed name for a new course.
         slug: String,
-        /// The courses to choose from.
+        /// The person's courses, of which one can be chosen.
         courses: Vec<Course>,
     },
-    /// The assignment that a link opens.
+    /// Choose the assignment that a link opens.
     Assignment {
         /// The course of the assignment.
         course: Course,
-        /// The name of the link on the platform.
+        /// The title of the link on the platform.
         title: Option<String>,
-        /// The assignments to choose from.
+        /// The assignments of the course.
         assignments: Vec<Assignment>,
     },
 }
@@ -45,17 +45,17 @@ pub enum LinkStep {
     Assignment(String),
     /// Send a form to the platform.
     Answer {
-        /// The address on the platform.
+        /// The platform's address to which the form is sent.
         address: String,
         /// The platform's origins. The page may send forms to them, and they may redirect to each other.
         origins: String,
-        /// The signed answer.
+        /// The signed answer, which the form contains.
         token: String,
     },
 }
 
 impl Person {
-    /// Returns the choices.
+    /// Returns the choices that belong to a secret.
     ///
     /// # Errors
     ///
@@ -89,11 +89,11 @@ impl Person {
         })
     }
 
-    /// Connects the platform's course with a course of the person, or with a new one.
+    /// Connects the platform's course to a course of the person, or to a new one.
     ///
     /// # Errors
     ///
-    /// Fails if there is no such course, or the new one's name is taken.
+    /// Fails if there is no such course, or the name for the new course is taken.
     pub async fn choose_course(&self, secret: &str, known: Option<&str>, new: (&str, &str)) -> Result<(), Problem> {
         let mut transaction = self.app.0.database.begin().await?;
         let pending = launch::pending(&mut transaction, self.account.id, secret).await?;
@@ -131,7 +131,7 @@ impl Person {
         Ok(transaction.commit().await?)
     }
 
-    /// Makes the link open an assignment. If the platform requested the link, this returns the signed answer.
+    /// Makes the link open this assignment. If the platform asked for a link, the signed answer is returned.
     ///
     /// # Errors
     ///
@@ -172,7 +172,7 @@ impl Person {
     }
 }
 
-/// Returns a proposed name for addresses.
+/// Returns a name for addresses that is made from a title.
 pub fn slug_of(title: &str) -> String {
     let plain = |c: char| if c.is_ascii_alphanumeric() { c.to_ascii_lowercase() } else { '-' };
     let text: String = title.chars().map(plain).take(60).collect();

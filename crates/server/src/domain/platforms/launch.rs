@@ -1,5 +1,6 @@
 //! Launches from a learning platform. The service requests the person's identity from the platform (SEC 5.1.1), accepts
-//! one answer, and signs the person in with their account here, in the course that belongs to the platform's.
+//! one answer, and signs the person in with their account on this server. The page of the course that belongs to the
+//! platform's course opens.
 use crate::domain::{
     App, NewSecret, Visitor,
     accounts::{
@@ -18,7 +19,7 @@ use crate::{
 use serde::Deserialize;
 use url::Url;
 
-/// The time in which staff must choose, in milliseconds.
+/// The time within which staff must choose, in milliseconds.
 const CHOICE_LIFETIME: i64 = 3600 * 1000;
 
 /// A platform's message about a person who wants to sign in (LTI 4.1, SEC 5.1.1.1).
@@ -26,33 +27,33 @@ const CHOICE_LIFETIME: i64 = 3600 * 1000;
 pub struct LoginRequest {
     /// The platform's issuer.
     pub iss: String,
-    /// A hint about the person, which is returned unchanged.
+    /// Text about the person, which the platform receives back unchanged.
     pub login_hint: String,
     /// The page that the person wants to open.
     pub target_link_uri: Option<String>,
-    /// A hint about the message, which is returned unchanged.
+    /// Text about the message, which the platform receives back unchanged.
     pub lti_message_hint: Option<String>,
-    /// The platform's name for this service, if it has one.
+    /// The client ID of this service on the platform, if the platform sent it.
     pub client_id: Option<String>,
-    /// The deployment of this service on the platform.
+    /// The number of this service's deployment on the platform.
     pub lti_deployment_id: Option<String>,
 }
 
-/// The redirect to a service at which a person signs in.
+/// A redirect to the service at which the person signs in.
 #[derive(Debug, Clone)]
 pub struct LoginAnswer {
     /// The address to which the browser is redirected.
     pub address: String,
-    /// The secret that the browser must send back.
+    /// The secret that the browser stores as a cookie, and must send when it returns.
     pub browser: String,
 }
 
-/// The page to which a signed-in person is redirected.
+/// The page that opens after a launch.
 #[derive(Debug, Clone)]
 pub struct LaunchTarget {
-    /// The person's session.
+    /// The secret of the session that begins.
     pub session: NewSecret,
-    /// A path on this service.
+    /// The path of the page on this service.
     pub to: String,
 }
 
@@ -68,7 +69,8 @@ impl From<Rejection> for Problem {
 }
 
 impl App {
-    /// Checks that launches from platforms can work: cookies must reach this service from another site.
+    /// Checks that this service can be launched from platforms: browsers must send its cookies with requests from
+    /// another site.
     fn check_launchable(&self) -> Result<(), Problem> {
         if self.is_secure() || self.lti.over_http() {
             return Ok(());
@@ -77,14 +79,14 @@ impl App {
         Err(Problem::conflict("people come from learning platforms by HTTPS only", remedy))
     }
 
-    /// Returns the address to which platforms send people.
+    /// Returns the address on this service to which platforms send people.
     pub fn launch_address(&self) -> String {
         format!("{}/lti/launch", self.public)
     }
 }
 
 impl Visitor {
-    /// Returns the platform that a person claims to come from.
+    /// Returns the platform that a sign-in request names.
     ///
     /// # Errors
     ///
@@ -131,7 +133,7 @@ impl Visitor {
         Ok(LoginAnswer { address: address.into(), browser })
     }
 
-    /// Signs in the person whom a platform names, in answer to a sign-in that this browser began.
+    /// Signs in the person whom a platform names. The platform's token must answer a sign-in that this browser began.
     ///
     /// # Errors
     ///
@@ -156,7 +158,7 @@ impl Visitor {
     }
 }
 
-/// A known course of a platform.
+/// A course of a platform, and the course on this server that belongs to it.
 pub(in crate::domain) struct Place {
     pub(in crate::domain) id: i64,
     pub(in crate::domain) course: i64,
@@ -166,7 +168,7 @@ pub(in crate::domain) struct Place {
 
 from_row! { Place { id, course, slug, title } }
 
-/// Returns the course here that belongs to a person's course on the platform.
+/// Returns the course on this server that belongs to the platform's course from which a person comes.
 pub(in crate::domain) async fn find_place(
     transaction: &mut Transaction,
     platform: i64,
@@ -178,7 +180,7 @@ pub(in crate::domain) async fn find_place(
     transaction.find(statement, values![platform, &arrival.deployment, &arrival.context.id]).await
 }
 
-/// Finds or creates the person's account, updates its role, and returns the page to open.
+/// Finds or creates the person's account, updates the person's role, and returns the page that opens.
 async fn accept_launch(
     transaction: &mut Transaction,
     platform: &Platform,
@@ -231,8 +233,7 @@ async fn accept_launch(
     }
 }
 
-/// Returns the assignment that the link itself contains, because staff chose it by deep linking or wrote it into the
-/// link.
+/// Returns the assignment that the link itself names. Staff chose it by deep linking, or wrote it into the link.
 async fn find_named_assignment(
     transaction: &mut Transaction,
     place: i64,
@@ -247,7 +248,7 @@ async fn find_named_assignment(
     Ok(Some((link, slug.clone())))
 }
 
-/// Makes a link open an assignment.
+/// Stores that a link opens an assignment.
 pub(in crate::domain) async fn make_link(
     transaction: &mut Transaction,
     place: i64,
@@ -260,7 +261,8 @@ pub(in crate::domain) async fn make_link(
     transaction.one(statement, values![place, resource, assignment]).await?.int("id")
 }
 
-/// Stores the score columns of a link that the platform's message names. A column that this service created stays.
+/// Stores the score columns of a link, as the platform's message names them. A column that this service created is
+/// kept.
 pub(in crate::domain) async fn store_score_columns(
     transaction: &mut Transaction,
     link: i64,
@@ -306,7 +308,7 @@ async fn account(transaction: &mut Transaction, platform: &Platform, person: &Lt
     Ok(account)
 }
 
-/// Finds the account of a person, or creates it with the platform's name.
+/// Finds a person's account, or creates it with the name that the platform reports.
 pub(in crate::domain) async fn find_or_make(
     transaction: &mut Transaction,
     platform: &Platform,
@@ -321,7 +323,8 @@ pub(in crate::domain) async fn find_or_make(
     newcomer.find_or_make(transaction).await
 }
 
-/// Makes a person a member, or changes their role, as a platform requests. Roles that staff set on this server stay..
+/// Makes a person a member of the course, or changes their role, as a platform requests. Roles that staff set on this
+/// server do not change.
 pub(in crate::domain) async fn enroll(
     transaction: &mut Transaction,
     platform: i64,
@@ -340,7 +343,7 @@ pub(in crate::domain) async fn enroll(
     {
         return Ok(());
     }
-    // An earlier link or session must not get more rights.
+    // Links and sessions from before must not get the rights of staff.
     if role == LtiRole::Staff && !identity::is_trusted(transaction, account).await? {
         identity::end_all(transaction, account).await?;
     } else {
@@ -354,7 +357,7 @@ pub(in crate::domain) async fn enroll(
     view::note(transaction, &Entry { course: Some(course), ..Entry::new("member", account, &text) }).await
 }
 
-/// A choice that staff must make, with the person who must make it.
+/// A choice that a member of staff must make.
 pub(in crate::domain) struct PendingLaunch {
     pub(in crate::domain) platform: Platform,
     pub(in crate::domain) arrival: Arrival,

@@ -1,4 +1,4 @@
-//! Platforms, as administrators register them, and the actions of staff on them.
+//! Learning platforms as administrators register them, and the requests of a course's staff about its platforms.
 use crate::domain::{
     Admin, App, Staff,
     accounts::identity,
@@ -15,7 +15,7 @@ use serde_json::Value;
 use std::collections::BTreeSet;
 use utoipa::ToSchema;
 
-/// The result of reading a roster.
+/// The changes after a course's members were read from its platforms.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, ToSchema)]
 pub struct RosterRead {
     /// The number of members that the platforms report.
@@ -28,30 +28,30 @@ pub struct RosterRead {
     pub goes: Vec<String>,
 }
 
-/// The handling of a roster after it is read.
+/// The use of the list of members that a platform returns.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum RosterWish {
-    /// Only report who would join and leave.
+    /// Only report who would join and who would leave.
     Preview,
-    /// Apply the roster, unless too many would leave.
+    /// Change the members, unless too many would leave.
     Apply,
-    /// Apply the roster, even if many leave.
+    /// Change the members, even if many leave.
     Confirmed,
 }
 
-/// A score of a person's work that was sent to a platform.
+/// A score that was, or will be, sent to a platform.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct ScoreInfo {
     /// The name of the platform.
     pub platform: String,
     /// The login of the student.
     pub login: String,
-    /// The score for the platform.
+    /// The score message, as JSON.
     #[schema(value_type = Object)]
     pub score: Value,
     /// The time of the score, in milliseconds since 1970.
     pub stamp: i64,
-    /// The time when the platform accepted it; `None` until then.
+    /// The time when the platform accepted the score; `None` until then.
     pub sent_at: Option<i64>,
     /// The reason why the platform has not accepted the score.
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -111,7 +111,7 @@ impl Admin {
         Ok(Platform::from_row(&row)?)
     }
 
-    /// Closes a platform: people cannot launch from it, and no scores are sent. Accounts and courses stay.
+    /// Closes a platform: people can no longer launch from it, and no scores are sent to it. Accounts and courses stay.
     ///
     /// # Errors
     ///
@@ -125,7 +125,8 @@ impl Admin {
         Ok(transaction.commit().await?)
     }
 
-    /// Creates a new key, which signs after an hour; the key before it is published until the next one.
+    /// Creates a new key for signatures, which is used after an hour. The previous key is still published until the
+    /// next one is created.
     ///
     /// # Errors
     ///
@@ -139,13 +140,14 @@ impl Admin {
 }
 
 impl Staff {
-    /// Reads the members of the course from its platforms. Members that are no longer listed leave, unless staff made
-    /// them members; their submissions stay. The requesting person stays, and an empty list changes nothing.
+    /// Reads the members of the course from its platforms. A member who is no longer listed leaves the course, unless
+    /// staff added them; their submissions stay. The person who requests this stays in any case, and an empty list
+    /// changes nothing.
     ///
     /// # Errors
     ///
-    /// Fails if no platform gives a list, one does not answer, or more than a third would leave without a confirmation;
-    /// then nothing changes.
+    /// Fails if no platform offers a list, if a platform does not answer, or if more than a third of the members would
+    /// leave without confirmation. Nothing changes then.
     pub async fn read_roster(&self, wish: RosterWish) -> Result<RosterRead, Problem> {
         let app = &self.app;
         let mut transaction = app.0.database.read().await?;
@@ -205,7 +207,7 @@ impl Staff {
             }
             enroll(&mut transaction, platform.id, place, course, account, role).await?;
         }
-        // An empty list is probably caused by a filter or an error.
+        // If the list is empty, the cause is probably a filter or an error of the platform.
         if present.is_empty() {
             return Ok(RosterRead::default());
         }
@@ -265,7 +267,7 @@ impl Staff {
         Ok(rows.iter().map(read).collect::<Result<_, DbError>>()?)
     }
 
-    /// Sends all scores of an assignment again, even those that platforms have, and returns their number.
+    /// Sends all scores of an assignment again, even if platforms already have them. Returns their number.
     ///
     /// # Errors
     ///

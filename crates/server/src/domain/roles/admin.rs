@@ -1,4 +1,4 @@
-//! Administrators and their actions.
+//! Administrators, and what only they can do.
 use crate::domain::{
     App, NewSecret,
     accounts::identity::{self, Link, NewToken, SignInMethod, TokenInfo},
@@ -11,13 +11,13 @@ use crate::{
     values,
 };
 
-/// An administrator, who may do everything.
+/// An administrator, who has all rights on the server.
 pub struct Admin {
     pub(crate) account: Account,
     pub(crate) app: App,
 }
 
-/// A course with its size and the logins of its staff.
+/// A course, its size, and the logins of its staff.
 pub struct CourseSize {
     pub(crate) slug: String,
     pub(crate) title: String,
@@ -84,8 +84,8 @@ impl Admin {
         Ok(transaction.all(statement, values![]).await?)
     }
 
-    /// Returns a page of the accounts whose login or name contains `words`, beginning after a login, and whether there
-    /// are more.
+    /// Returns a page of the accounts whose login or name contains `words`, in the order of logins, from the first one
+    /// after `after`. The flag is true if there are more.
     pub async fn accounts_page(&self, words: &str, after: &str) -> Result<(Vec<Account>, bool), Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT id, login, name, is_admin FROM account WHERE disabled_at IS NULL AND login > ?
@@ -109,8 +109,8 @@ impl Admin {
         Ok(transaction.all(statement, values![]).await?)
     }
 
-    /// Creates an account, or changes whether it is an administrator's, and returns a link that signs in once. A closed
-    /// account is opened again.
+    /// Creates an account, or gives or takes an administrator's rights. Returns a link that signs in once. If the
+    /// account was closed, it is opened again.
     ///
     /// # Errors
     ///
@@ -137,7 +137,7 @@ impl Admin {
         Ok(Link { link: Some(self.app.welcome_address(&link)) })
     }
 
-    /// Closes an account: it can't sign in, and its submissions stay.
+    /// Closes an account, so that nobody can sign in with it. Its submissions stay.
     ///
     /// # Errors
     ///
@@ -186,7 +186,7 @@ impl Admin {
         Ok(transaction.commit().await?)
     }
 
-    /// Returns the queue and the workers.
+    /// Returns the state of the queue and of the workers.
     ///
     /// # Errors
     /// Fails if the database does not answer.
@@ -195,11 +195,11 @@ impl Admin {
         Ok(view::queue(&mut transaction, &self.app).await?)
     }
 
-    /// Returns the latest events that match, latest first.
+    /// Returns the newest events that match the query, newest first.
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn audit(&self, query: &EventQuery) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(view::events!(transaction, query, ""))
@@ -217,7 +217,7 @@ impl App {
         Ok(token)
     }
 
-    /// Makes a token for workers, in the name of the first administrator.
+    /// Creates a token for workers, in the name of the first administrator.
     ///
     /// # Errors
     /// Fails if the name is invalid, or the server was never started.

@@ -1,4 +1,4 @@
-//! A member of a course. Students see their own submissions; staff see all.
+//! A member of a course. Students see only their own submissions; staff see all submissions of the course.
 use crate::domain::{
     App,
     view::{self, Account, Assignment, Entry, History, Submission},
@@ -14,7 +14,7 @@ use crate::{
 };
 use futures_util::StreamExt;
 
-/// The name of the report for students, without the groups that the suite hides.
+/// The name of the report that students get. It leaves out the groups that the suite hides.
 const STUDENT_PAGE: &str = "report.html";
 
 /// A member of a course.
@@ -28,7 +28,7 @@ pub struct Member {
 }
 
 impl Member {
-    /// Creates an entry for the course's audit log.
+    /// Creates an entry for the course's audit log, in this member's name.
     pub(in crate::domain) fn entry<'a>(&self, kind: &'static str, assignment: Option<i64>, text: &'a str) -> Entry<'a> {
         Entry { course: Some(self.course), assignment, ..Entry::new(kind, self.account.id, text) }
     }
@@ -46,7 +46,8 @@ impl Member {
         Ok(assignments.into_iter().map(|assignment| self.hide_course_suite(assignment)).collect())
     }
 
-    /// Returns an assignment as the member may see it: the course's own suite is hidden from students.
+    /// Returns an assignment as this member may see it. A suite that was uploaded to the course is hidden from
+    /// students.
     fn hide_course_suite(&self, mut assignment: Assignment) -> Assignment {
         assignment.settings.suite_archive.take_if(|_| !self.is_staff);
         assignment
@@ -90,7 +91,8 @@ impl Member {
             if !self.is_staff {
                 submission.fault = None;
             }
-            // The hidden parts of old results are not stored separately yet; separating them needs the files.
+            // In old results, the hidden parts are not stored separately yet. They can be separated only with the
+            // files.
             if submission.grade.as_ref().is_some_and(|grade| !self.is_staff && grade.shown.is_none()) {
                 *submission = self.find_submission(&mut transaction, submission.id).await?;
                 submission.grade.iter_mut().for_each(|grade| grade.outcome.files.clear());
@@ -101,7 +103,7 @@ impl Member {
         Ok(submissions)
     }
 
-    /// Returns all submissions of a submission's owner to its assignment, newest first.
+    /// Returns all submissions to the same assignment by the owner of a submission, newest first.
     ///
     /// # Errors
     ///
@@ -114,8 +116,8 @@ impl Member {
         Ok(view::submissions_of(&mut transaction, assignment.id, submission.account).await?)
     }
 
-    /// Removes everything that the reader may not see: parts for staff, groups that the suite hides until they are
-    /// published, and pages about another part of the grade than the reader sees.
+    /// Removes everything from a submission that the reader may not see: parts for staff, groups that the suite hides
+    /// and that are not published, and report pages that show another part of the grade.
     async fn withhold(&self, submission: &mut Submission) -> Result<(), Problem> {
         let Some(grade) = submission.grade.as_mut() else { return Ok(()) };
         let files = &mut grade.outcome.files;
@@ -157,7 +159,7 @@ impl Member {
         Ok(submission)
     }
 
-    /// Returns a submission: the member's own, or any of the course for staff.
+    /// Returns a submission by its number. Students find only their own, staff all submissions of the course.
     ///
     /// # Errors
     ///
@@ -178,7 +180,7 @@ impl Member {
         Ok(view::history(&mut transaction, id, submission.is_withheld, self.is_staff).await?)
     }
 
-    /// Opens report `name` of submission `id`.
+    /// Opens the report called `name` of the submission with the number `id`.
     ///
     /// # Errors
     ///
@@ -204,13 +206,13 @@ impl Member {
         Ok((submission, Artifact { digest, size }))
     }
 
-    /// Returns a submission whose bytes are still stored.
+    /// Returns a submission whose uploaded file is still stored.
     async fn read_with_bytes(&self, id: i64) -> Result<Submission, Problem> {
         let submission = self.submission(id).await?;
         if submission.removed_at.is_some() { Err(Problem::removed()) } else { Ok(submission) }
     }
 
-    /// Opens an artifact that the member may see.
+    /// Opens an artifact. The caller must have checked that the member may see it.
     ///
     /// # Errors
     ///
@@ -219,7 +221,7 @@ impl Member {
         Ok(self.app.0.store.open(&artifact.digest).await?)
     }
 
-    /// Returns the first bytes of an artifact that the member may see.
+    /// Returns the first bytes of an artifact. The caller must have checked that the member may see it.
     ///
     /// # Errors
     ///

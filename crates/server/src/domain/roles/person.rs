@@ -12,13 +12,13 @@ use crate::{
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// A course, with the role of a person in it.
+/// A course, and the role of a person in it.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct CourseMembership {
-    /// The course.
+    /// The course of which the person is a member.
     #[serde(flatten)]
     pub course: Course,
-    /// `student`, `staff`, or `admin`.
+    /// The person's role in the course: `student`, `staff`, or `admin`.
     pub role: String,
 }
 
@@ -32,12 +32,13 @@ pub struct Person {
 }
 
 impl Person {
-    /// Returns whether the person signed in with a token, or in a session from a token.
+    /// Returns whether the person signed in with a token, directly or at the beginning of the session.
     pub fn is_by_token(&self) -> bool {
         self.session.as_ref().is_none_or(|session| session.is_by_token)
     }
 
-    /// Returns the session if the person uses a browser. A token must not create rights that outlive it.
+    /// Returns the session if the person uses a browser. Requests with a token get an error, because a token must not
+    /// create rights that outlive it.
     pub(in crate::domain) fn at_browser(&self) -> Result<&SessionState, Problem> {
         let session = self.session.as_ref().filter(|_| !self.is_by_token());
         session.ok_or_else(|| Problem::sign_in_again("a token can't do this, and neither can a session that it began"))

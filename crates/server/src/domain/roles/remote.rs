@@ -12,14 +12,14 @@ use crate::{
 };
 use std::path::Path;
 
-/// A worker that is identified by its token.
+/// A worker on another machine, identified by its token.
 pub struct Remote {
     pub(crate) app: App,
     token: i64,
     worker: String,
 }
 
-/// The maximum size of a report, in bytes.
+/// The maximum size of a report that a worker stores, in bytes.
 const MAX_FILE_BYTES: u64 = 256 << 20;
 
 impl From<SourceError> for Problem {
@@ -55,7 +55,7 @@ impl Remote {
         .with_token(self.token)
     }
 
-    /// Returns whether a lease was given to this token; other leases are ignored.
+    /// Returns whether a lease was given to this worker's token. Requests with other leases are ignored.
     async fn owns(&self, lease: &Lease) -> Result<bool, Problem> {
         let mut transaction = self.app.0.database.with_priority().read().await?;
         let statement = "SELECT token FROM job WHERE id = ? AND attempt = ?";
@@ -63,7 +63,7 @@ impl Remote {
         Ok(row.map(|row| row.maybe_int("token")).transpose()?.flatten() == Some(self.token))
     }
 
-    /// Returns the next job, if there is one.
+    /// Returns the next waiting job with its task; `None` if the queue is empty.
     ///
     /// # Errors
     /// Fails if the database does not answer.
@@ -71,7 +71,8 @@ impl Remote {
         Ok(self.source().claim().await?)
     }
 
-    /// Records that the worker is alive, with its slots or the reason why it can't grade, and its version.
+    /// Records that the worker is alive, and stores its version, and either its number of slots or the reason why it
+    /// can't grade.
     ///
     /// # Errors
     ///
@@ -94,7 +95,7 @@ impl Remote {
         Ok(self.owns(lease).await? && self.source().renew(lease, progress).await?.held)
     }
 
-    /// Returns a job to the queue.
+    /// Gives a job back to the queue.
     ///
     /// # Errors
     /// Fails if the database does not answer.
@@ -102,7 +103,7 @@ impl Remote {
         Ok(self.owns(lease).await? && self.source().release(lease).await?.held)
     }
 
-    /// Reports that a try failed.
+    /// Reports that the worker failed to grade a job.
     ///
     /// # Errors
     /// Fails if the database does not answer.
@@ -168,7 +169,7 @@ impl Remote {
         Ok(outcome)
     }
 
-    /// Returns the task of a job that the worker holds.
+    /// Returns the task of a job, if the worker holds its lease.
     async fn leased_task(&self, lease: &Lease) -> Result<Task, Problem> {
         let mut transaction = self.app.0.database.with_priority().read().await?;
         let statement = "SELECT payload FROM job
@@ -199,7 +200,7 @@ impl Remote {
         self.leased_task(lease).await?;
         let artifact = self.app.0.store.put_file(file).await?;
         let mut transaction = self.app.0.database.with_priority().begin().await?;
-        // This transaction and one that takes the job away wait for each other.
+        // A transaction that takes the job away waits for this one, and this one waits for it.
         let statement = "SELECT id FROM job WHERE id = ? AND attempt = ? AND lease_key = ? AND state = 'running'
             {for update}";
         let held = transaction.row(statement, values![lease.job, lease.attempt, &lease.key]).await?;
@@ -212,7 +213,7 @@ impl Remote {
         Ok(artifact)
     }
 
-    /// Checks that the worker holds the job, before a body is received, and returns the job's size limit.
+    /// Checks that the worker holds the joband returns the job's size limit. This is called before a body is received.
     ///
     /// # Errors
     ///
@@ -222,11 +223,11 @@ impl Remote {
     }
 }
 
-/// A number of points that no suite reaches.
+/// A number of points that is larger than that of any suite. Results above it are rejected.
 const MAX_POINTS: f64 = 1e9;
 const MAX_SLOTS: usize = 256;
 
-/// Returns untrusted text on one line, without control characters, and with a maximum length.
+/// Returns untrusted text on one line, without control characters, and shortened to `most` characters.
 fn strip_controls(text: &str, most: usize) -> String {
     text.chars().map(|c| if c.is_control() { ' ' } else { c }).take(most).collect()
 }

@@ -1,4 +1,4 @@
-//! Finds the role of a request's sender from the secrets in the request.
+//! Functions that find the role of a request's sender, from the secrets in the request.
 use crate::domain::{
     Admin, App, Member, Person, Remote, Secrets, Staff, Visitor,
     accounts::identity::{self, SessionState},
@@ -40,7 +40,7 @@ impl App {
         Ok((account, seen))
     }
 
-    /// Returns the request's sender as a visitor, who may be anyone.
+    /// Returns the request's sender as a visitor. A visitor need not be signed in.
     pub fn visitor(&self, secrets: Secrets) -> Visitor {
         Visitor { app: self.clone(), secrets }
     }
@@ -55,11 +55,11 @@ impl App {
         Ok(Person { account, session, app: self.clone() })
     }
 
-    /// Returns a worker by its token; the worker chooses its own name.
+    /// Returns the worker to which a token belongs. The worker itself chooses the name.
     ///
     /// # Errors
     ///
-    /// Fails if the token is not a worker's, or no longer valid.
+    /// Fails if the token does not belong to a worker, or is no longer valid.
     pub async fn remote(&self, token: &str, name: &str) -> Result<Remote, Problem> {
         let mut transaction = self.0.database.read().await?;
         let statement = "SELECT id, name FROM token WHERE digest = ? AND account IS NULL AND revoked_at IS NULL";
@@ -72,7 +72,7 @@ impl App {
 }
 
 impl Person {
-    /// Returns whether the session was extended, so that the browser must extend its cookie.
+    /// Returns whether the session was extended. The browser's cookie must then be extended as well.
     pub fn is_renewed(&self) -> bool {
         self.session.as_ref().is_some_and(|session| session.is_stale)
     }
@@ -81,8 +81,8 @@ impl Person {
     ///
     /// # Errors
     ///
-    /// Fails if the person is not a member, or there is no such course; the error is the same, so that others do not
-    /// learn whether it exists.
+    /// Fails if the person is not a member, or if the course does not exist. Both give the same error, so that
+    /// outsiders do not learn whether a course exists.
     pub async fn member_of(self, slug: &str) -> Result<Member, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         let statement = "SELECT course.id, course.slug, course.title, member.role FROM course

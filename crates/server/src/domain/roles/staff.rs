@@ -1,4 +1,4 @@
-//! The staff of a course, and their actions.
+//! The staff of a course, and what only they can do.
 use crate::domain::{
     Member, Settings,
     accounts::identity,
@@ -12,47 +12,48 @@ use crate::{
 };
 use std::{ops::Deref, path::Path};
 
-/// A member of a course's staff.
+/// A member of a course who belongs to its staff.
 pub struct Staff(pub(in crate::domain) Member);
 
-/// A change of an assignment; parts that are `None` do not change.
+/// A change of an assignment. Parts that are `None` stay as they are.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct AssignmentChange<'a> {
     /// The assignment's title.
     pub title: Option<&'a str>,
     /// Whether students see the assignment.
     pub visible: Option<bool>,
-    /// The revision that the change is based on; it is rejected if there is a later one.
+    /// The revision on which the change is based. The change is rejected if there is a later revision.
     pub revision: Option<i64>,
-    /// A suite that was just uploaded.
+    /// A new suite for the assignment, which was just uploaded.
     pub suite: Option<&'a NewSuite>,
 }
 
-/// A suite that was just uploaded.
+/// A suite that was just uploaded, and not yet given to an assignment.
 #[derive(Debug, Clone, Default)]
 pub struct NewSuite {
     /// The digest of the suite's archive.
     pub digest: String,
-    /// Whether the suite hides groups.
+    /// The suite's name.
     pub name: String,
-    /// Whether it hides groups.
+    /// Whether the suite hides groups.
     pub hides: bool,
 }
 
-/// A suite that was uploaded to a course.
+/// A suite that was uploaded to a course before.
 #[derive(Debug, Clone)]
 pub struct UploadedSuite {
     /// The digest of the suite's archive.
     pub digest: String,
-    /// The suite's name; `None` for uploads to an older version.
+    /// The suite's name; `None` if an older version of the server received it.
     pub name: String,
-    /// The time of the last upload.
+    /// The time of the last upload, in milliseconds since 1970.
     pub uploaded_at: Option<i64>,
 }
 
 from_row! { UploadedSuite { digest, name, uploaded_at } }
 
-/// Rejects a change if another person has changed the assignment since; the error names the person and the change.
+/// Rejects a change if another person has changed the assignment since `revision`. The error names that person and
+/// their change.
 async fn check_revision(
     transaction: &mut Transaction,
     assignment: &Assignment,
@@ -89,8 +90,8 @@ impl Staff {
         view::note(transaction, &self.entry(kind, assignment, text)).await
     }
 
-    /// Creates an assignment, or changes it. If the suite changes, groups that the new suite hides are not published,
-    /// even if the old suite's were.
+    /// Creates or changes an assignment. If the suite changes, the groups that the new suite hides are withheld, even
+    /// if groups of the old suite were published.
     ///
     /// # Errors
     ///
@@ -174,7 +175,8 @@ impl Staff {
         Ok(known.map_or(Ok(String::new()), |row| row.text("name"))?)
     }
 
-    /// Publishes the groups that the suite hides, or withholds them again; platforms receive the shown points.
+    /// Publishes the groups that the suite hides, or withholds them again. Platforms then receive the points that
+    /// students see.
     ///
     /// # Errors
     ///
@@ -193,7 +195,7 @@ impl Staff {
         Ok(Assignment::from_row(&row)?)
     }
 
-    /// Stores an archive with a suite and makes it the assignment's. Later submissions are graded by it.
+    /// Stores an archive with a suite, and makes it the assignment's suite. It grades later submissions.
     ///
     /// # Errors
     ///
@@ -212,7 +214,7 @@ impl Staff {
         self.set_assignment(slug, change, settings).await
     }
 
-    /// Returns the suites that were uploaded to the course, latest first.
+    /// Returns the suites that were uploaded to the course, newest first.
     ///
     /// # Errors
     /// Fails if the database does not answer.
@@ -223,7 +225,7 @@ impl Staff {
         Ok(transaction.all(statement, values![self.course]).await?)
     }
 
-    /// Returns whether some submission to an assignment was graded by a suite that hides groups.
+    /// Returns whether any submission to an assignment was graded by a suite that hides groups.
     ///
     /// # Errors
     ///
@@ -237,7 +239,8 @@ impl Staff {
         Ok(transaction.row(statement, values![assignment.id]).await?.is_some())
     }
 
-    /// Returns a page of the submissions to an assignment after a number, oldest first; empty after the last.
+    /// Returns a page of the submissions to an assignment, oldest first, from the first one after the number `after`.
+    /// The page after the last submission is empty.
     ///
     /// # Errors
     ///
@@ -247,17 +250,17 @@ impl Staff {
         Ok(view::submissions_after(&mut transaction, assignment, after).await?)
     }
 
-    /// Returns the latest events of the course that match, latest first.
+    /// Returns the newest events of the course that match the query, newest first.
     ///
     /// # Errors
     ///
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn audit(&self, query: &EventQuery) -> Result<Vec<Event>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(view::events!(transaction, query, "AND event.course = ?", self.course))
     }
 
-    /// Returns the queue and the workers.
+    /// Returns the state of the queue and of the workers.
     ///
     /// # Errors
     /// Fails if the database does not answer.

@@ -1,4 +1,4 @@
-//! Visitors, who need not be signed in.
+//! Visitors of the service, who may or may not be signed in.
 use crate::domain::{
     App, NewSecret,
     accounts::identity::{self, SignInMethod},
@@ -7,22 +7,22 @@ use crate::domain::{
 use crate::problem::{Problem, ensure};
 use std::{net::IpAddr, time::Instant};
 
-/// The secrets in a request.
+/// The secrets that a request contains.
 #[derive(Clone, Default)]
 pub struct Secrets {
-    /// The token of a person.
+    /// The token from the request's `Authorization` header.
     pub bearer: Option<String>,
-    /// The secret of a browser's session.
+    /// The secret of a session, from a cookie.
     pub session: Option<String>,
-    /// The secret of a browser whose sign-in at a learning platform has begun.
+    /// The secret of a sign-in at a learning platform, which the browser keeps in a cookie.
     pub browser: Option<String>,
-    /// The secret of a browser whose sign-in at a provider has begun.
+    /// The secret of a sign-in at a provider, which the browser keeps in a cookie.
     pub provider: Option<String>,
-    /// The address that the request comes from.
+    /// The address of the client that sent the request; `None` if it is unknown.
     pub address: Option<IpAddr>,
 }
 
-/// A person who need not be signed in.
+/// Someone who may or may not be signed in.
 pub struct Visitor {
     pub(crate) app: App,
     pub(in crate::domain) secrets: Secrets,
@@ -39,7 +39,7 @@ impl Visitor {
         ensure(passes, Problem::too_many("too many people are signing in from your address"))
     }
 
-    /// Signs in with a link, which is used up.
+    /// Signs in with a link, which cannot be used again.
     ///
     /// # Errors
     ///
@@ -56,16 +56,16 @@ impl Visitor {
         Ok(session)
     }
 
-    /// Returns the name and the courses of the owner of a link that can still be used.
+    /// Returns the name and the courses of a link's owner, if the link can still be used.
     ///
     /// # Errors
-    /// When the database does not answer.
+    /// Fails if the database does not answer.
     pub async fn link_owner(&self, link: &str) -> Result<Option<(String, Option<String>)>, Problem> {
         let mut transaction = self.app.0.database.read().await?;
         Ok(identity::link_owner(&mut transaction, link).await?)
     }
 
-    /// Signs in with a token of a person, until it is revoked.
+    /// Signs in with a person's token. The session ends when the token is revoked.
     ///
     /// # Errors
     ///
@@ -100,21 +100,21 @@ impl Visitor {
         Ok(())
     }
 
-    /// Checks that requests can be served.
+    /// Checks that the database and the store can be written, so that requests can be served.
     ///
     /// # Errors
     ///
-    /// Fails if they can't.
+    /// Fails if one of them cannot be written.
     pub async fn check_ready(&self) -> Result<(), Problem> {
         self.app.0.storage.prove().await
     }
 
-    /// Returns the metrics in Prometheus' text format. If the database does not answer, they contain only the process's
-    /// own.
+    /// Returns the metrics in Prometheus' text format. If the database does not answer, they contain only what the
+    /// process itself counts.
     ///
     /// # Errors
     ///
-    /// Fails if they can't be written as text.
+    /// Fails if the metrics can't be written as text.
     pub async fn metrics(&self) -> Result<String, Problem> {
         let parts = &self.app.0;
         let queue = parts.counts.read(&parts.database, &parts.policy).await;

@@ -11,10 +11,10 @@ use crate::{
 use serde::Serialize;
 use utoipa::ToSchema;
 
-/// The answer to a request for grading again.
+/// The answer to a request to grade submissions again.
 #[derive(Serialize, ToSchema)]
 pub struct RegradeOrder {
-    /// The number of submissions.
+    /// The number of submissions that are graded again.
     pub jobs: i64,
 }
 
@@ -41,7 +41,7 @@ impl Staff {
         Ok(RegradeOrder { jobs })
     }
 
-    /// Grades all submissions of one assignment or the whole course again if the grader failed on them; returns their
+    /// Grades the submissions on which the grader failed again, of one assignment or of the whole course. Returns their
     /// number.
     pub async fn grade_errors_again(&self, assignment: Option<&str>) -> Result<RegradeOrder, Problem> {
         let assignments = match assignment {

@@ -16,7 +16,7 @@ macro_rules! payload {
 }
 pub(in crate::domain) use payload;
 
-/// Returns the constant texts between the columns in a [`payload`]. They are the same for all submissions to an
+/// Returns the texts that a [`payload`] puts between the columns. They are the same for all submissions to an
 /// assignment.
 pub(in crate::domain) fn statement_pieces(assignment: &Assignment) -> Result<[String; 5], Problem> {
     let any = crate::store::Artifact { digest: crate::store::Digest::from_bytes(b""), size: 0 };
@@ -33,7 +33,7 @@ pub(in crate::domain) fn statement_pieces(assignment: &Assignment) -> Result<[St
     ])
 }
 
-/// Enqueues submissions with given numbers, on a person's request, and cancels their earlier jobs.
+/// Enqueues the submissions with the given numbers because a person requested it, and cancels their earlier jobs.
 pub(in crate::domain) async fn enqueue_replaced(
     transaction: &mut Transaction,
     assignment: &Assignment,

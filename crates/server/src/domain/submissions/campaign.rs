@@ -1,4 +1,4 @@
-//! The operations of regrades. One statement handles all submissions, so that each step is complete or has no effect.
+//! The steps of a regrade. One statement handles all submissions, so that each step is complete or has no effect.
 use crate::domain::{
     submissions::bulk::{payload, statement_pieces},
     view::Assignment,
@@ -12,8 +12,8 @@ use crate::{
     values,
 };
 
-/// Enqueues the submissions to an assignment that a regrade does not contain yet, with the regrade's settings; returns
-/// their number.
+/// Enqueues the submissions to an assignment that are not in the regrade yet, to be graded with the regrade's settings.
+/// Returns their number.
 pub(in crate::domain) async fn enqueue_missing(
     transaction: &mut Transaction,
     campaign: i64,
@@ -40,8 +40,8 @@ pub(in crate::domain) async fn enqueue_missing(
     Ok(transaction.execute(statement, &values).await?)
 }
 
-/// Makes a regrade's results count, on a person's request, with a reason for students. If the grader failed, the old
-/// grade stays.
+/// Makes the results of a regrade count, because a person requested it, and stores the reason for students. If the
+/// grader failed on a submission, its old grade stays.
 pub(in crate::domain) async fn apply(
     transaction: &mut Transaction,
     campaign: i64,

@@ -1,4 +1,5 @@
-//! The texts that are stored with a result next to its grade, and the scenes that changed between attempts.
+//! The scenes and group points that are stored with a result next to its grade, and the scenes that changed between two
+//! attempts.
 use crate::domain::{Member, view::Submission};
 use crate::{
     db::{DbError, Row},
@@ -8,22 +9,22 @@ use crate::{
 };
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The scenes that are not accepted in a result, each with the code of its verdict.
+/// The scenes that a result does not accept. Each scene's name leads to the code of its verdict.
 pub type FailedScenes = BTreeMap<String, String>;
 
-/// The scenes that changed in an attempt.
+/// The scenes that changed from one attempt to the next.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct AttemptChange {
-    /// The number of the attempt before it.
+    /// The number of the attempt with which this attempt is compared.
     pub since: i64,
-    /// The scenes that became right.
+    /// The scenes that were not accepted before, and are now.
     pub right: Vec<String>,
-    /// The scenes that are no longer right.
+    /// The scenes that were accepted before, and are not now.
     pub wrong: Vec<String>,
 }
 
 impl AttemptChange {
-    /// Returns the difference between two attempts.
+    /// Compares an attempt with the earlier attempt `since`.
     pub fn compare(since: i64, old: &FailedScenes, new: &FailedScenes) -> Self {
         let names = |scenes: &FailedScenes| scenes.keys().cloned().collect::<BTreeSet<_>>();
         let (old, new) = (names(old), names(new));
@@ -31,24 +32,25 @@ impl AttemptChange {
     }
 }
 
-/// Reads the stored text, which has a line such as `WA Group/name` for each scene.
+/// Reads the stored text. It has a line for each scene that is not accepted, such as `WA Group/name`.
 fn read(text: &str) -> FailedScenes {
     let lines = text.lines().filter_map(|line| line.split_once(' '));
     lines.map(|(code, scene)| (scene.to_owned(), code.to_owned())).collect()
 }
 
-/// The texts that are stored with a result next to its grade.
+/// The details that are stored with a result: the scenes that are not accepted, and the parts of the grade.
 #[derive(Debug, Default)]
 pub struct KeptResult {
     /// The scenes that the result does not accept.
     pub failed: FailedScenes,
-    /// The points of groups and the likely mistakes; empty for results of an older version.
+    /// The points of groups and the likely mistakes; empty for results that an older version stored.
     pub parts: GradeParts,
 }
 
 impl Member {
-    /// Returns the stored texts of the course's results, by number; empty for results of older versions. They include
-    /// hidden groups, so students may read them only if the groups are published, or none is hidden.
+    /// Returns what is stored with the course's results, by the number of the result. Results that an older version
+    /// stored have empty parts. Hidden groups are included, so students may read this only if the groups are published
+    /// or the suite hides no groups.
     ///
     /// # Errors
     ///
@@ -70,8 +72,8 @@ impl Member {
         Ok(rows.iter().map(kept).collect::<Result<_, DbError>>()?)
     }
 
-    /// Returns the changes between consecutive graded attempts of one person, by the number of the later one, newest
-    /// first. Attempts with withheld groups are left out.
+    /// Returns the changes between consecutive graded attempts of one person, newest first. Each is stored under the
+    /// number of the later attempt. Attempts with withheld groups are left out.
     ///
     /// # Errors
     ///

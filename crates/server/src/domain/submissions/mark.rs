@@ -13,10 +13,10 @@ use crate::{
     values,
 };
 
-/// The maximum length of a comment or a request.
+/// The maximum length of a comment, or of a request for a review.
 const MAX_TEXT_LENGTH: usize = 2000;
 
-/// A student's work on an assignment.
+/// A student's submissions to an assignment, and the student's own due date.
 #[derive(Debug, Clone)]
 pub struct StudentHistory {
     /// The login of the student's account.
@@ -25,33 +25,33 @@ pub struct StudentHistory {
     pub name: String,
     /// All submissions of the student, newest first.
     pub submissions: Vec<Submission>,
-    /// The student's own due date, if it differs from the assignment's.
+    /// The student's own due date in milliseconds since 1970; `None` if the assignment's due date applies.
     pub extended_to: Option<i64>,
 }
 
-/// A student's request for a review that was not answered.
+/// A student's unanswered request for a review.
 #[derive(Debug, Clone)]
 pub struct Request {
-    /// The submission's number.
+    /// The number of the submission on this server.
     pub submission: i64,
-    /// The owner's login.
+    /// The login of the submission's owner.
     pub login: String,
     /// The student's question about the grade.
     pub text: String,
 }
 
-/// The state of an assignment, for the table of its course.
+/// The numbers that describe an assignment in its course's table.
 #[derive(Debug, Clone)]
 pub struct Overview {
     /// The number of students in the course.
     pub students: i64,
     /// The number of students who have submitted something.
     pub handed_in: i64,
-    /// The number of submissions.
+    /// The number of submissions to the assignment.
     pub submissions: i64,
-    /// The number of unanswered requests of students.
+    /// The number of students' requests for a review that are not answered.
     pub requests: i64,
-    /// The number of regrades that are neither applied nor discarded.
+    /// The number of regrades on which staff have not decided yet.
     pub regrades: i64,
     /// The number of gradings that all workers of the server can run at the same time.
     pub slots: i64,
@@ -72,8 +72,8 @@ fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
 }
 
 impl Staff {
-    /// Replaces the grader's points of a submission, or restores them, with a reason. This also answers a student's
-    /// request.
+    /// Sets the points of a submission instead of the grader's, or restores the grader's, with a reason. If the student
+    /// requested a review, this answers it.
     ///
     /// # Errors
     ///
@@ -210,7 +210,7 @@ impl Staff {
 }
 
 impl Member {
-    /// Requests that staff reviews the member's submission.
+    /// Sends the member's request that staff review one of the member's submissions.
     ///
     /// # Errors
     ///
@@ -236,7 +236,7 @@ impl Member {
         Ok(transaction.commit().await?)
     }
 
-    /// Returns the state of an assignment, for staff.
+    /// Returns the numbers that describe an assignment to staff; `None` for students.
     ///
     /// # Errors
     /// Fails if the database does not answer.
@@ -259,7 +259,7 @@ impl Member {
         Ok(transaction.find(statement, values![self.course, id, id, recent, recent, self.course, id]).await?)
     }
 
-    /// Returns the member's due date.
+    /// Returns the member's due date for an assignment.
     ///
     /// # Errors
     ///
@@ -276,7 +276,7 @@ async fn extension(transaction: &mut Transaction, assignment: i64, account: i64)
     row.map(|row| row.int("due_at")).transpose()
 }
 
-/// Returns an account's due date; an extension can only give more time.
+/// Returns an account's due date. An extension can only move it to a later time.
 pub(in crate::domain) async fn due_date(
     transaction: &mut Transaction,
     assignment: &Assignment,

@@ -1,5 +1,5 @@
-//! Regrades: new results next to the old ones, at low priority, until a member of staff applies or discards them. Until
-//! then no grade changes.
+//! Regrades: new results that are stored next to the old ones, at low priority. No grade changes until a member of
+//! staff applies the regrade; it can also be discarded.
 use crate::domain::{Settings, Staff, submissions::campaign, view::Assignment};
 use crate::{
     db::{DbError, FromRow, Row, Transaction, read_row},
@@ -25,7 +25,7 @@ pub enum RegradeState {
     Discarded,
 }
 
-/// A regrade and its changes.
+/// A regrade, with the grades that it would change or has changed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Regrade {
     /// The regrade's number.
@@ -36,63 +36,64 @@ pub struct Regrade {
     pub reason: String,
     /// The settings that the regrade uses.
     pub settings: Settings,
-    /// The login of the account that began the regrade.
+    /// The login of the person who began the regrade.
     pub by: String,
     /// The time of creation, in milliseconds since 1970.
     pub created_at: i64,
     /// The number of submissions in the regrade.
     pub submissions: usize,
-    /// The number of submissions that are not graded yet.
+    /// The number of submissions that the regrade has not graded yet.
     pub left: usize,
-    /// The number of submissions on which the grader failed; their grades stay.
+    /// The number of submissions on which the grader failed. Their old grades stay.
     pub failed: usize,
     /// The number of grades that change.
     pub changed: usize,
-    /// The number of grades that get more points.
+    /// The number of submissions that get more points.
     pub more: usize,
-    /// The number of grades that get fewer points.
+    /// The number of submissions that get fewer points.
     pub fewer: usize,
-    /// The changes by submission, up to the requested number.
+    /// The changes, in the order of submissions, up to the requested number.
     pub changes: Vec<Change>,
-    /// The submission after which there are more changes; null if there are none.
+    /// The number of the last shown submission, if there are further changes; null otherwise.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub next: Option<i64>,
 }
 
 impl Regrade {
-    /// Returns the reasons that all shown changes share.
+    /// Returns the reasons for the change, if all shown changes have the same ones.
     pub fn shared_why(&self) -> Option<String> {
         let (first, rest) = self.changes.split_first()?;
         rest.iter().all(|change| change.why == first.why).then(|| first.why.join("; "))
     }
 }
 
-/// A changed grade, with the reasons.
+/// A grade that the regrade changes, with the likely reasons.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Change {
     /// The submission's number on this server.
     pub submission: i64,
-    /// The number of the submission among those of its owner to the assignment.
+    /// The submission's number among its owner's submissions to this assignment.
     pub number: i64,
     /// The login of the owner.
     pub login: String,
-    /// The verdict that counts at present.
+    /// The code of the verdict that counts at present.
     pub old_code: Option<String>,
     /// The points that count at present.
     pub old_points: Option<String>,
-    /// The present result in one line.
+    /// The result that counts at present, in one line.
     pub old_summary: Option<String>,
-    /// The verdict of the regrade.
+    /// The code of the regrade's verdict.
     pub new_code: String,
-    /// The points of the regrade.
+    /// The points that the regrade gives.
     pub new_points: Option<String>,
-    /// The result of the regrade in one line.
+    /// The regrade's result, in one line.
     pub new_summary: String,
-    /// The differences between the two gradings that may explain the change, such as version, suite, rules or limits.
+    /// The differences between the two gradings that may explain the change, such as another version, suite, rule book
+    /// or limit.
     pub why: Vec<String>,
 }
 
-/// Selects regrades without their changes; the argument is the rest of the statement.
+/// Selects regrades, without their changes. The argument is the end of the statement.
 macro_rules! regrades {
     ($which:literal) => {
         concat!(
@@ -133,7 +134,7 @@ impl Staff {
         self.show_regrade(slug, campaign, None).await
     }
 
-    /// Returns the regrades of an assignment, latest first, without their changes.
+    /// Returns the regrades of an assignment, newest first, without their changes.
     ///
     /// # Errors
     /// Fails if there is no such assignment.
@@ -143,7 +144,7 @@ impl Staff {
         Ok(transaction.all(statement, values![assignment.id]).await?)
     }
 
-    /// Returns a regrade and its changes, for submissions after a number.
+    /// Returns a regrade and its changes, beginning after the submission with the number `after`.
     ///
     /// # Errors
     /// Fails if there is no regrade of this number.
@@ -152,12 +153,12 @@ impl Staff {
         find(&mut transaction, &assignment, id, after.unwrap_or(0)).await
     }
 
-    /// Makes the results of a regrade count, and copies its settings for grading to the assignment. If the grader
-    /// failed, the old grade stays.
+    /// Makes the results of a regrade count, and copies its grading settings to the assignment. If the grader failed on
+    /// a submission, its old grade stays.
     ///
     /// # Errors
     ///
-    /// Fails if the regrade is not finished, or submissions have arrived since that are not graded yet.
+    /// Fails if the regrade is not finished, or if submissions have arrived in the meantime that are not graded yet.
     pub async fn apply_regrade(&self, slug: &str, id: i64) -> Result<Regrade, Problem> {
         let assignment = self.assignment(slug).await?;
         let mut transaction = self.begin().await?;
@@ -202,7 +203,8 @@ impl Staff {
         self.show_regrade(slug, id, None).await
     }
 
-    /// Locks an open regrade against other decisions, and returns its settings and reason.
+    /// Locks an open regrade, so that no other decision about it can be made at the same time. Returns its settings and
+    /// reason.
     async fn lock_open(
         &self,
         transaction: &mut Transaction,
@@ -218,7 +220,7 @@ impl Staff {
         }
     }
 
-    /// Stores the decision on a regrade.
+    /// Stores whether a regrade was applied or discarded, and by whom.
     async fn decide(
         &self,
         mut transaction: Transaction,
@@ -255,8 +257,8 @@ impl FromRow for Regrade {
     }
 }
 
-/// Selects the jobs of a regrade whose results differ from the results that count, or that counted before the regrade
-/// was applied.
+/// Selects the jobs of a regrade whose results differ from the results that count. After the regrade is applied, they
+/// are compared with the results that counted before.
 macro_rules! changes {
     ($columns:literal, $rest:literal) => {
         concat!(
@@ -320,7 +322,7 @@ impl FromRow for Change {
     }
 }
 
-/// Returns the differences between two gradings of one submission.
+/// Returns the differences between two gradings of one submission, as sentences.
 fn differences(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
         return Ok(vec!["there was no earlier grade".to_owned()]);

@@ -1,5 +1,5 @@
-//! The standings of a class: for each student, the submission that counts. The database puts each student's attempts
-//! into one row, and only submissions that are shown are read completely. Simultaneous requests share one answer.
+//! The standings of a class: for each student, the submission that counts. A database query puts the attempts of each
+//! student into one row. Only submissions that are shown are read completely. Simultaneous requests share one answer.
 use crate::domain::{
     Staff,
     view::{self, Assignment, Submission},
@@ -27,13 +27,13 @@ pub struct Standing {
     pub name: String,
     /// The number of the student's submissions.
     pub submissions: usize,
-    /// The submission that counts: the one with the most points (on a tie, the latest), or the last one if none has
-    /// points.
+    /// The submission that counts: the one with the most points, and on a tie the latest of these. If no submission has
+    /// points, the last one counts.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub counts: Option<Submission>,
 }
 
-/// A student's standing, reduced to what statistics need.
+/// The part of a student's standing that statistics need.
 #[derive(Debug, Clone)]
 pub struct ShortStanding {
     /// The login of the student's account.
@@ -42,40 +42,40 @@ pub struct ShortStanding {
     pub name: String,
     /// The number of the student's submissions.
     pub submissions: usize,
-    /// The submission that counts, reduced.
+    /// The part of the submission that counts.
     pub counts: Option<CountedSubmission>,
 }
 
-/// A submission that counts, reduced to what statistics need.
+/// The part of a counted submission that statistics need.
 #[derive(Debug, Clone)]
 pub struct CountedSubmission {
     /// The submission's number.
     pub id: i64,
-    /// The submission's points, set by staff or reduced for being late.
+    /// The points that count: those that staff set, or the grader's after the deduction for being late.
     pub points: Option<String>,
-    /// The code of the submission's verdict, after it is graded.
+    /// The code of the submission's verdict; `None` before it is graded.
     pub code: Option<String>,
     /// The digest of the uploaded file, after it is graded.
     pub digest: String,
     /// Whether the submission is late and loses points.
     pub is_late: bool,
-    /// The maximum number of points.
+    /// The maximum number of points of the suite.
     pub max_points: Option<String>,
-    /// One line about the result.
+    /// The result in one line.
     pub summary: String,
 }
 
-/// Answers that simultaneous requests share, by assignment.
+/// The standings that simultaneous requests share, by the assignment's number.
 #[derive(Debug, Default)]
 pub(in crate::domain) struct SharedStandings(Mutex<HashMap<i64, Arc<SharedAnswer>>>);
 
-/// The last answer, and the time when its computation began.
+/// The last answer, and the time at which its computation began.
 type SharedAnswer = tokio::sync::Mutex<Option<(Instant, Arc<Vec<ShortStanding>>)>>;
 
-/// The number of answers above which those without waiting requests are dropped.
+/// The number of answers in memory above which answers that no request is waiting for are removed.
 const MAX_ANSWERS: usize = 32;
 
-/// The number of submissions that are read completely in one statement.
+/// The number of submissions that one statement reads completely.
 const PAGE_SIZE: usize = 500;
 
 impl SharedStandings {
@@ -89,7 +89,7 @@ impl SharedStandings {
 }
 
 impl Staff {
-    /// Returns the reduced standings of all students in an assignment, by their logins.
+    /// Returns the parts of all students' standings that statistics need, ordered by login.
     ///
     /// # Errors
     ///
@@ -109,7 +109,7 @@ impl Staff {
         Ok(standings)
     }
 
-    /// Returns the standing of all students in an assignment.
+    /// Returns the standings of all students in an assignment.
     ///
     /// # Errors
     /// Fails if there is no such assignment.
@@ -119,7 +119,7 @@ impl Staff {
         self.whole_standings(&short).await
     }
 
-    /// Returns the standing of all students, with the submissions that count.
+    /// Returns the standings of these students, with all data of the submissions that count.
     ///
     /// # Errors
     /// Fails if the database does not answer.
@@ -141,7 +141,7 @@ impl Staff {
     }
 }
 
-/// The best attempt of a student so far.
+/// The best of a student's attempts so far, while the list of attempts is read.
 #[derive(Clone)]
 struct BestAttempt {
     id: i64,
@@ -150,7 +150,7 @@ struct BestAttempt {
 }
 
 impl BestAttempt {
-    /// Returns the best of several attempts, which are given oldest first as `ID TIME POINTS`, separated by commas.
+    /// Returns the best attempt in a list of `ID TIME POINTS`, separated by commas, with the oldest first.
     fn from_list(
         list: &str,
         by_hand: &HashMap<i64, String>,

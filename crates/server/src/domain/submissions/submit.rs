@@ -1,4 +1,4 @@
-//! Uploading: the submission, its job and the event are written in one transaction, after its bytes are safely stored.
+//! Uploading. After the bytes are safely stored, the submission, its job and its event are written in one transaction.
 use crate::domain::{
     Member,
     submissions::mark,
@@ -19,8 +19,8 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The maximum time that an upload waits for earlier ones: no upload is rejected only because many arrive before a
-/// deadline.
+/// The maximum time that an upload waits for earlier ones. It is long, so that no upload is rejected only because many
+/// arrive before a deadline.
 const CROWD_TIMEOUT: Duration = Duration::from_secs(240);
 
 const MINUTE: i64 = 60 * 1000;
@@ -29,24 +29,25 @@ const HOUR: i64 = 60 * MINUTE;
 /// An upload before it becomes a submission.
 #[derive(Debug, Clone)]
 pub struct Upload<'a> {
-    /// The upload's form.
+    /// The form of the submission: a program, sources or traces.
     pub form: Form,
     /// The upload's name, which is a plain file name.
     pub name: &'a str,
     /// The file with the upload's bytes.
     pub file: &'a Path,
-    /// The sender's key for the upload; two uploads with one key are one submission.
+    /// The sender's key for the upload. Two uploads with the same key are one submission.
     pub key: Option<&'a str>,
-    /// The time when the request arrived, by the database's clock, which counts for due dates and limits.
+    /// The time at which the request arrived, in milliseconds since 1970 by the database's clock. It counts for due
+    /// dates and limits.
     pub came_at: i64,
 }
 
 /// The result of an upload.
 #[derive(Debug, Clone)]
 pub struct SubmitResult {
-    /// The submission.
+    /// The new submission, or the earlier one with the same key.
     pub submission: Submission,
-    /// Whether the submission existed already, with the same key.
+    /// Whether an earlier upload with the same key had already created the submission.
     pub repeated: bool,
 }
 
@@ -55,16 +56,16 @@ impl Member {
     ///
     /// # Errors
     ///
-    /// Fails if the assignment does not accept it, or the server can't store it. Then there is no submission, or the
-    /// same key finds it.
+    /// Fails if the assignment does not accept the upload, or the server can't store it. After an error, there is
+    /// either no submission, or another upload with the same key finds it.
     pub async fn submit(&self, assignment: &str, upload: &Upload<'_>) -> Result<SubmitResult, Problem> {
         let (_, assignment) = self.read_at(assignment).await?;
         if !assignment.settings.takes(upload.form) {
             let (taken, found) = (assignment.settings.describe_forms(), upload.form.describe());
             return Err(Problem::unusable(format!("this assignment takes {taken}; the file is {found}")));
         }
-        // Simultaneous uploads of an account are checked one after another, so that an upload is not stored if an
-        // earlier one used up the limit.
+        // Simultaneous uploads of an account are checked one after another. Otherwise an upload could be stored
+        // although an earlier one has used up the limit.
         let _turn = self.app.limits.turn(self.account.id).await?;
         // Check before storing, so that the bytes of a rejected or repeated upload are not stored.
         let artifact = digest_of_file(upload.file).await?;
@@ -75,7 +76,8 @@ impl Member {
         drop(transaction);
         let artifact = self.app.0.store.put_file(upload.file).await?;
         let mut transaction = self.app.0.database.begin_within(CROWD_TIMEOUT).await?;
-        // Uploads of one student are handled one after another, because numbers are assigned and limits counted here.
+        // Uploads of one student are handled one after another, because their numbers are assigned and limits are
+        // counted here.
         transaction.one("SELECT id FROM account WHERE id = ? {for update}", values![self.account.id]).await?;
         if let Some(submission) = self.admit(&mut transaction, &assignment, upload, &artifact).await? {
             return Ok(SubmitResult { submission, repeated: true });
@@ -85,8 +87,8 @@ impl Member {
         Ok(SubmitResult { submission: self.submission(submission).await?, repeated: false })
     }
 
-    /// Returns the time when the request of an upload arrived, by the database's clock. Checks the key and the
-    /// announced size before the body is sent.
+    /// Returns the time at which an upload's request arrived, by the database's clock. Before the body is sent, this
+    /// checks the upload's key and announced size.
     ///
     /// # Errors
     ///
@@ -115,7 +117,7 @@ impl Member {
         Ok(came_at)
     }
 
-    /// Returns the earlier submission with the same key, or `None` if a new one is allowed.
+    /// Returns the earlier submission with the same key; `None` if there is none and a new submission is allowed.
     async fn admit(
         &self,
         transaction: &mut Transaction,
@@ -181,7 +183,7 @@ impl Member {
             ),
         )?;
         if settings.per_hour > 0 && row.int("recent")? >= settings.per_hour.into() {
-            // The next submission is allowed when the oldest of the last hour is an hour old.
+            // The next submission is allowed when the oldest one of the last hour is an hour old.
             let again = row.int("oldest")? + HOUR;
             let detail = format!(
                 "at most {} submissions in an hour: the next one is possible from {} UTC",
@@ -203,7 +205,7 @@ impl Member {
     ) -> Result<i64, Problem> {
         let input = Input { form: upload.form, name: upload.name.to_owned(), artifact: artifact.clone() };
         let task = assignment.settings.task(input);
-        // The highest number ever is stored, so that a number is not assigned again after a removal.
+        // The highest number so far is stored, so that it is not assigned again after a removal.
         let statement = "INSERT INTO numbering (assignment, account, last) VALUES (?, ?, 1)
             ON CONFLICT (assignment, account) DO UPDATE SET last = numbering.last + 1 RETURNING last AS number";
         let number = transaction.one(statement, values![assignment.id, self.account.id]).await?.int("number")?;

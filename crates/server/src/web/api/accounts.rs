@@ -1,4 +1,4 @@
-//! The API of accounts, tokens, and administrators' lists.
+//! The API of accounts and tokens, and the lists that administrators see.
 use super::super::input::{AddressParts, Body, QueryInput};
 use crate::{
     domain::{Account, Admin, Event, EventQuery, Link, NewToken, Person, Queue, TokenInfo},
@@ -9,7 +9,7 @@ use axum::{Json, http::StatusCode};
 use serde::Deserialize;
 use utoipa::ToSchema;
 
-/// The request for a new token.
+/// The name of a new token.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct TokenName {
@@ -17,7 +17,7 @@ pub(in crate::web) struct TokenName {
     pub(in crate::web) name: String,
 }
 
-/// The request for a worker's token.
+/// The name of a new token for workers.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct WorkerTokenName {
@@ -25,7 +25,7 @@ pub(in crate::web) struct WorkerTokenName {
     pub(in crate::web) name: String,
 }
 
-/// The new state of an account.
+/// The name and the rights that an account should have.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AccountWish {
@@ -69,9 +69,9 @@ answers! { OK:
     get "/api/v1/accounts" "administration" accounts(admin: Admin) -> Vec<Account>: admin.accounts();
     /// Lists the tokens of workers.
     get "/api/v1/worker-tokens" "administration" worker_tokens(admin: Admin) -> Vec<TokenInfo>: admin.worker_tokens();
-    /// Returns the queue and the workers.
+    /// Returns the state of the queue and of the workers.
     get "/api/v1/queue" "administration" queue(admin: Admin) -> Queue: admin.queue();
-    /// Returns the events of the audit log, latest first, 200 at a time.
+    /// Returns the events of the audit log, newest first, 200 at a time.
     get "/api/v1/audit" "administration" audit(admin: Admin, ?asked: EventQuery) -> Vec<Event>: admin.audit(&asked);
 }
 
@@ -82,8 +82,7 @@ deeds! { NO_CONTENT:
     /// Closes an account.
     delete "/api/v1/accounts/{login}" "administration"
         disable_account(admin: Admin, { login }) -> "Shut": admin.disable_account(&login);
-    /// Removes a person: their submissions with the results, their names, and every way to sign in. This cannot be
-    /// undone.
+    /// Removes a person's submissions and results, their names, and every way to sign in. This cannot be undone.
     delete "/api/v1/accounts/{login}/data" "administration"
         remove_person(admin: Admin, { login }) -> "Removed": admin.remove_person(&login);
     /// Revokes a token of workers.

@@ -1,4 +1,4 @@
-//! The API of assignments, and of a class's results.
+//! The API of assignments, and of the results of a whole class.
 use super::super::{
     input::{AddressParts, Body, QueryInput, SeenEvent, whole_numbers},
     look, upload,
@@ -24,8 +24,8 @@ use utoipa::ToSchema;
 /// The maximum size of a suite's archive, in bytes.
 const MAX_SUITE_BYTES: u64 = 64 << 20;
 
-/// The new state of an assignment. Parts and settings that are not given do not change. A setting that is null is
-/// removed.
+/// The new state of an assignment. Parts and settings that the request does not name stay as they are. A setting that
+/// is null is removed.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct AssignmentWish {
@@ -36,12 +36,13 @@ pub(super) struct AssignmentWish {
     #[serde(default, deserialize_with = "whole_numbers")]
     #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
-    /// The revision that the change is based on. If it is given, the change is rejected if there is a later one.
+    /// The revision on which the change is based. If there is a later revision, the change is rejected. Without this
+    /// field, it is not checked.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     revision: Option<i64>,
 }
 
-/// The revision of an assignment, as a query.
+/// The revision on which a change of an assignment is based, as a query parameter.
 #[derive(Deserialize)]
 pub(in crate::web) struct Revision {
     revision: Option<i64>,
@@ -54,7 +55,7 @@ impl AssignmentWish {
     }
 }
 
-/// The format of an export.
+/// The format of an export, as a query parameter: `csv` or `jsonl`.
 #[derive(Deserialize)]
 pub(super) struct GradesFormat {
     format: Option<String>,
@@ -68,14 +69,14 @@ pub(super) struct Extension {
     #[serde(deserialize_with = "moment")]
     #[schema(schema_with = moment_schema, required = true)]
     due_at: Option<i64>,
-    /// The last event of the audit log that the sender has seen. If it is given, the change is rejected if this
-    /// extension was changed after it.
+    /// The number of the newest event of the audit log that the sender has seen. If this extension was changed after
+    /// it, the request is rejected. Without this field, it is not checked.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     seen: Option<i64>,
 }
 
-/// Uploads a `suite.toml`, or an archive (zip, tar, tar.gz) with one at its top, as the suite. Groups that it hides
-/// are withheld, even if others were published.
+/// Uploads a `suite.toml`, or an archive (zip, tar, tar.gz) with one at its top, as the assignment's suite. The groups
+/// that it hides are withheld, even if groups of the earlier suite were published.
 #[utoipa::path(put, path = "/api/v1/courses/{course}/assignments/{assignment}/suite", tag = "assignments",
     params(("revision" = Option<i64>, Query, description = "The revision that the change is based on")),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),
@@ -89,7 +90,7 @@ pub(super) async fn set_suite(
     Ok(Json(receive_suite(&staff, &assignment, &asked, request).await?))
 }
 
-/// Receives an archive with a suite, and makes it the assignment's.
+/// Receives an archive with a suite, and makes it the assignment's suite.
 pub(in crate::web) async fn receive_suite(
     staff: &Staff,
     assignment: &str,
@@ -112,7 +113,7 @@ pub(in crate::web) async fn receive_suite(
 /// The maximum size of a `suite.toml`, in bytes.
 const MAX_SUITE_FILE_BYTES: u64 = 1 << 20;
 
-/// Puts a `suite.toml` that was uploaded alone into an archive.
+/// Puts a `suite.toml` that was uploaded without an archive into an archive.
 fn pack_lone_suite(file: &Path) -> std::io::Result<()> {
     let is_small = std::fs::metadata(file)?.len() <= MAX_SUITE_FILE_BYTES;
     let text = is_small.then(|| std::fs::read_to_string(file).ok()).flatten();
@@ -125,8 +126,8 @@ fn pack_lone_suite(file: &Path) -> std::io::Result<()> {
     archive.finish()
 }
 
-/// Checks that the scenes of a suite are in the archive, or are scenes of the grader; otherwise a worker would read
-/// other files of its machine. Returns the suite without its digest.
+/// Checks that each scene of a suite is in the archive, or is a scene of the grader. Otherwise a worker would read
+/// other files on its machine. Returns the suite, without its digest.
 fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
     let file = folder.join("suite.toml");
     if std::fs::metadata(&file).is_ok_and(|file| file.len() > MAX_SUITE_FILE_BYTES) {
@@ -150,7 +151,8 @@ fn check_scenes(folder: &Path) -> Result<NewSuite, Problem> {
     Ok(NewSuite { name, hides, ..NewSuite::default() })
 }
 
-/// Returns the class's grades as a table (`csv`, one line per student) or all submissions as JSON lines (`jsonl`).
+/// Returns the class's grades as a table (`csv`, one line per student), or all submissions as JSON lines (`jsonl`, one
+/// line per submission).
 #[utoipa::path(get, path = "/api/v1/courses/{course}/assignments/{assignment}/export", tag = "assignments",
     params(("format" = Option<String>, Query, description = "csv (the default) or jsonl")),
     responses((status = 200, description = "The grades")))]
@@ -177,7 +179,7 @@ async fn table(staff: &Staff, assignment: &str) -> Result<String, Problem> {
     super::export_csv(&standings, &kept)
 }
 
-/// Returns all submissions, one line each, which are read while they are sent.
+/// Returns all submissions as JSON, one per line. They are read from the database while they are sent.
 async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
     let transfer = staff.transfer()?;
     let assignment = staff.assignment(assignment).await?;
@@ -200,24 +202,24 @@ async fn lines(staff: Staff, assignment: &str) -> Result<HttpBody, Problem> {
 }
 
 answers! { OK:
-    /// Creates an assignment or changes it. Grades stay as they are until a regrade. A change of the rule for late work
-    /// counts immediately.
+    /// Creates an assignment or changes it. Existing grades do not change until a regrade. However, a change of the
+    /// rule for late work counts immediately.
     put "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         set_assignment(staff: Staff, { assignment }, wish: AssignmentWish) -> Assignment:
             staff.set_assignment(&assignment, wish.change(), |before| before.with_changes(&wish.settings));
-    /// Lists the assignments of a course.
+    /// Lists the assignments of a course that the person may see.
     get "/api/v1/courses/{course}/assignments" "assignments"
         assignments(member: Member) -> Vec<Assignment>: member.assignments();
-    /// Returns an assignment.
+    /// Returns an assignment and its settings.
     get "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         assignment(member: Member, { assignment }) -> Assignment: member.assignment(&assignment);
-    /// Publishes the groups that the suite hides; from then on, they count for students.
+    /// Publishes the groups that the suite hides. From then on, students see them, and they count for students.
     put "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         publish(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, true);
-    /// Withholds the hidden groups again.
+    /// Withholds the suite's hidden groups again.
     delete "/api/v1/courses/{course}/assignments/{assignment}/published" "assignments"
         withhold(staff: Staff, { assignment }) -> Assignment: staff.publish(&assignment, false);
-    /// Returns the standings of all students: the submission that counts, and its points.
+    /// Returns the standings of all students. Each has the submission that counts.
     get "/api/v1/courses/{course}/assignments/{assignment}/class" "assignments"
         standings(staff: Staff, { assignment }) -> Vec<Standing>: staff.standings(&assignment);
 }
@@ -227,10 +229,10 @@ deeds! { NO_CONTENT:
     put "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
         extend(staff: Staff, { assignment, login }, wish: Extension) -> "Set":
             staff.extend(&assignment, &login, wish.due_at, wish.seen);
-    /// Removes an assignment with all submissions to it, forever.
+    /// Removes an assignment with all its submissions. This cannot be undone.
     delete "/api/v1/courses/{course}/assignments/{assignment}" "assignments"
         remove_assignment(staff: Staff, { assignment }) -> "Removed": staff.remove_assignment(&assignment);
-    /// Removes a student's own due date.
+    /// Removes a student's own due date, so that the assignment's due date applies.
     delete "/api/v1/courses/{course}/assignments/{assignment}/extensions/{login}" "assignments"
         extend_no_more(staff: Staff, { assignment, login }, ?asked: SeenEvent) -> "Set":
             staff.extend(&assignment, &login, None, asked.event());

@@ -9,7 +9,7 @@ use axum::{Json, http::StatusCode};
 use serde::Deserialize;
 use utoipa::{IntoParams, ToSchema};
 
-/// The new state of a course.
+/// The name and title of a new course.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(in crate::web) struct CourseWish {
@@ -19,39 +19,39 @@ pub(in crate::web) struct CourseWish {
     pub(in crate::web) title: String,
 }
 
-/// The new state of a member.
+/// The name and the role that a member should have.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MemberWish {
-    /// The member's name, used if the account is new.
+    /// The member's name. It is used only if the account is new.
     #[schema(value_type = Title)]
     name: String,
     /// The member's role: `student` or `staff`.
     #[schema(pattern = "^(student|staff)$")]
     role: String,
-    /// The last event of the audit log that the sender has seen. If it is given, the change is rejected if this member
-    /// was changed after it.
+    /// The number of the newest event of the audit log that the sender has seen. If this member was changed after it,
+    /// the request is rejected. Without this field, it is not checked.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     seen: Option<i64>,
 }
 
-/// The confirmation of a removal.
+/// The confirmation that a removal requires.
 #[derive(Deserialize, IntoParams)]
 #[into_params(parameter_in = Query)]
 pub(super) struct Confirm {
-    /// The course's name, as confirmation.
+    /// The short name of the course that is removed, as confirmation.
     confirm: String,
 }
 
-/// Whether the table is only read, without adding members.
+/// Whether the table is only checked, without adding members.
 #[derive(Deserialize)]
 pub(super) struct Preview {
     #[serde(default)]
     preview: bool,
 }
 
-/// Adds all members of a table with the columns `name,login,email,role`, or those in its first line. If any line has an
-/// error, nothing is changed.
+/// Adds all members in a table. The columns are `name,login,email,role`, or those that its first line names. If any
+/// line has an error, nothing is changed.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/members", tag = "courses",
     params(("preview" = Option<bool>, Query, description = "Only check the table"), SeenEvent),
     request_body(content = String, content_type = "text/csv"),
@@ -72,8 +72,8 @@ answers! { CREATED:
 }
 
 answers! { OK:
-    /// Makes a person a member, and creates their account if there is none; a new account gets a link that signs in
-    /// once.
+    /// Makes a person a member of the course. If the person has no account, it is created, and the answer contains a
+    /// link that signs in once.
     put "/api/v1/courses/{course}/members/{login}" "courses"
         set_member(staff: Staff, { login }, wish: MemberWish) -> Link:
             staff.set_member(&login, &wish.name, &wish.role, wish.seen);
@@ -84,20 +84,20 @@ answers! { OK:
     get "/api/v1/courses" "courses" courses(person: Person) -> Vec<CourseMembership>: person.courses();
     /// Lists the members of a course.
     get "/api/v1/courses/{course}/members" "courses" members(staff: Staff) -> Vec<MemberInfo>: staff.members();
-    /// Returns the events of the course, latest first, 200 at a time.
+    /// Returns the events of the course, newest first, 200 at a time.
     get "/api/v1/courses/{course}/audit" "courses"
         course_audit(staff: Staff, ?asked: EventQuery) -> Vec<Event>: staff.audit(&asked);
 }
 
 deeds! { NO_CONTENT:
-    /// Removes a course with its assignments, submissions and log, forever. Accounts stay.
+    /// Removes a course with its assignments, submissions and log. Accounts are kept. This cannot be undone.
     delete "/api/v1/courses/{course}" "administration"
         remove_course(admin: Admin, { course }, ?asked: Confirm) -> "Removed": async {
             let other = Problem::conflict("confirm must be the course's name", "repeat the course's name in confirm");
             ensure(asked.confirm == course, other)?;
             admin.remove_course(&course).await
         };
-    /// Removes a person from the course; their submissions stay.
+    /// Removes a person from the course. Their submissions are kept.
     delete "/api/v1/courses/{course}/members/{login}" "courses"
         remove_member(staff: Staff, { login }, ?asked: SeenEvent) -> "The member is removed":
             staff.remove_member(&login, asked.event());

@@ -1,7 +1,8 @@
 //! The HTTP API. The first argument of each handler names the role that it serves.
 
-/// Declares operations that return data, one per row. A row has the method, address, tag and name; the role that it
-/// serves, the parts of the address and the body; and the type of its answer. The status of the answers comes first.
+/// Declares operations that return data, one per row. A row has the method, the address, the tag and the name; then the
+/// role that the operation serves, the parts of the address and the body; and last the type of the answer. The status
+/// of all answers comes before the rows.
 macro_rules! answers {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, ?$asked:ident: $query:ty)?
@@ -18,7 +19,7 @@ macro_rules! answers {
     };
 }
 
-/// Declares routes that only perform an action; the answer describes the result as text.
+/// Declares operations that perform an action and answer with a sentence about the result, one per row.
 macro_rules! deeds {
     ($status:ident: $($(#[doc = $doc:literal])* $method:ident $path:tt $tag:tt
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, ?$asked:ident: $query:ty)?
@@ -54,7 +55,7 @@ pub(super) use submissions::{RequestWish, escape_cell, receive};
 use crate::domain::App;
 use utoipa_axum::{router::OpenApiRouter, routes};
 
-/// Builds a router with the operations of each module.
+/// Builds a router with the operations that each module declares.
 macro_rules! operations {
     ($($module:ident: $($operation:ident)*;)*) => {
         pub(super) fn routes() -> OpenApiRouter<App> {

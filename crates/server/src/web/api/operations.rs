@@ -1,18 +1,19 @@
-//! The API for the operators of the server.
+//! The part of the API for monitoring the server.
 use crate::{domain::Visitor, problem::Problem};
 use axum::{
     http::header,
     response::{IntoResponse, Response},
 };
 
-/// Returns whether the process is alive.
+/// Returns 200 if the process is alive.
 #[utoipa::path(get, path = "/health", tag = "operations",
     responses((status = 200, body = String, content_type = "text/plain", description = "The process is alive")))]
 pub(super) async fn health() -> &'static str {
     "alive\n"
 }
 
-/// Returns whether requests can be served: the database answers, and its tables have the version of this program.
+/// Returns 200 if requests can be served: the database answers, its tables have the version of this program, and the
+/// database and the store can be written.
 #[utoipa::path(get, path = "/ready", tag = "operations",
     responses((status = 200, body = String, content_type = "text/plain", description = "Requests can be served")))]
 pub(super) async fn ready(visitor: Visitor) -> Result<&'static str, Problem> {
@@ -27,8 +28,8 @@ pub(super) async fn openapi() -> Response {
     ([(header::CONTENT_TYPE, "application/json")], crate::web::openapi()).into_response()
 }
 
-/// Returns metrics for Prometheus, without personal data. If the database does not answer, they contain only the
-/// process's own.
+/// Returns metrics in Prometheus' text format, without personal data. If the database does not answer, only the metrics
+/// of the process itself are included.
 #[utoipa::path(get, path = "/metrics", tag = "operations",
     responses((status = 200, body = String, content_type = "text/plain", description = "Prometheus' text format")))]
 pub(super) async fn metrics(visitor: Visitor) -> Result<Response, Problem> {

@@ -9,14 +9,15 @@ use axum::{Json, http::StatusCode};
 use serde::Deserialize;
 use utoipa::IntoParams;
 
-/// Whether the roster is only read, or is applied even if many members leave.
+/// Whether the changes to the course's members are only shown, and whether they are applied even if many members would
+/// leave.
 #[derive(Default, Deserialize, IntoParams)]
 #[serde(default)]
 #[into_params(parameter_in = Query)]
 pub(super) struct RosterParameters {
     /// Only report who would be added and removed.
     preview: bool,
-    /// Proceed even if more than a third would be removed.
+    /// Change the members even if more than a third would be removed.
     confirm: bool,
 }
 
@@ -31,7 +32,7 @@ impl RosterParameters {
 }
 
 answers! { OK:
-    /// Reads the members of the course from the connected platforms.
+    /// Reads the members of the course from the connected platforms, and changes the course's members accordingly.
     post "/api/v1/courses/{course}/roster" "courses"
         roster(staff: Staff, ?asked: RosterParameters) -> RosterRead: staff.read_roster(asked.wish());
     /// Registers a platform, or changes it.
@@ -51,9 +52,9 @@ deeds! { ACCEPTED:
 }
 
 deeds! { NO_CONTENT:
-    /// Closes a platform: people cannot launch from it, and no scores are sent.
+    /// Closes a platform: people can no longer launch from it, and no scores are sent to it.
     delete "/api/v1/platforms/{name}" "administration"
         shut_platform(admin: Admin, { name }) -> "Shut": admin.shut_platform(&name);
-    /// Creates a new key of the service for platforms, which signs after an hour.
+    /// Creates a new key with which the service signs messages to platforms. The key is used after an hour.
     post "/api/v1/platform-keys" "administration" new_key(admin: Admin) -> "Made": admin.new_platform_key();
 }

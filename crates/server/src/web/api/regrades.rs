@@ -10,21 +10,22 @@ use serde::Deserialize;
 use serde_json::{Map, Value};
 use utoipa::ToSchema;
 
-/// The settings of a new regrade.
+/// The reason for a new regrade, and its settings.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct RegradeWish {
     /// The reason for the regrade, which students read after it is applied.
     #[schema(value_type = Title)]
     reason: String,
-    /// The settings for grading that differ from the assignment's.
+    /// The grading settings that differ from the assignment's settings.
     #[serde(default, deserialize_with = "whole_numbers")]
     #[schema(value_type = Settings, required = false)]
     settings: Map<String, Value>,
 }
 
 answers! { CREATED:
-    /// Grades all submissions again, without replacing the grades. Nothing changes until the regrade is applied.
+    /// Grades all submissions again, and stores the new results next to the old grades. No grade changes until the
+    /// regrade is applied.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
         begin(staff: Staff, { assignment }, wish: RegradeWish) -> Regrade: async {
             let settings = staff.assignment(&assignment).await?.settings.with_changes(&wish.settings)?;
@@ -33,7 +34,7 @@ answers! { CREATED:
 }
 
 answers! { OK:
-    /// Returns the changes of a regrade that is open or applied, with their reasons.
+    /// Returns a regrade that is open or applied, with the changed grades and the likely reasons.
     get "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}" "regrades"
         show(staff: Staff, { assignment, id }, ?asked: ListStart) -> Regrade:
             staff.show_regrade(&assignment, id, asked.after);
@@ -43,7 +44,7 @@ answers! { OK:
     /// Discards a regrade, so that no grade changes.
     post "/api/v1/courses/{course}/assignments/{assignment}/regrades/{id}/discard" "regrades"
         discard(staff: Staff, { assignment, id }) -> Regrade: staff.discard_regrade(&assignment, id);
-    /// Lists the regrades of an assignment, latest first.
+    /// Lists the regrades of an assignment, newest first.
     get "/api/v1/courses/{course}/assignments/{assignment}/regrades" "regrades"
         regrades(staff: Staff, { assignment }) -> Vec<Regrade>: staff.regrades(&assignment);
 }

@@ -21,7 +21,7 @@ use serde::Deserialize;
 use std::{collections::BTreeMap, time::Instant};
 use utoipa::ToSchema;
 
-/// The parameters of an upload without a form.
+/// The parameters of an upload whose body is the file itself, not a form.
 #[derive(Deserialize)]
 pub(super) struct UploadParameters {
     name: Option<String>,
@@ -29,7 +29,8 @@ pub(super) struct UploadParameters {
 }
 
 /// Uploads a submission. The body is the file, or a form (`multipart/form-data`) with a field `file`. With an
-/// `Idempotency-Key`, repeated uploads are one submission: the answer is 201 the first time, and 200 later.
+/// `Idempotency-Key`, repeated uploads count as one submission: the first answer has the status 201, and later ones
+/// have 200.
 #[utoipa::path(post, path = "/api/v1/courses/{course}/assignments/{assignment}/submissions", tag = "submissions",
     params(("name" = Option<String>, Query, description = "The file's name"),
         ("form" = Option<String>, Query, description = "program, sources or traces; otherwise recognized from the \
@@ -68,7 +69,7 @@ pub(in crate::web) async fn receive(
     let settings = member.assignment(assignment).await?.settings;
     let most = settings.max_bytes;
     let since = request.extensions().get::<ArrivalTime>().map_or_else(Instant::now, |ArrivalTime(since)| *since);
-    // A form's key is not known before its body is read.
+    // The key in a form is not known before the body is read.
     let announced = (!upload::is_form(&request)).then(|| (key, upload::announced_size(&request).unwrap_or(0)));
     let came_at = match member.check_announced(assignment, announced, since).await {
         Ok(came_at) => came_at,
@@ -91,20 +92,20 @@ pub(in crate::web) async fn receive(
     member.submit(assignment, &Upload { form, name: &name, file: &received.file, key, came_at }).await
 }
 
-/// The comment and points that staff give a submission.
+/// The points and the comment that staff give a submission.
 #[derive(Deserialize, ToSchema)]
 #[serde(deny_unknown_fields)]
 pub(super) struct MarkWish {
-    /// The points that count instead of the grader's; null restores the grader's points.
+    /// The points that count instead of the grader's. Null restores the grader's points.
     #[serde(default)]
     #[schema(minimum = 0, maximum = 1_000_000)]
     points: Option<f64>,
-    /// The reason, for the student.
+    /// The reason for the points, or another comment; the student reads it.
     #[serde(default)]
     #[schema(max_length = 2000, pattern = r"^[^\x00-\x08\x0b\x0c\x0e-\x1f\x7f-\x9f]*$")]
     comment: String,
-    /// The time of the last mark that the sender has seen. If it is given, the mark is rejected if there is a later
-    /// one.
+    /// The time of the newest mark that the sender has seen, in milliseconds since 1970. If there is a later mark, the
+    /// request is rejected. Without this field, it is not checked.
     #[schema(minimum = 0, maximum = 9_007_199_254_740_991_i64)]
     marked_at: Option<i64>,
 }
@@ -128,8 +129,8 @@ pub(super) async fn report(
 ) -> Result<Response, Problem> {
     let file = member.report(id, &name).await?;
     let kind = HeaderValue::from_str(&file.media_type).unwrap_or(HeaderValue::from_static("application/octet-stream"));
-    // The report contains text from an untrusted program, so the browser must not give it this site's origin and
-    // cookies.
+    // The report contains text from an untrusted program. Therefore the browser must not treat the report as a page of
+    // this site, which could use the site's cookies.
     let policy = if file.media_type.starts_with("text/html") {
         "sandbox allow-scripts allow-downloads; default-src 'none'; script-src 'unsafe-inline'; style-src \
         'unsafe-inline'; img-src data:"
@@ -149,8 +150,8 @@ pub(super) async fn upload(
     asked: HeaderMap,
 ) -> Result<Response, Problem> {
     let (submission, artifact) = member.upload(id).await?;
-    // The uploaded file is not trusted, so browsers must save it instead of showing it. Its name was made safe when it
-    // arrived.
+    // The uploaded file is not trusted, so browsers must save it instead of showing it. Unsafe characters were removed
+    // from its name when it arrived.
     let disposition = format!("attachment; filename=\"{}\"", submission.file_name);
     let headers = [
         (header::CONTENT_TYPE, HeaderValue::from_static("application/octet-stream")),
@@ -163,8 +164,8 @@ pub(super) async fn upload(
     Ok((headers, download::send(&member, &asked, &artifact).await?).into_response())
 }
 
-/// Returns a class's grades as a table, with a column for each group. Text that spreadsheets would read as a formula is
-/// marked as text.
+/// Returns a class's grades as a table, with a column for each group. Cells that spreadsheets would read as a formula
+/// are marked as text.
 ///
 /// # Errors
 ///
@@ -208,7 +209,7 @@ pub fn export_csv(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> R
     String::from_utf8(bytes).map_err(|_| Problem::fault())
 }
 
-/// Returns the text in a form that no spreadsheet takes for a formula.
+/// Marks text that a spreadsheet would read as a formula, so that it is read as text.
 pub(in crate::web) fn escape_cell(text: &str) -> String {
     if text.starts_with(['=', '+', '-', '@', '\t']) { format!("'{text}") } else { text.to_owned() }
 }
@@ -226,7 +227,7 @@ answers! { ACCEPTED:
 }
 
 answers! { OK:
-    /// Replaces the grader's points of a submission, with a comment, or restores them.
+    /// Sets the points of a submission instead of the grader's, with a comment, or restores the grader's points.
     put "/api/v1/courses/{course}/submissions/{id}/mark" "submissions"
         mark(staff: Staff, { id }, wish: MarkWish) -> Submission:
             staff.mark(
@@ -241,16 +242,17 @@ answers! { OK:
     /// Returns a submission with its position in the queue and its result.
     get "/api/v1/courses/{course}/submissions/{id}" "submissions"
         submission(member: Member, { id }) -> Submission: member.submission(id);
-    /// Returns the changes of the submission's grade, each with its person, time, reason, version and rules.
+    /// Returns the changes of a submission's grade. Each has its time, its reason, the person who caused it, and the
+    /// version and rules of the grading.
     get "/api/v1/courses/{course}/submissions/{id}/history" "submissions"
         history(member: Member, { id }) -> Vec<History>: member.history(id);
 }
 
 deeds! { NO_CONTENT:
-    /// Requests that staff reviews a submission of the person who is signed in.
+    /// Requests that staff review a submission of the person who is signed in.
     post "/api/v1/courses/{course}/submissions/{id}/request" "submissions"
         request(member: Member, { id }, wish: RequestWish) -> "Staff sees it": member.request(id, &wish.text);
-    /// Removes a submission with its grades and reports, forever.
+    /// Removes a submission with its grades and reports. This cannot be undone.
     delete "/api/v1/courses/{course}/submissions/{id}" "submissions"
         remove_submission(staff: Staff, { id }) -> "Removed": staff.remove_submission(id);
 }

@@ -1,5 +1,5 @@
-//! The API for workers on other machines: claim, renew, finish, and the files of their jobs. If the body is a file, the
-//! lease is in the header `Fosssim-Lease`, as `JOB:ATTEMPT:KEY`.
+//! The API for workers on other machines. A worker claims, renews and finishes jobs, and transfers their files. If the
+//! body is a file, the lease is in the header `Fosssim-Lease`, as `JOB:ATTEMPT:KEY`.
 use super::super::{
     download,
     input::{AddressParts, Body},
@@ -19,7 +19,7 @@ use axum::{
     response::{IntoResponse, Response},
 };
 
-/// Claims the next job; the answer is 204 if there is none.
+/// Claims the next job. If the queue is empty, the answer is 204.
 #[utoipa::path(post, path = "/api/v1/worker/claim", tag = "workers",
     responses((status = 200, body = ClaimedJob), (status = 204, description = "No job")))]
 pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
@@ -30,20 +30,20 @@ pub(super) async fn claim(remote: Remote) -> Result<Response, Problem> {
 }
 
 answers! { OK:
-    /// Reports that the worker is alive.
+    /// Reports that the worker is alive. The answer contains the server's settings for workers.
     post "/api/v1/worker/tick" "workers"
         tick(remote: Remote, alive: SignOfLife) -> Manners:
             remote.tick(alive.slots, alive.fault.as_deref(), &alive.version);
     /// Extends a lease, and reports the progress of the grading.
     post "/api/v1/worker/renew" "workers"
         renew(remote: Remote, renewal: Renewal) -> LeaseAnswer: remote.renew(&renewal.lease, renewal.progress);
-    /// Returns a job without counting a failure.
+    /// Gives a job back to the queue. This does not count as a failure.
     post "/api/v1/worker/release" "workers" release(remote: Remote, lease: Lease) -> LeaseAnswer:
         remote.release(&lease);
-    /// Reports that a try failed.
+    /// Reports that the worker failed to grade a job.
     post "/api/v1/worker/fail" "workers"
         fail(remote: Remote, fault: JobFault) -> LeaseAnswer: remote.fail(&fault.lease, &fault.fault);
-    /// Stores a result.
+    /// Stores the result of a job, and ends the job.
     post "/api/v1/worker/finish" "workers"
         finish(remote: Remote, result: FinishedJob) -> LeaseAnswer: remote.finish(&result.lease, &result.outcome);
 }
@@ -58,7 +58,7 @@ fn lease(headers: &HeaderMap) -> Result<Lease, Problem> {
     }
 }
 
-/// Returns a file of a job that the worker holds.
+/// Returns a file of a job that the worker holds. The file is named by its digest.
 #[utoipa::path(get, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("Fosssim-Lease" = String, Header)),
     responses((status = 200, description = "The file's bytes")))]
@@ -73,7 +73,7 @@ pub(super) async fn artifact(
     Ok((kind, download::whole_answer(opened, None)).into_response())
 }
 
-/// Stores a report of a job that the worker holds; its bytes must match the digest.
+/// Stores a report for a job that the worker holds. The bytes must match the digest in the address.
 #[utoipa::path(put, path = "/api/v1/worker/files/{digest}", tag = "workers",
     params(("Fosssim-Lease" = String, Header)),
     request_body(content = Vec<u8>, content_type = "application/octet-stream"),

@@ -1,4 +1,4 @@
-//! The home page with a person's courses, and the page with their tokens.
+//! The home page, which shows a person's courses, and the page of a person's account and tokens.
 use super::{
     super::{
         api::TokenName,
@@ -15,7 +15,8 @@ use crate::{
 use askama::Template;
 use axum::response::Redirect;
 
-/// The number of courses above which an administrator sees only the assignments of their own.
+/// The number of listed courses after which an administrator sees only the names of courses in which they are not a
+/// member.
 const MAX_COURSES: usize = 5;
 
 #[derive(Template)]
@@ -24,18 +25,18 @@ struct Home {
     frame: PageFrame,
     name: String,
     courses: Vec<HomeCourse>,
-    /// The courses that an administrator is not a member of.
+    /// Courses in which the administrator is not a member, which are listed without their assignments.
     others: Vec<Course>,
-    /// Whether the server has the page that checks traces.
+    /// Whether the server offers the page that checks traces.
     checks_traces: bool,
 }
 
-/// A course of the person.
+/// A course of the person on the home page.
 struct HomeCourse {
     member: Member,
-    /// The assignments that accept submissions.
+    /// The course's assignments that accept submissions at present.
     assignments: Vec<Row>,
-    /// The number of assignments that are not listed.
+    /// The number of the course's assignments that are not listed.
     rest: usize,
 }
 
@@ -77,7 +78,7 @@ pub(super) async fn account(person: Person) -> Page {
     page(&person, None).await
 }
 
-/// Creates a token, whose secret is shown only in this answer.
+/// Creates a token, and shows its secret. The secret cannot be shown again.
 pub(super) async fn new_token(person: Person, Fields(form): Fields<TokenName>) -> Page {
     let token = person.new_token(form.name.trim()).await?.token;
     page(&person, Some(token)).await

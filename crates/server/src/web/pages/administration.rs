@@ -1,4 +1,4 @@
-//! The pages of administrators, by subject.
+//! The pages for administrators, one per subject.
 use super::{
     super::{
         api::{CourseWish, WorkerTokenName},
@@ -17,7 +17,7 @@ use askama::Template;
 use axum::{http::Uri, response::Redirect};
 use serde::Deserialize;
 
-/// The subjects, each with the end of its address and its title.
+/// The subjects of the pages. Each has the end of its page's address, and its title.
 const SECTIONS: [(&str, &str); 5] = [
     ("", "Courses"),
     ("/people", "People"),
@@ -30,12 +30,12 @@ const SECTIONS: [(&str, &str); 5] = [
 #[template(path = "admin.html")]
 struct AdminPage<'a> {
     frame: PageFrame,
-    /// The shown subject.
+    /// The subject that this page shows.
     part: (&'static str, &'static str),
     courses: Vec<CourseSize>,
     accounts: Vec<Account>,
     look: People,
-    /// The address of the next page of accounts.
+    /// The address of the next page of accounts; `None` on the last page.
     after: Option<String>,
     workers: Vec<TokenInfo>,
     platforms: Vec<Platform>,
@@ -43,7 +43,7 @@ struct AdminPage<'a> {
     queue: Queue,
     events: Vec<Event>,
     query: EventQuery,
-    /// A person's link or a worker's token, which are shown once.
+    /// A new sign-in link or a new token for workers. It is shown only once.
     secret: Option<String>,
 }
 

@@ -1,4 +1,4 @@
-//! The comparison of two submissions to an assignment: the scenes in which they differ.
+//! The page that compares two submissions to an assignment, by the scenes in which they differ.
 use super::{
     super::input::{AddressParts, QueryInput},
     Page, PageFrame, grades, show, text,
@@ -12,7 +12,8 @@ use serde::Deserialize;
 use std::collections::{BTreeMap, BTreeSet};
 use url::form_urlencoded::byte_serialize;
 
-/// The other submission: its number on this server, or a student's login, which means the student's last submission.
+/// The submission to compare with. A number is the submission's number on this server. A login means this student's
+/// last submission.
 #[derive(Deserialize)]
 pub(super) struct OtherSubmission {
     #[serde(default)]
@@ -25,23 +26,23 @@ struct ComparisonPage {
     frame: PageFrame,
     slug: String,
     both: [Submission; 2],
-    /// The number of scenes on which they differ.
+    /// The number of scenes in which the submissions differ.
     count: usize,
     kinds: DifferingScenes,
 }
 
-/// The scenes that two results judge differently, by the codes of both verdicts.
+/// The scenes in which two results differ, grouped by the codes of both verdicts.
 type DifferingScenes = BTreeMap<[String; 2], Vec<String>>;
 
-/// Lists of at most this many scenes are shown unfolded.
+/// The maximum number of scenes in a list that is shown unfolded.
 const MAX_OPEN_SCENES: usize = 6;
 
-/// Returns the URL fragment of a scene in a report.
+/// Returns the fragment of a URL that leads to a scene in a report.
 fn scene_place(scene: &str) -> String {
     byte_serialize(scene.as_bytes()).collect()
 }
 
-/// Returns the scenes that two results judge differently.
+/// Returns the scenes on which two results have different verdicts.
 fn find_differing(one: &FailedScenes, other: &FailedScenes) -> DifferingScenes {
     let names: BTreeSet<&String> = one.keys().chain(other.keys()).collect();
     let code = |of: &FailedScenes, scene: &String| of.get(scene).map_or("AC", String::as_str).to_owned();

@@ -1,4 +1,4 @@
-//! The page that checks traces in a browser. It is a part of the grader and contains no personal data, so any visitor
+//! The page that checks traces in a browser. The grader provides it, and it contains no personal data, so any visitor
 //! may read it.
 use crate::{domain::App, problem::Problem};
 use axum::{
@@ -7,7 +7,7 @@ use axum::{
     response::{Html, IntoResponse, Response},
 };
 
-/// Returns the page with its own, stricter policy, which allows only its WebAssembly module.
+/// Returns the page. Its own policy is stricter than that of other pages: it allows only the page's WebAssembly module.
 pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
     let page = app.checker.clone().ok_or_else(|| Problem::not_found("page (the grader was built without it)"))?;
     let policy = find_policy(&page).and_then(|policy| HeaderValue::from_str(policy).ok());
@@ -19,7 +19,7 @@ pub(super) async fn page(State(app): State<App>) -> Result<Response, Problem> {
     Ok(answer)
 }
 
-/// Returns the policy in the head of a page.
+/// Returns the content security policy from the head of a page.
 fn find_policy(page: &str) -> Option<&str> {
     let (_, rest) = page.split_once("http-equiv=\"Content-Security-Policy\" content=\"")?;
     Some(rest.split_once('"')?.0)

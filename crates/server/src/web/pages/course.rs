@@ -1,4 +1,4 @@
-//! A course's pages: its assignments, members, queue and audit log.
+//! The pages of a course: its assignments, its members, its queue, and its audit log.
 use super::{
     super::input::{AddressParts, Fields, QueryInput, SeenEvent},
     Page, PageFrame, redirect_to, show, text,
@@ -22,20 +22,20 @@ struct CoursePage {
     frame: PageFrame,
     member: Member,
     assignments: Vec<Row>,
-    /// The sentences about the space for uploads.
+    /// Sentences about the space for uploads.
     kept: Vec<String>,
 }
 
-/// An assignment in the table of its course.
+/// An assignment as a row in its course's table.
 pub(super) struct Row {
     pub(super) assignment: Assignment,
     pub(super) work: OwnWork,
-    /// The state of the class, for staff.
+    /// The numbers about the class; `None` for students.
     pub(super) overview: Option<Overview>,
 }
 
 impl Row {
-    /// Returns whether submissions wait but no worker is connected; known to staff only.
+    /// Returns whether submissions wait although no worker is connected. For students it always returns false.
     pub(super) fn lacks_worker(&self) -> bool {
         self.overview.as_ref().is_some_and(|overview| overview.slots == 0)
     }
@@ -46,23 +46,23 @@ impl Row {
     }
 }
 
-/// A member's submissions to an assignment, and the remaining attempts.
+/// A student's submissions to an assignment, and what the student may still submit.
 pub(super) struct OwnWork {
-    /// The student's due date.
+    /// The student's due date, in milliseconds since 1970.
     pub(super) due: Option<i64>,
     /// Whether the due date has passed.
     pub(super) is_late: bool,
-    /// The delay of a submission now, and what it costs.
+    /// The delay that a submission would have now, and the points that it would cost.
     pub(super) delay: Option<Lateness>,
-    /// The time until which late uploads are taken.
+    /// The time until which late submissions are accepted, in milliseconds since 1970.
     pub(super) closes_at: Option<i64>,
     /// Whether no submissions are accepted, not even late ones.
     pub(super) is_over: bool,
-    /// The number of remaining submissions, if it is limited.
+    /// The number of submissions that the student may still make; `None` if it is not limited.
     pub(super) left: Option<usize>,
     /// All submissions of the student, newest first.
     pub(super) submissions: Vec<Submission>,
-    /// The submission with the most points; on a tie, the latest.
+    /// The student's submission with the most points; on a tie, the latest.
     pub(super) best: Option<Submission>,
 }
 
@@ -106,12 +106,13 @@ struct MembersPage {
     students: usize,
     staff: usize,
     look: People,
-    /// The address of the next page.
+    /// The address of the next page of members; `None` on the last page.
     after: Option<String>,
     platforms: Vec<String>,
-    /// The last event of the course that the page shows.
+    /// The number of the course's newest event when the page was made. Changes send it back, so that conflicts are
+    /// detected.
     seen: i64,
-    /// The person that was changed, and a sign-in link.
+    /// The login of the person whom the last request changed, and a sign-in link if one was created.
     done: Option<(String, Option<String>)>,
 }
 
@@ -144,7 +145,7 @@ pub(super) struct NewMember {
     seen: Option<i64>,
 }
 
-/// Returns the assignments of a course, in the form of its tables.
+/// Returns the assignments of a course as rows of its table.
 pub(super) async fn rows(member: &Member) -> Result<Vec<Row>, Problem> {
     let mut rows = Vec::new();
     for assignment in member.assignments().await? {
@@ -162,7 +163,7 @@ pub(super) async fn course(member: Member) -> Page {
     show(&CoursePage { frame, member, assignments, kept })
 }
 
-/// Creates a hidden assignment with a suite of the grader.
+/// Creates an assignment that students cannot see yet, with a suite of the grader.
 pub(super) async fn make_assignment(staff: &Staff, slug: &str, title: &str, suite: &str) -> Result<(), Problem> {
     if staff.assignments().await?.iter().any(|assignment| assignment.slug == slug) {
         return Err(Problem::conflict("an assignment with this name already exists", "give it another name"));
@@ -172,7 +173,8 @@ pub(super) async fn make_assignment(staff: &Staff, slug: &str, title: &str, suit
     staff.set_assignment(slug, change, settings).await.map(drop)
 }
 
-/// The filter of people: text in the login or name, a role in the course, and the login after which the page begins.
+/// The filter of a list of people: text in the login or name, and a role in the course. The page begins after the login
+/// `after`.
 #[derive(Default, Deserialize)]
 pub(super) struct People {
     #[serde(default)]
@@ -183,18 +185,18 @@ pub(super) struct People {
     pub(super) after: String,
 }
 
-/// The maximum number of members on a page.
+/// The number of members that a page shows.
 const PEOPLE_PER_PAGE: usize = 200;
 
 impl People {
-    /// Returns whether the filter includes a member.
+    /// Returns whether a member matches the filter.
     fn includes(&self, member: &MemberInfo) -> bool {
         let words = self.q.trim().to_lowercase();
         let has_words = member.login.contains(&words) || member.name.to_lowercase().contains(&words);
         has_words && (self.role.is_empty() || member.role == self.role) && member.login > self.after
     }
 
-    /// Returns the address of the page after the last of some logins, if there are more.
+    /// Returns the address of the next page, which begins after the login `last`; `None` on the last page.
     pub(super) fn next(&self, last: Option<&str>) -> Option<String> {
         let mut query = url::form_urlencoded::Serializer::for_suffix("?".to_owned(), 1);
         Some(query.append_pair("q", &self.q).append_pair("role", &self.role).append_pair("after", last?).finish())
@@ -204,13 +206,13 @@ impl People {
 async fn members_page(staff: &Staff, look: People, done: Option<(String, Option<String>)>) -> Page {
     let slug = staff.slug.clone();
     let frame = PageFrame::course(staff).with_parent(format!("/c/{slug}/members"), "Members");
-    // Read the event before the members, so that later changes are detected.
+    // Read the number of the newest event before the members, so that later changes are detected.
     let seen = staff.last_event().await?;
     let mut members = staff.members().await?;
     let staff_count = members.iter().filter(|member| member.role == "staff").count();
     let students = members.len() - staff_count;
     members.retain(|member| look.includes(member));
-    // The database may sort differently from this program.
+    // The database may sort logins differently from this program.
     members.sort_by(|one, other| one.login.cmp(&other.login));
     let has_more = members.len() > PEOPLE_PER_PAGE;
     members.truncate(PEOPLE_PER_PAGE);

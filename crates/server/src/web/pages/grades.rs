@@ -1,4 +1,4 @@
-//! The pages of the class and of regrades.
+//! The pages about a class's grades, and about regrades.
 use super::{
     super::input::{AddressParts, Fields, ListStart, QueryInput},
     Page, PageFrame, redirect_to, scenes,
@@ -16,7 +16,7 @@ use axum::response::Redirect;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
-/// Renders rows of scenes; the page that `grade` writes uses the same code.
+/// The rows of small colored scenes. Reports of `grade` contain the same code.
 #[path = "../../../../report/src/page/heat.rs"]
 mod heat;
 
@@ -28,7 +28,7 @@ struct GradesPage {
     assignment: Assignment,
     standings: Vec<Standing>,
     look: GradesQuery,
-    /// The number of students that match the filter.
+    /// The number of students who match the filter.
     found: usize,
     before: Option<String>,
     after: Option<String>,
@@ -36,12 +36,12 @@ struct GradesPage {
     scores: Vec<ScoreInfo>,
     requests: Vec<crate::domain::Request>,
     statistics: Statistics,
-    /// The stored texts of the results that count, by the results' numbers.
+    /// The details that are stored with the results that count, by the numbers of the results.
     kept: BTreeMap<i64, KeptResult>,
-    /// The wrong scenes of students on the page, each with these students.
+    /// The wrong scenes of the students on the page. Each has the logins of the students for whom it is wrong.
     scenes: Vec<(String, Vec<String>)>,
     suites: Vec<SuiteOption>,
-    /// Whether students see less than staff before the publication.
+    /// Whether the assignment has hidden groups, so that students see less than staff until these are published.
     hides: bool,
 }
 
@@ -57,24 +57,25 @@ struct RegradePage {
 /// The maximum number of students on a page.
 const PAGE_SIZE: usize = 100;
 
-/// The filter of students, their order, and the page.
+/// The filter and the order of the students, and the number of the page.
 #[derive(Deserialize)]
 pub(super) struct GradesQuery {
     #[serde(default)]
     q: String,
     #[serde(default)]
     sort: String,
-    /// The selected part of the class.
+    /// The category of students that the page shows, such as `missing`; empty for all students.
     #[serde(default)]
     part: String,
-    /// A likely mistake, by which students are selected.
+    /// A likely mistake. The page shows only students who made it.
     #[serde(default)]
     mistake: String,
     page: Option<usize>,
 }
 
 impl GradesQuery {
-    /// Returns the students on the page, their number on all pages, and the addresses of the pages before and after.
+    /// Returns the students on this page, the number of students on all pages, and the addresses of the previous and
+    /// the next page.
     fn page_of_students(&self, standings: &[ShortStanding]) -> (Vec<ShortStanding>, usize, [Option<String>; 2]) {
         let words = self.q.trim().to_lowercase();
         let made = |one: &ShortStanding| one.counts.as_ref().and_then(statistics::mistake) == Some(&*self.mistake);
@@ -92,7 +93,7 @@ impl GradesQuery {
             "name" => standings.sort_by_cached_key(|one| one.name.to_lowercase()),
             "points" => standings.sort_by(|one, other| points(other).total_cmp(&points(one))),
             "submissions" => standings.sort_by_key(|one| std::cmp::Reverse(one.submissions)),
-            // The students are sorted by their logins.
+            // The students are already sorted by login.
             _ => {}
         }
         let found = standings.len();
@@ -116,7 +117,7 @@ pub(super) struct NewRegrade {
     grading: Grading,
 }
 
-/// Returns the frame for the pages of the class.
+/// Returns the frame for pages about the class's grades.
 pub(super) fn class_frame(staff: &Staff, assignment: &Assignment) -> PageFrame {
     let frame = PageFrame::assignment(staff, assignment);
     frame.with_parent(format!("/c/{}/a/{}/class", staff.slug, assignment.slug), "Class")

@@ -1,7 +1,8 @@
-//! The pages. They work without JavaScript; with it, the state of a submission is updated, and files can be dropped.
+//! The pages for browsers. They work without JavaScript. With it, the state of a submission is updated, and files can
+//! be dropped onto the page.
 
-/// Declares handlers that perform an action and redirect to a page, one per row: name, role, parts of the address, and
-/// form; the action, and the next page.
+/// Declares handlers that perform an action and then redirect to a page, one per row. A row has the name, the role, the
+/// parts of the address and the form; then the action; and last the next page.
 macro_rules! deeds {
     ($($(#[doc = $doc:literal])*
         $name:ident($who:ident: $role:ty $(, { $($at:ident),* })? $(, $form:ident: $fields:ty)?):
@@ -50,10 +51,10 @@ use axum::{
 };
 use url::{Url, form_urlencoded::byte_serialize};
 
-/// Builds a router, and the list of its pages.
+/// Builds the router for pages, and the list of all pages.
 macro_rules! pages {
     ($($method:ident $path:literal => $handler:path,)*) => {
-        /// Every page: method and path.
+        /// The method and the path of every page.
         pub const PAGES: &[(&str, &str)] = &[$((stringify!($method), $path)),*];
 
         pub(super) fn router() -> Router<App> {
@@ -141,7 +142,7 @@ pages! {
 }
 
 async fn style() -> Response {
-    // Reports and pages share a style sheet, which is followed by rules for pages only.
+    // Pages use the style sheet of reports, followed by rules for pages only.
     constant(
         "text/css; charset=utf-8",
         concat!(
@@ -152,7 +153,7 @@ async fn style() -> Response {
     )
 }
 
-/// Returns the script that reports use.
+/// Returns the script of reports, for reports that are shown on pages.
 async fn viewer() -> Response {
     constant("text/javascript; charset=utf-8", include!("../../../../report/src/page/viewer/viewer.in"))
 }
@@ -165,17 +166,17 @@ fn constant(kind: &'static str, text: &'static str) -> Response {
     ([(header::CONTENT_TYPE, kind), (header::CACHE_CONTROL, "max-age=300")], text).into_response()
 }
 
-/// The frame of every page; the default is that of a visitor.
+/// The parts that every page has around its content. The default is the frame for a visitor.
 #[derive(Default)]
 pub(super) struct PageFrame {
     /// The login of the person who is signed in.
     login: Option<String>,
     is_admin: bool,
-    /// The addresses and titles of the pages above this one.
+    /// The pages above this one in the hierarchy, by address and title.
     way: Vec<(String, String)>,
-    /// The addresses and titles of the related pages.
+    /// The pages about the same subject, by address and title.
     tabs: Vec<(String, &'static str)>,
-    /// The address of this page among the related ones.
+    /// The address of the shown page among `tabs`.
     tab: String,
 }
 
@@ -202,13 +203,14 @@ impl PageFrame {
         }
     }
 
-    /// Adds the related pages of the thing at an address, by the ends of their addresses.
+    /// Adds the pages about the same subject. `place` is the beginning of their addresses, and `pages` has the rest of
+    /// each address and the title.
     fn with_pages(mut self, place: &str, pages: &[(&str, &'static str)]) -> Self {
         self.tabs = pages.iter().map(|(end, title)| (format!("{place}{end}"), *title)).collect();
         self
     }
 
-    /// Returns the frame for a related page, or for a page below.
+    /// Returns the frame with another page above this one.
     fn with_parent(mut self, address: String, title: &str) -> Self {
         if self.tabs.iter().any(|(tab, _)| *tab == address) {
             self.tab = address;
@@ -219,10 +221,10 @@ impl PageFrame {
     }
 }
 
-/// A page, or the reason why there is none.
+/// A page as HTML, or the reason why it cannot be shown.
 type Page = Result<Html<String>, Problem>;
 
-/// Returns a page from its template.
+/// Renders a template.
 fn show(template: &impl Template) -> Page {
     template.render().map(Html).map_err(|error| {
         tracing::error!(%error, "a page could not be rendered");
@@ -230,7 +232,7 @@ fn show(template: &impl Template) -> Page {
     })
 }
 
-/// Redirects after a form was sent, to a page that can be reloaded.
+/// Redirects to a page after a form was sent. That page can be reloaded without sending the form again.
 fn redirect_to(address: &str) -> Redirect {
     Redirect::to(address)
 }
@@ -240,18 +242,18 @@ fn redirect_to(address: &str) -> Redirect {
 struct ProblemPage {
     frame: PageFrame,
     problem: Problem,
-    /// The path of the page with the link or the form that led here.
+    /// The path of the page from which the request came.
     back: Option<String>,
 }
 
-/// Turns rejections into pages, and shows the sign-in page to requests that are not signed in.
+/// Turns rejections of pages into pages. A person who is not signed in gets the sign-in page.
 pub(super) async fn show_problems(State(app): State<App>, request: Request, next: Next) -> Response {
     let (head, body) = request.into_parts();
     let kept = head.clone();
     as_page(next.run(Request::from_parts(head, body)).await, kept, &app).await
 }
 
-/// Turns rejections outside of pages into pages, for browsers.
+/// Turns rejections of other addresses into pages if the request comes from a browser.
 pub(super) async fn show_others(State(app): State<App>, request: Request, next: Next) -> Response {
     let accepted = request.headers().get(header::ACCEPT).and_then(|value| value.to_str().ok());
     let is_browser = accepted.is_some_and(|accepted| accepted.contains("text/html"));
@@ -271,7 +273,8 @@ pub(super) async fn wrong_method(method: Method) -> Problem {
     Problem::wrong_method(method.as_str())
 }
 
-/// Returns the frame of a rejected request: that of its assignment or course, if the person may see it.
+/// Returns the frame for a rejected request. It is the frame of the assignment or course in the address, if the person
+/// may see that.
 async fn find_frame(head: &mut Parts, app: &App) -> Option<PageFrame> {
     let person = Person::from_request_parts(head, app).await.ok()?;
     let frame = PageFrame::for_account(&person.account);
@@ -281,8 +284,8 @@ async fn find_frame(head: &mut Parts, app: &App) -> Option<PageFrame> {
     Some(assignment.map_or_else(|_| PageFrame::course(&member), |found| PageFrame::assignment(&member, &found)))
 }
 
-/// Returns a rejection as a page; other answers do not change. A person who must sign in first is redirected to the
-/// page afterwards.
+/// Returns a rejection as a page; other answers do not change. A person who is not signed in is redirected to the
+/// sign-in page, and from there back to the page.
 async fn as_page(mut response: Response, mut head: Parts, app: &App) -> Response {
     let Some(problem) = response.extensions_mut().remove::<Problem>() else { return response };
     let status = problem.status();
@@ -292,10 +295,10 @@ async fn as_page(mut response: Response, mut head: Parts, app: &App) -> Response
         let address = if to == "/" { "/sign-in".to_owned() } else { format!("/sign-in?to={query}") };
         return redirect_to(&address).into_response();
     }
-    // The browser names only pages of this server.
+    // Use the address in this header only if it is a page of this server.
     let from = head.headers.get(header::REFERER).and_then(|from| Url::parse(from.to_str().ok()?).ok());
     let back = from.map(|from| sign_in::local_path(&from[url::Position::BeforePath..]).to_owned());
-    // A server that fails is not asked for more.
+    // If the server fails, the error page reads nothing from the database.
     let frame = if status.is_server_error() { None } else { find_frame(&mut head, app).await };
     match show(&ProblemPage { frame: frame.unwrap_or_default(), problem, back }) {
         Ok(page) => {

@@ -1,4 +1,4 @@
-//! The pages for launches from a learning platform.
+//! The pages for people who come from a learning platform.
 use super::{
     super::{
         input::{AddressParts, Fields},
@@ -75,7 +75,7 @@ pub(super) struct CourseChoice {
 pub(super) struct AssignmentChoice {
     #[serde(default)]
     assignment: String,
-    /// A new assignment's title; empty to choose an existing one.
+    /// The title of a new assignment; empty if an existing assignment was chosen.
     #[serde(default)]
     title: String,
     #[serde(default)]
@@ -90,9 +90,9 @@ pub(super) struct NewPlatform {
     fields: BTreeMap<String, String>,
 }
 
-/// Returns the cookie with the browser's secret during a launch from a platform. Other sites must be able to make the
-/// browser send it, because the platform's answer is sent that way. In a frame, many browsers isolate or drop the
-/// cookie, so sign-ins do not work there.
+/// Returns the cookie with the browser's secret during a sign-in from a platform. Browsers must send it with requests
+/// from other sites, because the platform's answer is such a request. In a frame, many browsers isolate or drop the
+/// cookie, so people cannot sign in there.
 fn browser_word(app: &App, word: &str) -> String {
     let secure = app.is_secure();
     let rest = if secure { "SameSite=None; Secure; Partitioned" } else { "SameSite=Lax" };
@@ -127,7 +127,7 @@ pub(super) async fn login(
         for (name, value) in fields {
             value.map(|value| query.append_pair(name, &value));
         }
-        // The page uses a link instead of a form, because the content security policy would block a form that redirects
+        // The page uses a link instead of a form, because its content security policy would block a form that redirects
         // to the platform.
         let address = format!("/lti/login?{}", query.finish());
         let page = show(&WindowPage { frame: PageFrame::default(), address })?.into_response();
@@ -148,13 +148,13 @@ pub(super) async fn launch(visitor: Visitor, Fields(answer): Fields<sign_in::Ans
     Ok(sign_in::start_session(&visitor.app, &launched.session, &launched.to))
 }
 
-/// Returns the service's public keys, at the address that platforms read.
+/// Returns the service's public keys. Platforms read them at this address.
 pub(super) async fn keys(State(app): State<App>) -> Result<Response, Problem> {
     let keys = app.platform_keys().await?;
     Ok(([(header::CACHE_CONTROL, "public, max-age=300")], Json(keys)).into_response())
 }
 
-/// Returns the configuration whose address an administrator enters in Canvas.
+/// Returns the configuration for Canvas. An administrator enters the address of this answer there.
 pub(super) async fn configuration(State(app): State<App>) -> Json<Value> {
     let public = &app.public;
     let launch = app.launch_address();
@@ -232,7 +232,7 @@ impl NewPlatform {
     }
 }
 
-/// Shows first who would join and leave.
+/// Shows who would join and who would leave, before members are changed.
 pub(super) async fn read_roster(staff: Staff, Fields(form): Fields<RosterForm>) -> Page {
     let is_done = form.confirm.is_some();
     let read = staff.read_roster(if is_done { RosterWish::Confirmed } else { RosterWish::Preview }).await?;

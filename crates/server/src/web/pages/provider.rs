@@ -13,8 +13,8 @@ use axum::{
     response::{IntoResponse, Redirect, Response},
 };
 
-/// Redirects to the provider and sets a cookie that identifies the browser on return. The browser returns by opening a
-/// page, so `Lax` is sufficient.
+/// Redirects to the provider, and sets a cookie by which the browser is recognized when it returns. The browser then
+/// opens a page of this server, so a cookie with `SameSite=Lax` is sent.
 fn redirect(app: &App, begun: &LoginAnswer) -> Response {
     let secure = if app.is_secure() { "; Secure" } else { "" };
     let (name, word) = (provider_cookie(app.is_secure()), &begun.browser);
@@ -22,7 +22,7 @@ fn redirect(app: &App, begun: &LoginAnswer) -> Response {
     sign_in::with_cookie(&cookie, &begun.address)
 }
 
-/// Begins a sign-in. If the provider is unavailable, the sign-in page reports it and offers the other ways.
+/// Begins a sign-in. If the provider does not answer, the sign-in page says so and offers the other ways.
 pub(super) async fn begin(
     visitor: Visitor,
     QueryInput(NextPage { to }): QueryInput<NextPage>,

@@ -1,4 +1,4 @@
-//! The pages for permanent removal: forms that list the things to remove, and require a name as confirmation.
+//! The pages that remove something permanently. Their forms list what is removed, and require its name as confirmation.
 use super::{
     super::input::{AddressParts, Fields},
     redirect_to,
@@ -10,7 +10,7 @@ use crate::{
 use axum::response::Redirect;
 use serde::Deserialize;
 
-/// The form's confirmation: the name of the thing to remove.
+/// The name of what is removed, which a person typed as confirmation.
 #[derive(Deserialize)]
 pub(super) struct Confirmation {
     confirm: String,

@@ -1,14 +1,15 @@
-//! A report as a part of its submission's page. Output of untrusted programs is escaped in it. As a second protection,
-//! only this server's script can run, and a report with elements that send or load something is not shown.
+//! Shows a report as a part of its submission's page. The report contains output of untrusted programs, which is
+//! escaped. As a second protection, only this server's script can run, and a report with elements that send or load
+//! something is not shown.
 use crate::{domain::Member, problem::Problem, task::OutputFile};
 
-/// The maximum size of a report that is part of a page, in bytes; the grader's reports have at most three megabytes.
+/// The maximum size in bytes of a report that is shown on a page. The grader's reports have at most three megabytes.
 const MAX_REPORT_BYTES: u64 = 4 << 20;
 
 /// The elements that a report never has, because they send or load something.
 const FORBIDDEN_ELEMENTS: [&str; 7] = ["form", "iframe", "base", "meta", "link", "object", "embed"];
 
-/// Returns a report without its head; `None` if another version's grader wrote it, or it is too large.
+/// Returns a report without its head; `None` if it is too large, or if it has a form that this version does not know.
 pub(super) async fn read(member: &Member, file: &OutputFile) -> Result<Option<String>, Problem> {
     if file.artifact.size > MAX_REPORT_BYTES {
         return Ok(None);

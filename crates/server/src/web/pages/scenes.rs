@@ -1,11 +1,12 @@
-//! Tables and sentences about the wrong scenes of submissions.
+//! Tables of scenes, and sentences about the wrong scenes of submissions.
 use crate::domain::{AttemptChange, KeptResult, Standing};
 use std::{cmp::Reverse, collections::BTreeMap};
 
 /// The maximum number of scenes that a sentence names.
 const MAX_NAMED: usize = 3;
 
-/// Returns the wrong scenes in the results that count, each with its students, the most frequent first.
+/// Returns the wrong scenes of all results that count, the most frequent first. Each has the logins of the students for
+/// whom it is wrong.
 pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResult>) -> Vec<(String, Vec<String>)> {
     let mut logins: BTreeMap<&str, Vec<String>> = BTreeMap::new();
     for standing in standings {
@@ -19,7 +20,7 @@ pub(super) fn wrong_scenes(standings: &[Standing], kept: &BTreeMap<i64, KeptResu
     scenes
 }
 
-/// Describes the scenes that changed in an attempt.
+/// Describes the scenes that changed from one attempt to the next.
 pub(super) fn describe_change(change: &AttemptChange) -> String {
     let list = |scenes: &[String]| {
         let more = scenes.len().saturating_sub(MAX_NAMED);

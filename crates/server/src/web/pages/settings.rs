@@ -1,4 +1,4 @@
-//! The settings of an assignment as a form.
+//! The form with an assignment's settings.
 use super::{
     super::{
         api::{self, Revision},
@@ -15,7 +15,7 @@ use askama::Template;
 use axum::{extract::Request, response::Redirect};
 use serde::Deserialize;
 
-/// The prefix of an uploaded suite's value in the list of suites, followed by its digest.
+/// The beginning of the form value that means an uploaded suite. The suite's digest follows.
 const UPLOADED_PREFIX: &str = "(uploaded)";
 
 const MIB: f64 = 1_048_576.0;
@@ -30,10 +30,10 @@ struct SettingsPage {
     megabytes: f64,
 }
 
-/// A suite in a form: its value, its text, and whether it is selected.
+/// A suite in a list to choose from: the form value, the text, and whether it is selected.
 pub(super) type SuiteOption = (String, String, bool);
 
-/// Returns the suites to choose from: those that were uploaded to the course, and the grader's.
+/// Returns the suites from which staff can choose: the ones that were uploaded to the course, and the grader's.
 pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<SuiteOption>, Problem> {
     let mut suites = Vec::new();
     for UploadedSuite { digest, name, uploaded_at } in staff.suites().await? {
@@ -57,7 +57,7 @@ pub(super) async fn suites(staff: &Staff, settings: &Settings) -> Result<Vec<Sui
     Ok(suites)
 }
 
-/// The part of the form about grading.
+/// The fields of the form that concern grading.
 #[derive(Deserialize)]
 pub(super) struct Grading {
     suite: String,
@@ -72,7 +72,7 @@ fn parse<T: std::str::FromStr>(what: &str, text: &str) -> Result<T, Problem> {
 }
 
 impl Grading {
-    /// Returns the settings with the form's values.
+    /// Returns the settings `before`, with the values of this form.
     pub(super) fn apply_to(&self, before: &Settings) -> Result<Settings, Problem> {
         let chosen = |text: &str| Some(text.to_owned()).filter(|text| !text.is_empty());
         let (suite, suite_archive) = match self.suite.strip_prefix(UPLOADED_PREFIX) {
@@ -91,11 +91,11 @@ impl Grading {
     }
 }
 
-/// The part of the form about submitting.
+/// The fields of the form that concern submitting.
 #[derive(Deserialize)]
 pub(super) struct NewSettings {
     title: String,
-    /// The revision that the page showed.
+    /// The assignment's revision when the page was made.
     #[serde(default)]
     revision: String,
     visible: Option<String>,
@@ -139,7 +139,7 @@ impl NewSettings {
     }
 }
 
-/// Returns the time in a date field. If it is in the same minute as `before`, that exact time is kept.
+/// Reads the time in a date field. If it is in the same minute as `before`, the exact time of `before` is kept.
 pub(super) fn moment(field: &str, zone: &str, before: Option<i64>) -> Result<Option<i64>, Problem> {
     if field.trim().is_empty() {
         return Ok(None);
@@ -165,10 +165,10 @@ pub(super) async fn set(
     AddressParts { course: slug, assignment, .. }: AddressParts,
     Fields(form): Fields<NewSettings>,
 ) -> Result<Redirect, Problem> {
-    // This form only changes existing assignments, so that a typing error in an address does not create one.
+    // This form changes only existing assignments, so that a mistyped address does not create one.
     let assignment = staff.assignment(&assignment).await?;
     let (title, visible) = (Some(form.title.trim()), Some(form.visible.is_some()));
-    // A form of an earlier version sends no revision; it is accepted.
+    // The form of an earlier server version sends no revision, and is accepted without a check.
     let revision = Some(form.revision.parse().unwrap_or(-1));
     let change = AssignmentChange { title, visible, revision, suite: None };
     staff.set_assignment(&assignment.slug, change, |before| form.apply_to(before)).await?;

@@ -22,11 +22,11 @@ use url::form_urlencoded::byte_serialize;
 #[template(path = "sign_in.html")]
 struct SignIn {
     frame: PageFrame,
-    /// The provider's name, and the address at which a sign-in begins.
+    /// The provider's name, and the address at which a sign-in at the provider begins.
     provider: Option<(String, String)>,
     /// The reason why the provider cannot be used at present.
     fault: String,
-    /// The path of the next page.
+    /// The path of the page that opens after the sign-in.
     to: String,
 }
 
@@ -34,7 +34,7 @@ struct SignIn {
 #[template(path = "welcome.html")]
 struct Welcome {
     frame: PageFrame,
-    /// The name and the courses of the link's owner; `None` if the link can't be used.
+    /// The name and the courses of the link's owner; `None` if the link can no longer be used.
     owner: Option<(String, Option<String>)>,
 }
 
@@ -45,30 +45,31 @@ pub(super) struct Token {
     to: String,
 }
 
-/// The page that a person requested before signing in.
+/// The page that a person requested before they signed in.
 #[derive(Deserialize)]
 pub(super) struct NextPage {
     #[serde(default)]
     pub(super) to: String,
 }
 
-/// Returns a path on this server; the home page if the text is not one. Browsers read `//` and `/\` as another host.
+/// Returns a path on this server. If the text is anything else, the path of the home page is returned. Browsers read
+/// `//` and `/\` as the start of another host's name.
 pub(super) fn local_path(to: &str) -> &str {
     let is_local =
         to.starts_with('/') && !to.starts_with("//") && to.bytes().all(|c| c.is_ascii_graphic() && c != b'\\');
     if is_local { to } else { "/" }
 }
 
-/// Returns an answer with a new session's cookie and a redirection.
+/// Returns a redirection that sets the cookie of a new session.
 pub(super) fn start_session(app: &App, session: &NewSecret, to: &str) -> Response {
     with_cookie(&session_cookie(app, session.reveal(), SESSION_SECONDS), to)
 }
 
-/// The parameters of another service's answer to a sign-in.
+/// The parameters with which another service answers a sign-in.
 #[derive(Deserialize)]
 pub(super) struct Answer {
     state: Option<String>,
-    /// The code of a provider, or the token of a learning platform.
+    /// The provider's code, or the learning platform's token.
     #[serde(alias = "id_token")]
     code: Option<String>,
     error: Option<String>,
@@ -76,7 +77,8 @@ pub(super) struct Answer {
 }
 
 impl Answer {
-    /// Returns the state and the code, or the rejection with the service's error as one short line.
+    /// Returns the state and the code. If the service reports an error instead, the rejection contains it, shortened to
+    /// one line.
     pub(super) fn read(self, service: &str, refused: fn(String) -> Problem) -> Result<(String, String), Problem> {
         if let (Some(state), Some(code)) = (self.state, self.code) {
             return Ok((state, code));
@@ -101,7 +103,7 @@ pub(super) fn with_cookie(cookie: &str, to: &str) -> Response {
     response
 }
 
-/// Returns the page with the ways to sign in.
+/// Returns the page that lists the ways to sign in.
 pub(super) fn render_ways(visitor: &Visitor, to: String, fault: String) -> Page {
     let query = byte_serialize(to.as_bytes()).collect::<String>();
     let known = visitor.app.provider.as_ref();
@@ -118,7 +120,7 @@ pub(super) async fn by_token(visitor: Visitor, Fields(form): Fields<Token>) -> R
     Ok(start_session(&visitor.app, &session, local_path(&form.to)))
 }
 
-/// Shows the page of a sign-in link. Opening the link does not sign in, because mail programs open links, too.
+/// Shows the page of a sign-in link. Opening the link does not sign in yet, because mail programs also open links.
 pub(super) async fn welcome(visitor: Visitor, AddressParts { secret, .. }: AddressParts) -> Page {
     show(&Welcome { frame: PageFrame::default(), owner: visitor.link_owner(&secret).await? })
 }

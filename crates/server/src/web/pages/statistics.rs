@@ -1,18 +1,18 @@
-//! Statistics of a class's results, and the students in each part of the class.
+//! Statistics of a class's results, and the categories of students.
 use crate::{
     domain::{CountedSubmission, ShortStanding},
     task::round_points,
 };
 use std::{cmp::Reverse, collections::BTreeMap};
 
-/// Renders the histogram; the page that `grade` writes uses the same code.
+/// The histogram of points. Reports of `grade` contain the same code.
 #[path = "../../../../report/src/page/histogram.rs"]
 mod histogram;
 
-/// The codes of verdicts without any run: the submission was unusable, or was not built.
+/// The codes of verdicts for submissions that were never run, because they were unusable or could not be built.
 const NEVER_RAN: [&str; 2] = ["US", "CE"];
 
-/// The parts of a class to choose from, each with its name and its text.
+/// The categories of students from which staff can choose. Each has its name and its text.
 pub(super) const SECTIONS: [(&str, &str); 6] = [
     ("accepted", "accepted"),
     ("wrong", "not accepted"),
@@ -22,7 +22,7 @@ pub(super) const SECTIONS: [(&str, &str); 6] = [
     ("missing", "nothing handed in"),
 ];
 
-/// Returns whether a student is in a part of the class; an empty name means the whole class.
+/// Returns whether a student is in a category. All students are in the category with the empty name.
 pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
     let counts = standing.counts.as_ref();
     let code = counts.and_then(|counts| counts.code.as_deref());
@@ -37,26 +37,27 @@ pub(super) fn is_in(standing: &ShortStanding, part: &str) -> bool {
     }
 }
 
-/// Returns the likely mistake from the one-line summary of a submission.
+/// Returns the likely mistake that a submission's one-line summary names.
 pub(super) fn mistake(counts: &CountedSubmission) -> Option<&str> {
     counts.summary.split_once("; ").map(|(_, mistake)| mistake)
 }
 
-/// Students with something in common: its name, their logins, and the number of a submission as an example.
+/// Students who have something in common: what it is, their logins, and the number of a submission as an example.
 pub(super) type SharedBy = (String, Vec<String>, i64);
 
 /// The statistics of a class's results.
 pub(super) struct Statistics {
     pub(super) students: usize,
-    /// The number of students in each of the [`SECTIONS`], with the part's name and text.
+    /// The number of students in each of the [`SECTIONS`], with the category's name and text.
     pub(super) parts: Vec<(&'static str, &'static str, usize)>,
-    /// The mean and the median of the points of all submissions that were run, in percent; `None` if none was run.
+    /// The mean and the median of the points in percent, over all submissions that were run; `None` if no submission
+    /// was run.
     pub(super) points: Option<(String, String)>,
-    /// The histogram of the points, as HTML.
+    /// The histogram of points, as HTML.
     pub(super) bars: String,
     /// The likely mistakes of students, the most frequent first.
     pub(super) mistakes: Vec<SharedBy>,
-    /// Identical files that several students submitted.
+    /// The files that several students submitted unchanged.
     pub(super) same: Vec<SharedBy>,
 }
 
@@ -82,20 +83,20 @@ impl Statistics {
         }
     }
 
-    /// Returns the number of students in a part of the class.
+    /// Returns the number of students in a category such as `missing` or `accepted`.
     pub(super) fn count(&self, part: &str) -> usize {
         self.parts.iter().find(|(name, ..)| *name == part).map_or(0, |(.., count)| *count)
     }
 }
 
-/// Returns a submission's share of the points, in percent.
+/// Returns the points of a submission in percent of the maximum.
 fn points_share(counts: &CountedSubmission) -> Option<f64> {
     let number = |text: &Option<String>| text.as_ref()?.parse::<f64>().ok();
     let (points, most) = (number(&counts.points)?, number(&counts.max_points)?);
     (most > 0.0).then(|| (100.0 * points / most).clamp(0.0, 100.0))
 }
 
-/// Groups students by the value that `of` returns; the largest groups come first.
+/// Groups students by the value that `of` returns for their submissions. The largest groups are first.
 fn find_shared(standings: &[ShortStanding], of: impl Fn(&CountedSubmission) -> Option<&str>) -> Vec<SharedBy> {
     let mut found: BTreeMap<&str, (Vec<String>, i64)> = BTreeMap::new();
     for standing in standings {

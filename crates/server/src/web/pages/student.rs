@@ -1,4 +1,4 @@
-//! The page for staff about one student's work, and the import of a class from a table.
+//! The page for staff about one student's work, and the pages for importing a class from a table.
 use super::{
     super::{
         api::{RequestWish, escape_cell},
@@ -26,9 +26,10 @@ struct StudentPage {
     slug: String,
     assignment: Assignment,
     work: StudentHistory,
-    /// The changes between attempts, by the number of the later submission.
+    /// Sentences about the changes between attempts, by the number of the later submission.
     changes: BTreeMap<i64, String>,
-    /// The last event of the course that the page shows.
+    /// The number of the course's newest event when the page was made. Changes send it back, so that conflicts are
+    /// detected.
     seen: i64,
 }
 
@@ -39,13 +40,14 @@ struct ImportPage {
     slug: String,
     table: String,
     lines: Vec<ImportRow>,
-    /// The columns of the table whose values are not stored.
+    /// The columns in the table whose values are not stored.
     left_out: BTreeSet<String>,
     is_wrong: bool,
     is_done: bool,
-    /// A table of all links, as a `data:` URL for downloading.
+    /// A table of all sign-in links, as a `data:` URL that the browser can save.
     download: String,
-    /// The last event of the course that the page shows.
+    /// The number of the course's newest event when the page was made. Changes send it back, so that conflicts are
+    /// detected.
     seen: i64,
 }
 
@@ -55,13 +57,13 @@ impl ImportPage {
     }
 }
 
-/// A row of the imported table, with the sign-in link.
+/// A row of an imported table, with the sign-in link if one was created.
 struct ImportRow {
     member: MemberLine,
-    /// The change to the course: `new`, `other role` or `unchanged`.
+    /// The change that the import makes for this person: `new`, `other role` or `unchanged`.
     change: &'static str,
     link: String,
-    /// A message with the link, as a `mailto:` URL.
+    /// A mail message that contains the sign-in link, as a `mailto:` URL.
     letter: String,
 }
 
@@ -79,7 +81,7 @@ pub(super) struct NewMark {
     points: String,
     #[serde(default)]
     comment: String,
-    /// The time of the mark that the page showed.
+    /// The time of the mark when the page was made. The form sends it back, so that conflicts are detected.
     marked_at: Option<String>,
 }
 
@@ -92,7 +94,7 @@ pub(super) struct ImportedTable {
 
 pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, login, .. }: AddressParts) -> Page {
     let assignment = staff.assignment(&assignment).await?;
-    // Read the last event before the submissions, so that later changes are detected.
+    // Read the number of the newest event before the submissions, so that later changes are detected.
     let seen = staff.last_event().await?;
     let work = staff.student_history(&assignment.slug, &login).await?;
     let address = format!("/c/{slug}/a/{}/students/{login}", assignment.slug);
@@ -102,8 +104,8 @@ pub(super) async fn page(staff: Staff, AddressParts { course: slug, assignment, 
     show(&StudentPage { frame, slug, assignment, work, changes, seen })
 }
 
-/// Reads points; a number with a decimal comma such as `7,5` gets a point. Three digits after a comma may be thousands,
-/// so they are not converted. `None` if the field is empty.
+/// Reads points from a form field; `None` if the field is empty. A decimal comma, as in `7,5`, is read as a decimal
+/// point. Three digits after a comma may be thousands, so such a number is left as it is.
 fn read_points(field: &str) -> Option<String> {
     match field.split_once(',') {
         Some((whole, part)) if (1..=2).contains(&part.len()) => Some(format!("{whole}.{part}")),
@@ -130,7 +132,7 @@ async fn import_page(staff: &Staff, table: String, lines: Vec<ImportRow>, is_don
     show(&ImportPage { frame, slug, table, lines, left_out, is_wrong, is_done: is_done && !is_wrong, download, seen })
 }
 
-/// Encodes bytes for a URL.
+/// Encodes bytes for a URL, with percent signs.
 fn percent_encode(bytes: &[u8]) -> String {
     byte_serialize(bytes).collect::<String>().replace('+', "%20")
 }
@@ -155,7 +157,7 @@ pub(super) async fn import(staff: Staff) -> Page {
 /// The maximum size of a file with a table of members, in bytes.
 const MAX_TABLE_BYTES: u64 = 1 << 20;
 
-/// Reads a file with a table of members, and shows the changes that it would make.
+/// Reads a file with a table of members, and shows what importing it would change.
 pub(super) async fn import_file(staff: Staff, request: Request) -> Page {
     let received = upload::receive(&staff.app, request, MAX_TABLE_BYTES).await?;
     let table = String::from_utf8_lossy(&tokio::fs::read(&received.file).await?).into_owned();

@@ -1,4 +1,4 @@
-//! The page for submitting, and for the result.
+//! The page for submitting, and the page of a submission with its result.
 use super::{
     super::{api, input::AddressParts},
     Page, PageFrame,
@@ -31,17 +31,17 @@ struct SubmissionPage {
     member: Member,
     is_own: bool,
     submission: Submission,
-    /// The attempts that the owner has made and has left; `None` for other readers.
+    /// The owner's attempts and how many are left; `None` for other readers.
     work: Option<OwnWork>,
     is_moving: bool,
     history: Vec<History>,
-    /// The change since the preceding submission.
+    /// A sentence about what changed since the owner's preceding submission.
     change: Option<String>,
-    /// All submissions of the owner, oldest first.
+    /// All submissions of the owner to this assignment, oldest first.
     attempts: Vec<Submission>,
-    /// The name of the report on the page: the one for staff, if there is one.
+    /// The file name of the report that the page shows. Staff see their own report, if there is one.
     page: Option<&'static str>,
-    /// The report, if it can be part of the page.
+    /// The report as HTML, if the page can contain it.
     report: Option<String>,
 }
 
@@ -62,7 +62,7 @@ pub(super) async fn submit(
     Ok(redirect_to(&format!("/c/{slug}/s/{}", accepted.submission.id)))
 }
 
-/// Finds the assignment of a submission, if the member may see it.
+/// Finds the assignment of a submission; `None` if the member may not see it.
 async fn find_assignment(member: &Member, submission: &Submission) -> Result<Option<Assignment>, Problem> {
     Ok(member.assignments().await?.into_iter().find(|assignment| assignment.slug == submission.assignment))
 }
@@ -91,7 +91,7 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
         None => None,
     };
     let is_own = submission.login == member.account.login;
-    // Staff may have hidden the assignment since.
+    // Staff may have hidden the assignment after the student submitted.
     let work = match &assignment {
         Some(assignment) if is_own && !member.is_staff => Some(OwnWork::read(&member, assignment).await?),
         _ => None,
@@ -117,7 +117,7 @@ pub(super) async fn submission(member: Member, AddressParts { id, .. }: AddressP
     })
 }
 
-/// Returns the name of the report on a submission's page: the one for staff, if the reader may see it.
+/// Returns the file name of the report that a submission's page shows. Staff see their own report, if there is one.
 fn page_of(submission: &Submission) -> Option<&'static str> {
     let files = submission.grade.iter().flat_map(|grade| &grade.files);
     let names: Vec<&str> = files.map(|file| file.name.as_str()).collect();

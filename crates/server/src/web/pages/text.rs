@@ -1,4 +1,4 @@
-//! Values as text for people.
+//! Formats values as text or HTML for pages.
 pub(super) use crate::shown::verdict;
 use crate::{
     calendar,
@@ -7,18 +7,18 @@ use crate::{
     task::round_points,
 };
 
-/// Returns a time as HTML, in UTC; a script converts it to the reader's time zone.
+/// Formats a time as HTML. The text is in UTC, and a script converts it to the reader's time zone.
 pub(super) fn time(milliseconds: &i64) -> String {
     let (exact, minute) = (calendar::format_iso(*milliseconds), calendar::format_minute(*milliseconds));
     format!("<time datetime=\"{exact}\">{minute} UTC</time>")
 }
 
-/// Returns a time for a field of a form in UTC, such as `2026-11-22T08:45`.
+/// Formats a time in UTC for a form field, such as `2026-11-22T08:45`.
 pub(super) fn field(milliseconds: &Option<i64>) -> String {
     milliseconds.map(|at| calendar::format_minute(at).replace(' ', "T")).unwrap_or_default()
 }
 
-/// Returns the points and their maximum, with at most two decimals as in reports; a dash without points.
+/// Formats points and the maximum, with at most two decimals, as reports do. Without points, the text is a dash.
 pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     match (points, most) {
         (Some(points), Some(most)) => format!("{} of {}", round_points(points), round_points(most)),
@@ -27,14 +27,15 @@ pub(super) fn points(points: &Option<String>, most: &Option<String>) -> String {
     }
 }
 
-/// Returns the likely mistake in the summary of a submission, or the reason why it was not run, cut if it is long.
+/// Returns the likely mistake that a submission's summary names, or the reason why the submission was not run. Long
+/// texts are cut.
 pub(super) fn short_mistake(summary: &str) -> String {
     let mistake = summary.split_once("; ").map_or("", |(_, mistake)| mistake);
     let beginning: String = mistake.chars().take(110).collect();
     if beginning.len() < mistake.len() { beginning + "..." } else { beginning }
 }
 
-/// Returns a verdict and its points as text.
+/// Formats a verdict's code and the points.
 pub(super) fn result(code: &str, points: &Option<String>) -> String {
     let verdict = verdict(code);
     points.as_deref().map_or_else(|| verdict.to_owned(), |points| format!("{verdict}, {} points", round_points(points)))
@@ -49,7 +50,7 @@ pub(super) fn regrade(state: &RegradeState) -> &'static str {
     }
 }
 
-/// Describes a score for a learning platform.
+/// Describes a score that a learning platform receives.
 pub(super) fn score(score: &serde_json::Value) -> String {
     match (score["scoreGiven"].as_f64(), score["scoreMaximum"].as_f64()) {
         (Some(points), Some(most)) => format!("{} / {}", round_points(points), round_points(most)),
@@ -58,12 +59,12 @@ pub(super) fn score(score: &serde_json::Value) -> String {
     }
 }
 
-/// Returns the beginning of a digest.
+/// Returns the first digits of a digest.
 pub(super) fn short_digest(digest: &str) -> &str {
     digest.get(..12).unwrap_or(digest)
 }
 
-/// Returns the CSS class of the chip for a submission's state.
+/// Returns the CSS class for the label that shows a submission's state.
 pub(super) fn chip_class(submission: &Submission) -> &'static str {
     match (submission.state.as_str(), &submission.grade) {
         ("waiting" | "running", _) => "warn",
@@ -72,7 +73,7 @@ pub(super) fn chip_class(submission: &Submission) -> &'static str {
     }
 }
 
-/// Returns the text of the chip: the verdict, or the state of the submission before there is one.
+/// Returns the text of the label that shows a submission's state: the verdict, or the state before there is a verdict.
 pub(super) fn outcome(submission: &Submission) -> &str {
     match (submission.state.as_str(), &submission.grade) {
         ("waiting" | "running", _) | (_, None) => state(&submission.state),
@@ -80,18 +81,18 @@ pub(super) fn outcome(submission: &Submission) -> &str {
     }
 }
 
-/// Returns whether a submission is accepted.
+/// Returns whether there is a submission and it is accepted.
 pub(super) fn is_accepted(submission: &Option<Submission>) -> bool {
     submission.as_ref().is_some_and(|submission| chip_class(submission) == "good")
 }
 
-/// Returns a size in bytes, in a unit with few digits.
+/// Formats a number of bytes with a short unit, such as `1.5 MiB`.
 pub(super) fn size(bytes: &(impl Copy + TryInto<u64>)) -> String {
     problem::format_size((*bytes).try_into().unwrap_or(0))
 }
 
-/// Returns the grade's points; a dash if there are none. Points from staff are those of the whole grade, so the maximum
-/// of the shown groups is left out.
+/// Formats the points of a grade; a dash if there are no points. Points that staff set are points of the whole grade,
+/// so the maximum of the groups that the reader sees is left out.
 pub(super) fn grade_points(submission: &Submission) -> String {
     let by_hand = submission.mark.as_ref().and_then(|mark| mark.points.as_ref());
     if let (true, Some(by_hand)) = (submission.is_withheld, by_hand) {
@@ -100,7 +101,7 @@ pub(super) fn grade_points(submission: &Submission) -> String {
     submission.grade.as_ref().map_or_else(|| points(&None, &None), |grade| points(&grade.points, &grade.max_points))
 }
 
-/// Returns the state of a submission, as text.
+/// Describes the state of a submission, such as `waiting`.
 pub(super) fn state(state: &str) -> &'static str {
     match state {
         "waiting" => "waiting",
