@@ -1,12 +1,12 @@
 //! Annotations of GitHub Actions: workflow commands that show a title and a text next to a job.
 use crate::foreign::one_line;
 
-/// Returns one annotation: the level `error` or `warning`, its title and its text.
+/// Returns one annotation. The level is `error` or `warning`.
 pub(crate) fn render_annotation(level: &str, title: &str, words: &str) -> String {
     join_annotation(level, title, [words])
 }
 
-/// Returns one annotation with a text of several lines.
+/// Returns one annotation whose text has several lines.
 pub(crate) fn join_annotation<'a>(level: &str, title: &str, lines: impl IntoIterator<Item = &'a str>) -> String {
     let lines: Vec<String> = lines.into_iter().map(escape_data).collect();
     format!("::{level} title={}::{}\n", escape_property(title), lines.join("%0A"))

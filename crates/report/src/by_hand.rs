@@ -23,12 +23,12 @@ use fosssim_num::{
 };
 use std::collections::BTreeSet;
 
-/// Matrices with more rows are not printed.
+/// The maximum number of rows of a matrix that is printed.
 const MAX_ROWS: usize = 8;
 
-/// Renders a scene's first step, which has the number `step` in the original run: forces and integrator if there are
-/// forces, then passes and responses. If a pair is named, its detection is shown completely. `None` if the step has no
-/// result.
+/// Renders a scene's first step, which has the number `step` in the original run: the forces and the integrator if
+/// there are forces, then the detection passes and the responses. If a pair is named, its detection is shown
+/// completely. Returns `None` if the step has no result.
 #[must_use]
 pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) -> Option<String> {
     let mut walk = CollisionWalk::new(scene, pair);
@@ -38,7 +38,7 @@ pub fn first_step(scene: &Scene, pair: Option<(Pair, Option<Pass>)>, step: u32) 
     Some(before.unwrap_or_default() + &parts.join("\n"))
 }
 
-/// Renders the velocity and the position of each particle.
+/// Renders the velocity and the position of each particle as a table.
 fn render_states(state: &State) -> String {
     let rows = (0..state.positions.len() / 2).map(|particle| {
         let [v, x] = [&state.velocities, &state.positions].map(|values| format_vector(vector_at(values, particle)));
@@ -74,7 +74,7 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
     let (end, particles) = (simulation.state(), 0..scene.particles.len());
     let names = scene.forces.iter().map(|force| force.kind().element()).chain(["penalty"]);
     let mut parts: Vec<(&str, &Vec<f64>)> = names.zip(&all).collect();
-    // A force of the scene is shown even if it is zero.
+    // A force that the scene defines is shown even if it is zero. The penalty force is not.
     parts.retain(|(name, gradient)| *name != "penalty" || has_any(gradient));
     if parts.len() > 1 {
         parts.push(("together", &sum));
@@ -131,7 +131,7 @@ fn render_system(scene: &Scene, mut matrix: Vec<f64>, gradient: &[f64]) -> Strin
     text + &render_table(["particle", "b", "d"], rows)
 }
 
-/// The system matrix of the first solve of a step, column by column.
+/// The matrix of the first system that the integrator solves in a step, column by column.
 struct FirstSystem(Option<Vec<f64>>);
 
 impl StepController for FirstSystem {
@@ -140,7 +140,7 @@ impl StepController for FirstSystem {
     }
 }
 
-/// Renders the penalty force between each pair, if there is one.
+/// Renders the penalty force between each pair of bodies that are close enough; `None` if there is no such pair.
 fn render_penalty(scene: &Scene, x: &[f64]) -> Option<String> {
     let Collision::Penalty { stiffness, thickness, .. } = scene.collision else { return None };
     let mut rows = Vec::new();
@@ -162,7 +162,7 @@ fn render_penalty(scene: &Scene, x: &[f64]) -> Option<String> {
     (!rows.is_empty()).then(|| format!("{}  {rule}\n", render_table(heading, rows)))
 }
 
-/// Returns what a force adds to the gradient.
+/// Returns the formula of what a force adds to the gradient of the potential.
 const fn formula(force: &Force) -> &'static str {
     match force {
         Force::Spring { .. } => {
@@ -180,7 +180,7 @@ const fn formula(force: &Force) -> &'static str {
     }
 }
 
-/// Renders rows below a heading.
+/// Renders rows as a table below a heading.
 fn render_table<const COLUMNS: usize>(
     heading: [&str; COLUMNS],
     rows: impl IntoIterator<Item = [String; COLUMNS]>,

@@ -1,5 +1,5 @@
-//! The report on one detection call, as text and JSON: polynomials, zeros, intervals and decision
-//! (`schemas/detect.schema.json`).
+//! The report on one detection call, as text and as JSON (`schemas/detect.schema.json`). It contains the polynomials,
+//! their zeros, the intervals and the decision.
 mod overlap;
 
 pub use overlap::Overlap;
@@ -20,42 +20,42 @@ use fosssim_model::sim::{Decision, Pair, PairKind, PairMotion, Pass, PointMotion
 use fosssim_num::{interval::Interval, polynomial::Polynomial, written::WrittenNumbers};
 use serde::Serialize;
 
-/// The version of the report's shape.
+/// The version of the JSON document's form.
 pub const DETECT_SCHEMA: u32 = 1;
 
-/// The place in a scene's run at which a pair was examined.
+/// Where in the run of a scene a pair was examined.
 #[derive(Debug, Clone, Copy)]
 pub struct Place<'a> {
-    /// The scene's name, as typed.
+    /// The name of the scene, as the user typed it.
     pub scene: &'a str,
-    /// The trace's name, as typed; `None` for the reference's own run.
+    /// The name of the trace, as the user typed it; `None` for the reference's own run.
     pub trace: Option<&'a str>,
-    /// The step, from 1.
+    /// The number of the step, from 1.
     pub step: u32,
     /// The pair that is examined.
     pub pair: Pair,
-    /// The detection pass; `None` if the scene has no continuous-time detection.
+    /// The number of the detection pass in the step; `None` if the scene has no continuous-time detection.
     pub pass: Option<Pass>,
     /// The number of passes that the reference makes in this step.
     pub passes: usize,
-    /// The trace's log of the detection call.
+    /// What the trace logs about the detection call.
     pub logged: &'a CallLog,
 }
 
-/// A function that formats numbers: exactly, or as in a calculation by hand.
+/// A function that formats numbers, either with all digits or as in a calculation by hand.
 pub(crate) type ShownNumber = fn(f64) -> String;
 
-/// The content of a report on a detection call.
+/// A detection call, as the report shows it.
 #[derive(Debug, Clone, Copy)]
 pub struct Detect<'a> {
-    /// The reference's study of the pair.
+    /// The reference's computation for the pair.
     pub study: &'a Study,
-    /// The place in a scene's run at which the pair was examined; `None` if its numbers were typed.
+    /// Where in the run of a scene the pair was examined; `None` if the user typed the numbers.
     pub place: Option<Place<'a>>,
 }
 
 impl Detect<'_> {
-    /// Returns the subject of the report in one line.
+    /// Returns one line that says what the report is about.
     #[must_use]
     pub fn title(&self) -> String {
         let Some(place) = &self.place else {
@@ -68,7 +68,7 @@ impl Detect<'_> {
         title(place.pair, place.step, place.trace, place.scene)
     }
 
-    /// Returns the decision as a sentence; `number` formats its numbers.
+    /// Returns the decision as a sentence. `number` formats the numbers in it.
     #[must_use]
     pub fn decision(&self, number: impl Fn(f64) -> String) -> String {
         let answer = &self.study.answer;
@@ -104,7 +104,7 @@ impl Detect<'_> {
         text + &render_motion(&study.motion, format_exact, style) + &self.computation(format_exact, style)
     }
 
-    /// Renders the reference's and the trace's polynomials and the decision; `number` formats numbers.
+    /// Renders the polynomials of the reference and of the trace, and the decision. `number` formats numbers.
     pub(crate) fn computation(&self, number: ShownNumber, style: Style) -> String {
         let study = self.study;
         let mut text = format!(
@@ -128,7 +128,7 @@ impl Detect<'_> {
                 CallLog::These(logged) => {
                     for (number, (curve, own)) in study.curves.iter().zip(logged).enumerate() {
                         let expected = curve.logged.coefficients();
-                        // The lists may differ in length, because the course's library drops small leading
+                        // The lists may have different lengths, because the course's library drops small leading
                         // coefficients.
                         text += &if expected.len() != own.len() && study.is_right(number, own) {
                             let mark = "right except for a factor and small leading coefficients, which are allowed";
@@ -196,8 +196,8 @@ fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
     format!("{}{rest} in step {step} of {run}, scene {scene}", first.to_uppercase())
 }
 
-/// Returns a polynomial of the trace. If it differs from the right one by more than a factor, both are listed power by
-/// power.
+/// Describes a polynomial of the trace. If it differs from the right one by more than a factor, both are listed power
+/// by power.
 fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) -> String {
     if own.is_empty() && !expected.is_empty() {
         return format!("  {role}: {}\n", style.paint(Look::Bad, "missing"));
@@ -236,7 +236,7 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
     text
 }
 
-/// Describes the effect of the mathematically right approach polynomial.
+/// Describes what the mathematically right approach polynomial would change.
 fn compare_approach(course: &Answer, right: &Answer, number: ShownNumber) -> String {
     let says = match (course.decision, right.decision) {
         (Decision::Hit { time, .. }, Decision::Hit { time: other, .. }) if time == other => {
@@ -249,7 +249,7 @@ fn compare_approach(course: &Answer, right: &Answer, number: ShownNumber) -> Str
     format!("  with the mathematically right approach polynomial: {says}\n")
 }
 
-/// Returns the objects and their motion.
+/// Describes the objects of a pair and their motions.
 pub(crate) fn render_motion(motion: &PairMotion, number: ShownNumber, style: Style) -> String {
     let vector = |x: f64, y: f64| format!("({}, {})", number(x), number(y));
     let mut table = Table::new([Align::Left, Align::Left, Align::Left, Align::Left]);
@@ -278,7 +278,7 @@ pub(crate) fn render_motion(motion: &PairMotion, number: ShownNumber, style: Sty
     table.render(style)
 }
 
-/// Returns a polynomial with its zeros and the intervals in which it is positive.
+/// Describes a polynomial, its zeros, and the intervals in which it is positive.
 fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style) -> String {
     let mut text = format!("  {name}\n    {}\n", format_polynomial(curve.logged.coefficients(), number));
     let all = curve.untrimmed.coefficients();
@@ -303,7 +303,7 @@ fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style
     text
 }
 
-/// Returns intervals as text: `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `at 0.5 (intervals touch)`.
+/// Formats intervals as text, such as `nowhere`, `(-inf, 0.25) and (0.5, 1.25)`, or `at 0.5 (intervals touch)`.
 fn format_intervals(list: &[Interval], number: ShownNumber) -> String {
     if list.is_empty() {
         return "nowhere".to_owned();
@@ -316,8 +316,8 @@ fn format_intervals(list: &[Interval], number: ShownNumber) -> String {
     list.iter().map(words).collect::<Vec<_>>().join(" and ")
 }
 
-/// Returns a polynomial as text, such as `-0.25 t^2 + t - 0.1875`; an empty list is the zero polynomial. A zero
-/// coefficient is written only if it is the leading one, which a log should not have.
+/// Formats a polynomial as text, such as `-0.25 t^2 + t - 0.1875`. An empty list is the zero polynomial. Zero
+/// coefficients are left out, except for a leading one, which a log should not contain.
 pub(crate) fn format_polynomial(coefficients: &[f64], number: ShownNumber) -> String {
     if coefficients.is_empty() {
         return "0 (no coefficient)".to_owned();
@@ -341,52 +341,53 @@ pub(crate) fn format_polynomial(coefficients: &[f64], number: ShownNumber) -> St
     text
 }
 
-/// One detection call: the reference's computation from the motion of a pair within a step. Times are fractions of the
-/// step.
+/// One detection call: the reference's computation for a pair, which starts from the pair's motion within a step. Times
+/// are fractions of the step.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(crate) struct DetectView<'a> {
-    /// The version of this shape.
+    /// The version of this document's form.
     #[schemars(extend("const" = DETECT_SCHEMA))]
     schema: u32,
-    /// The place in a scene's run at which the pair was examined; null if its numbers were typed.
+    /// Where in the run of a scene the pair was examined; null if the user typed the numbers.
     place: Option<PlaceView<'a>>,
     /// The kind of the pair.
     kind: PairKind,
-    /// The motion of the pair's bodies.
+    /// The motion of the pair's bodies within the step.
     motion: MotionView,
-    /// The polynomials in the order of the trace; empty if the scene's collision handling is simple.
+    /// The polynomials, in the order in which a trace logs them. The list is empty for scenes with simple collision
+    /// handling.
     polynomials: Vec<CurveView>,
-    /// The reference's decision.
+    /// The decision by the reference.
     answer: AnswerView,
-    /// Whether the pair collides in every correct program; null if round-off may change the decision.
+    /// Whether every correct program decides that the pair collides; null if round-off may change the decision.
     certain: Option<bool>,
-    /// The mathematically right particle-edge approach polynomial, and its result; null if the course's polynomial is
-    /// the same.
+    /// The mathematically right approach polynomial of a particle and an edge, and the decision with it; null if the
+    /// course's polynomial is the same.
     right_approach: Option<RightApproachView>,
-    /// Overlap and approach at the end of the step, if the scene's collision handling is simple; otherwise null.
+    /// The overlap and the approach at the end of the step, for scenes with simple collision handling; otherwise null.
     overlap: Option<overlap::OverlapView>,
 }
 
 view! {
-    /// A place in a scene's run.
+    /// Where in the run of a scene a pair was examined.
     #[schemars(deny_unknown_fields)]
     struct PlaceView<'a> from place: Place<'a> {
-        /// The scene's name, as typed.
+        /// The name of the scene, as the user typed it.
         scene: &'a str = place.scene,
-        /// The trace's name, as typed; null for the reference's own run.
+        /// The name of the trace, as the user typed it; null for the reference's own run.
         trace: Option<&'a str> = place.trace,
-        /// The step number, from 1.
+        /// The number of the step, from 1.
         step: u32 = place.step,
-        /// The pair.
+        /// The pair that was examined.
         pair: Pair = place.pair,
-        /// The detection pass; null if the scene has no continuous-time detection.
+        /// The number of the detection pass in the step; null if the scene has no continuous-time detection.
         pass: Option<Pass> = place.pass,
         /// The number of passes that the reference makes in this step.
         passes: usize = place.passes,
-        /// The lists that the trace logged for the detection call, in the order of `polynomials`: empty if it logged
-        /// none, with an empty list for each missing one. Null for the reference's run, and if the trace logged a
-        /// different number of polynomials, so that those of the call can't be found.
+        /// The lists that the trace logs for the detection call, in the order of `polynomials`. A missing list is empty
+        /// here, and if all are missing, there are no lists. Null for the reference's own run, and if the trace logs
+        /// another number of polynomials in the pass, because its lists can't be assigned to calls then.
         logged: Option<Vec<Vec<Number>>> = match place.logged {
             CallLog::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
             CallLog::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
@@ -395,36 +396,37 @@ view! {
     }
 }
 
-/// The motion of a pair.
+/// The motion of a pair within a step.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct MotionView {
-    /// The centers of both particles; the particle's center and the edge's endpoints; or the particle's center.
+    /// The moving points of the pair. For two particles, these are both centers; for a particle and an edge, the
+    /// particle's center and the edge's endpoints; for a particle and a half-plane, the particle's center.
     points: Vec<PointView>,
-    /// The radii of the bodies that have one, in the order of the bodies.
+    /// The radii of the bodies, in their order. A half-plane has no radius.
     radii: Vec<Number>,
-    /// The half-plane, if the pair has one.
+    /// The half-plane; null if the pair has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     half_plane: Option<HalfPlaneView>,
 }
 
-/// A moving point.
+/// A point that moves along a straight line.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct PointView {
-    /// The position at the start of the step.
+    /// The position of the point at the start of the step.
     start: [Number; 2],
-    /// The displacement within the step.
+    /// The displacement of the point within the step.
     displacement: [Number; 2],
 }
 
-/// A half-plane.
+/// A half-plane of the scene.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct HalfPlaneView {
     /// A point on the boundary of the half-plane.
     point: [Number; 2],
-    /// The half-plane's normal.
+    /// The normal vector of the half-plane.
     normal: [Number; 2],
 }
 
@@ -432,33 +434,34 @@ view! {
     /// A polynomial, its zeros, and the intervals in which it is positive.
     #[schemars(deny_unknown_fields)]
     struct CurveView from curve: Curve {
-        /// The meaning of the polynomial if it is positive.
+        /// The condition that holds while the polynomial is positive.
         role: Role = curve.role,
-        /// The coefficients that are logged and passed to the root finder, highest power first, without leading
-        /// coefficients below 1e-12.
+        /// The coefficients that are logged and passed to the root finder, highest power first. Leading coefficients
+        /// below 1e-12 are left out.
         coefficients: Polynomial = curve.logged,
-        /// All coefficients, highest power first.
+        /// All coefficients, highest power first, including small leading ones.
         untrimmed: Polynomial = curve.untrimmed,
-        /// The zeros as pairs of real and imaginary part, in the order of the reference's root finder.
+        /// The zeros, each as its real and its imaginary part, in the order in which the reference's root finder
+        /// returns them.
         zeros: Vec<[Number; 2]> =
             curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect(),
-        /// The time intervals in which the polynomial is positive, on the whole line, sorted and disjoint. An interval
-        /// may be a single time.
+        /// The time intervals in which the polynomial is positive, sorted and disjoint. They are not limited to the
+        /// step. An interval may be a single time.
         positive: Vec<[Number; 2]> = to_pairs(&curve.positive),
     }
 }
 
 view! {
-    /// The decision that follows from the polynomials of a pair.
+    /// The decision that follows from a pair's polynomials.
     #[schemars(deny_unknown_fields)]
     struct AnswerView from answer: Answer {
-        /// The time intervals in which all polynomials are positive, sorted and disjoint.
+        /// The time intervals in which all polynomials are positive at once, sorted and disjoint.
         positive: Vec<[Number; 2]> = to_pairs(&answer.positive),
-        /// Whether the pair collides within the step.
+        /// Whether the pair collides in the step.
         collides: bool = answer.decision.collides(),
-        /// The first time from which all polynomials are positive; inf if there is none.
+        /// The earliest time from which all polynomials are positive; inf if there is no such time.
         time: Number = Number(answer.decision.time()),
-        /// The vector from the first object to the second, not normalized; null without a collision.
+        /// The vector from the first object to the second, not normalized; null if the pair does not collide.
         normal: Option<[Number; 2]> = match answer.decision {
             Decision::Hit { normal, .. } => Some(normal.write()),
             Decision::Miss { .. } => None,
@@ -466,13 +469,13 @@ view! {
     }
 }
 
-/// The right approach polynomial and its answer.
+/// The mathematically right approach polynomial, and the decision with it.
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct RightApproachView {
-    /// The right polynomial.
+    /// The mathematically right approach polynomial.
     polynomial: CurveView,
-    /// The decision with the right polynomial.
+    /// The decision if the right approach polynomial is used.
     answer: AnswerView,
 }
 

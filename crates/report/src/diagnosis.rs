@@ -1,4 +1,4 @@
-//! The report of `explain`: the likely mistakes of a program, for each trace and for all traces.
+//! The report of `explain`. It lists the likely mistakes of a program, for each trace and for all traces together.
 use super::{
     case::Case,
     explain::{ExplanationView, lines},
@@ -16,16 +16,16 @@ use std::fmt::Write;
 /// The version of the JSON report's schema (`schemas/explain.schema.json`).
 const SCHEMA: u32 = 3;
 
-/// The report on all traces.
+/// The report on all traces of a program.
 #[derive(Debug, Clone, Default)]
 pub struct Diagnosis {
     /// The traces, in the order of the request.
     pub cases: Vec<Case>,
-    /// The mistakes that explain several traces together, the most frequent first; empty for a single trace.
+    /// The mistakes that explain several traces, the most frequent first. The list is empty if there is only one trace.
     pub common: Vec<Explanation>,
-    /// The common properties of the scenes in which the program crashes or exceeds a limit.
+    /// What the scenes in which the program crashes or exceeds a limit have in common.
     pub located: Option<LocatedFailure>,
-    /// The smallest scene for each cause, if requested.
+    /// The smallest scene for each cause, if the user requested it.
     pub smallest: Vec<SmallestScene>,
 }
 
@@ -143,37 +143,37 @@ view! {
     /// The likely mistakes of the program that wrote the traces.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct DiagnosisView<'a> from diagnosis: Diagnosis {
-        /// The version of this shape.
+        /// The version of this document's form.
         #[schemars(extend("const" = SCHEMA))]
         schema: u32 = SCHEMA,
         /// Whether the fair rules accept every trace.
         accepted: bool = diagnosis.is_accepted(),
-        /// The common contents of the scenes in which the program crashes or exceeds a limit, as text; null if there
-        /// are none.
+        /// What the scenes in which the program crashes or exceeds a limit have in common, as text; null if there are
+        /// no such scenes.
         located: Option<String> = diagnosis.located.as_ref().map(describe_located),
-        /// The mistake that explains most of the wrong traces, if there are several traces; otherwise null.
+        /// The mistake that explains most of the wrong traces; null if there is only one trace.
         common: Option<ExplanationView> = diagnosis.common.first().map(ExplanationView::from),
-        /// Up to three mistakes that explain the wrong traces together, if there are several traces; the first is
-        /// `common`.
+        /// Up to three mistakes that together explain the wrong traces. The first one is `common`. The list is empty if
+        /// there is only one trace.
         likely: Vec<ExplanationView> = diagnosis.common.iter().map(ExplanationView::from).collect(),
         /// The traces, in the order of the request.
         traces: Vec<CaseView<'a>> = diagnosis.cases.iter().map(CaseView::from).collect(),
-        /// The smallest scene for each cause, if the program can be run.
+        /// The smallest scene for each cause, if the user requested it and the program can be run.
         smallest: Vec<SmallestView> = diagnosis.smallest.iter().map(SmallestView::from).collect(),
     }
 }
 
 view! {
-    /// A trace.
+    /// One trace of the program.
     #[schemars(deny_unknown_fields)]
     struct CaseView<'a> from case: Case {
-        /// The trace's scene.
+        /// The name of the scene that the trace belongs to.
         scene: &'a str = &case.scene,
-        /// The path of the trace, or of the program that wrote it.
+        /// The path of the trace file, or of the program that wrote the trace.
         trace: &'a str = &case.trace,
         /// Whether the fair rules accept the trace.
         accepted: bool = case.accepted,
-        /// The end of the program, if it did not end well.
+        /// How the program ended, if it did not end well; null otherwise.
         note: Option<&'a str> = case.note.as_deref(),
         /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &case.first {

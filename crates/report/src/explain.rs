@@ -1,7 +1,7 @@
-//! Explanations of mistakes: lines for people, a view for programs.
+//! Explanations of mistakes, as lines for people and as JSON for programs.
 //!
-//! These show everything in an explanation; `mistakes::together::told` removes the parts that the reader may not see.
-//! Data of a submission appear only as numbers.
+//! The functions show everything in an explanation. Parts that the reader may not see are removed before, by
+//! `mistakes::together::told`. Data of a submission appear only as numbers.
 use super::{
     detect::format_polynomial,
     number::{format_count, format_exact, format_tidy},
@@ -11,17 +11,18 @@ use super::{
 };
 use fosssim_mistakes::diagnose::{About, Example, ExamplePlace, ExampleValue, Explanation};
 
-/// The maximum number of indistinguishable mistakes that are listed.
+/// The maximum number of mistakes in a list of those that can't be distinguished.
 const MAX_LISTED: usize = 3;
 
-/// Returns the lines about explanations, the likeliest first. Lines below a sentence are indented by two.
+/// Returns the lines of a report about explanations, the likeliest first. Lines that belong to a sentence are below it
+/// and indented by two blanks.
 #[must_use]
 pub fn lines(explanations: &[Explanation], style: Style) -> Vec<String> {
     explanations.iter().flat_map(|one| explanation_lines(one, style)).collect()
 }
 
-/// Returns the sentence about the likeliest mistake, or about several mistakes that together explain everything, for
-/// formats with one line.
+/// Returns one sentence about the likeliest mistake, or about the mistakes that together explain everything. It is for
+/// formats with a single line.
 #[must_use]
 pub fn render_sentence(explanations: &[Explanation]) -> Option<String> {
     if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
@@ -38,22 +39,22 @@ pub fn render_sentence(explanations: &[Explanation]) -> Option<String> {
     })
 }
 
-/// The parts of the text about one explanation.
+/// The parts of a report's text about one explanation.
 pub(crate) struct ExplanationParts {
-    /// Whether the explanation is a likely mistake, and not an observation.
+    /// Whether the explanation is a likely mistake; otherwise it is only an observation.
     pub(crate) is_likely: bool,
     /// The sentence that names the mistake.
     pub(crate) what: String,
-    /// The evidence for the mistake.
+    /// The sentence about how many wrong steps or polynomials the mistake reproduces.
     pub(crate) evidence: Option<String>,
-    /// The exact form, and the mistakes that can't be distinguished from this one.
+    /// Lines with the exact form, and the mistakes that can't be distinguished from this one.
     pub(crate) details: Vec<String>,
-    /// A small instance of the mistake.
+    /// Lines with a small instance of the mistake.
     pub(crate) example: Vec<String>,
 }
 
 impl ExplanationParts {
-    /// Creates the parts, with formulas in the given style.
+    /// Creates the parts. Formulas are written in the given style.
     pub(crate) fn new(explanation: &Explanation, style: Style) -> Self {
         let Explanation { reproduced, samples, about, .. } = explanation;
         // An explanation that reproduces nothing is an observation, not a likely mistake.
@@ -73,7 +74,8 @@ impl ExplanationParts {
     }
 }
 
-/// Returns the number of tried wrong steps that a mistake reproduces; the trace may have more wrong steps.
+/// Describes how many of the tried wrong steps a mistake reproduces. The trace may have more wrong steps, which were
+/// not tried.
 fn describe_evidence(reproduced: u64, samples: u64) -> String {
     match samples {
         1 if reproduced == 1 => "reproduces the wrong step tried".to_owned(),
@@ -91,7 +93,7 @@ fn explanation_lines(explanation: &Explanation, style: Style) -> Vec<String> {
     lines
 }
 
-/// Returns the explanations that can't be distinguished from one. Known mistakes are named; other guesses have no
+/// Describes the explanations that can't be distinguished from this one. Known mistakes are named. Others have no
 /// sentence, so they are only counted.
 fn describe_others(keys: &[String]) -> Option<String> {
     let named: Vec<String> = keys.iter().filter_map(|key| known_sentence(key)).collect();
@@ -109,7 +111,7 @@ fn describe_others(keys: &[String]) -> Option<String> {
     }
 }
 
-/// Returns several sentences as one list; each may contain a colon.
+/// Joins sentences, each of which may contain a colon, into one list.
 fn list_sentences(sentences: &[String]) -> String {
     sentences.iter().map(|one| one.trim_end_matches('.')).collect::<Vec<_>>().join("; ")
 }
@@ -148,41 +150,41 @@ fn format_list(values: &[f64]) -> String {
 }
 
 view! {
-    /// An explanation in JSON: its key and its evidence, with sentences.
+    /// An explanation in JSON, with its key, its evidence and its sentences.
     #[derive(Debug, Clone, PartialEq)]
     pub struct ExplanationView from explanation: Explanation {
-        /// A stable key for machines.
+        /// A name for the mistake that programs can rely on. It never changes.
         pub key: String = explanation.key.clone(),
-        /// The mistake as a sentence.
+        /// The sentence that names the mistake.
         pub text: String = describe(explanation),
-        /// The exact form, one line each.
+        /// The exact form of the mistake, one entry per line.
         pub details: Vec<String> = list_details(explanation),
-        /// The number of `samples` that the mistake reproduces.
+        /// How many of the `samples` the mistake reproduces.
         pub reproduced: u64 = explanation.reproduced,
         /// The number of polynomials or steps that were checked.
         pub samples: u64 = explanation.samples,
-        /// Keys of mistakes that can't be distinguished from this one.
+        /// The keys of mistakes that can't be distinguished from this one.
         pub same_as: Vec<String> = explanation.same_as.clone(),
-        /// A small instance of the mistake.
+        /// A small instance of the mistake; null if there is none.
         pub example: Option<ExampleView> = explanation.example.as_ref().map(ExampleView::from),
     }
 }
 
 view! {
-    /// An example of a mistake in JSON.
+    /// A small instance of a mistake in JSON.
     #[derive(Debug, Clone, PartialEq)]
     pub struct ExampleView from example: Example {
-        /// The step, from 1.
+        /// The number of the step, from 1.
         pub step: u32 = example.step,
-        /// The place in the step, as text.
+        /// Where in the step the example is, as text.
         pub place: String = describe_place(&example.place),
-        /// The inputs of the computation.
+        /// The values from which the example is computed.
         pub given: Vec<ExampleValue> = example.given.clone(),
-        /// The expected result.
+        /// The result that a correct program computes.
         #[serde(with = "fosssim_num::written")]
         #[schemars(with = "Vec<crate::view::Number>")]
         pub expected: Vec<f64> = example.expected.clone(),
-        /// The actual result.
+        /// The result that this program computes.
         #[serde(with = "fosssim_num::written")]
         #[schemars(with = "Vec<crate::view::Number>")]
         pub actual: Vec<f64> = example.actual.clone(),

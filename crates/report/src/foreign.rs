@@ -1,9 +1,9 @@
 //! Cleans untrusted text, such as names and the output of programs. Control characters become visible, and invisible
-//! characters are replaced. After that, each format escapes the characters with a meaning in its syntax.
+//! characters are replaced. Each format then escapes the characters that have a meaning in its syntax.
 use fosssim_findings::is_visible_ascii;
 use std::borrow::Cow;
 
-/// Removes a terminal's codes for colors, cursors and titles, which every line of FOSSSim's log contains. Only complete
+/// Removes the terminal codes for colors, cursors and titles, which every line of FOSSSim's log contains. Only complete
 /// codes are removed, so that incomplete ones become visible.
 #[must_use]
 pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
@@ -27,8 +27,8 @@ pub(crate) fn without_codes(text: &str) -> Cow<'_, str> {
     Cow::Owned(out + rest)
 }
 
-/// Returns the number of bytes of the code after an escape character, such as `[32;1m`, or `]0;title` with its end.
-/// ECMA-48, 5.4 and 5.6.
+/// Returns the length in bytes of the code that follows an escape character, such as `[32;1m`, or `]0;title` and its
+/// end (ECMA-48, 5.4 and 5.6).
 fn length_of_code(code: &str) -> Option<usize> {
     let bytes = code.as_bytes();
     match bytes.first()? {
@@ -48,14 +48,14 @@ fn length_of_code(code: &str) -> Option<usize> {
     }
 }
 
-/// Returns the output of a program as [`strip_control_characters`] text, without a terminal's codes. Names keep the
-/// codes; otherwise two names could look the same.
+/// Returns a program's output without terminal codes and without other control characters, as
+/// [`strip_control_characters`] does. In names, codes are not removed, because two names could then look the same.
 #[must_use]
 pub fn clean_output(text: &str) -> String {
     strip_control_characters(&without_codes(text))
 }
 
-/// Returns a word, quoted for a shell.
+/// Quotes a word for a shell, if necessary.
 #[must_use]
 pub fn quote(word: &str) -> String {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "_./:@%+=,-".contains(c);
@@ -65,18 +65,18 @@ pub fn quote(word: &str) -> String {
     }
 }
 
-/// Returns whether a character is invisible: it changes the direction of the text, which could reorder a report, or has
-/// no width, which makes two names look alike.
+/// Returns whether a character cannot be seen. It either changes the direction of text, which could reorder a report,
+/// or it has no width, which could make two names look alike.
 pub(crate) const fn is_unseen(c: char) -> bool {
     matches!(c, '\u{ad}' | '\u{61c}' | '\u{180e}' | '\u{200b}'..='\u{200f}' | '\u{2028}'..='\u{202e}'
         | '\u{2060}'..='\u{206f}' | '\u{feff}' | '\u{fff9}'..='\u{fffb}' | '\u{e0000}'..='\u{e007f}')
 }
 
-/// Returns untrusted text without control characters. Escape codes, bells and NULs become visible, line breaks and tabs
-/// stay, and invisible characters and those that XML 1.0 forbids are replaced.
+/// Returns untrusted text without control characters. Escape codes, bells and NULs are replaced by visible characters,
+/// and so are invisible characters and characters that XML 1.0 forbids. Line breaks and tabs are kept.
 #[must_use]
 pub fn strip_control_characters(text: &str) -> String {
-    // Nearly all texts are clean, and a class has tens of thousands of them.
+    // Most texts are clean, and a class has tens of thousands of them.
     if is_visible_ascii(text) {
         return text.to_owned();
     }
@@ -94,7 +94,7 @@ pub fn strip_control_characters(text: &str) -> String {
     plain
 }
 
-/// Returns the text of [`strip_control_characters`] on one line.
+/// Returns the text of [`strip_control_characters`] as a single line.
 #[must_use]
 pub fn one_line(text: &str) -> String {
     strip_control_characters(text).replace(['\n', '\t'], " ")

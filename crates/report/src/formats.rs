@@ -1,4 +1,4 @@
-//! The formats of grades: their names, contents and readers.
+//! The formats of grades, with their names, their contents and their readers.
 use crate::{
     grade::{Text, csv_table, github, gradescope, json, junit, not_graded, prairielearn},
     page::{Audience, GradePage},
@@ -8,12 +8,13 @@ use fosssim_findings::{Grade, SkippedEntry};
 use fosssim_mistakes::together::{for_students, told_to_students};
 use std::borrow::Cow;
 
-/// The warning in a report that leaves groups out.
+/// The warning in a report for students that leaves groups out.
 const HIDDEN_GROUPS_WARNING: &str =
     "points, verdict and likely mistakes are those of the groups shown here; other groups are hidden";
 
-/// Declares the formats. A row has the format's name, whether one document holds the grades of several submissions, and
-/// the renderer, which also gets the entries that are not submissions.
+/// Declares the formats. Each row has the format's name, whether one document can hold the grades of several
+/// submissions, and the function that renders it. That function also receives the skipped entries, which are not
+/// submissions.
 macro_rules! formats {
     ($($(#[$about:meta])+ $format:ident $name:literal $takes_several:literal $render:expr;)+) => {
         /// The formats, in the order in which help lists them.
@@ -23,7 +24,7 @@ macro_rules! formats {
         }
 
         impl Format {
-            /// All formats.
+            /// All formats, in the order in which help lists them.
             pub const ALL: &'static [Self] = &[$(Self::$format),+];
 
             /// Returns the format's name on the command line.
@@ -32,13 +33,13 @@ macro_rules! formats {
                 match self { $(Self::$format => $name,)+ }
             }
 
-            /// Returns whether one document holds the grades of several submissions.
+            /// Returns whether one document can hold the grades of several submissions.
             #[must_use]
             pub const fn takes_several(self) -> bool {
                 match self { $(Self::$format => $takes_several,)+ }
             }
 
-            /// Renders the document like [`Format::render`], with the entries that are not submissions.
+            /// Renders the document like [`Format::render`], and lists the skipped entries in it.
             #[must_use]
             pub fn render_class(self, grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
                 let render: fn(&[Grade], &[SkippedEntry]) -> String = match self { $(Self::$format => $render,)+ };
@@ -49,20 +50,20 @@ macro_rules! formats {
 }
 
 formats! {
-    /// Text for people.
+    /// Text for people at a terminal.
     Text "text" true
         |grades, passed_over| {
             Text::default().render(grades) + &not_graded(grades, class_entries(grades, passed_over), Style::Plain)
         };
-    /// The program's own JSON, with a version (`schemas/grade.schema.json`).
+    /// JSON in this program's own form, with a version (`schemas/grade.schema.json`).
     Json "json" true |grades, passed_over| json::render(grades, class_entries(grades, passed_over));
-    /// JUnit XML (`schemas/junit.xsd`).
+    /// JUnit XML for continuous integration (`schemas/junit.xsd`).
     Junit "junit" true |grades, passed_over| junit::render(grades, class_entries(grades, passed_over));
-    /// Gradescope's results.json (`schemas/gradescope.schema.json`).
+    /// The file results.json for Gradescope (`schemas/gradescope.schema.json`).
     Gradescope "gradescope" false |grades, _| render_first(grades, gradescope::render);
-    /// PrairieLearn's results.json (`schemas/prairielearn.schema.json`).
+    /// The file results.json for PrairieLearn (`schemas/prairielearn.schema.json`).
     Prairielearn "prairielearn" false |grades, _| render_first(grades, prairielearn::render);
-    /// A Markdown summary, for GitHub's job summary.
+    /// Annotations for GitHub Actions.
     Github "github" true
         |grades, passed_over| {
             github::render_annotations(grades) + &github::passed_over(class_entries(grades, passed_over))
@@ -74,8 +75,8 @@ formats! {
         };
     /// One row per scene, for spreadsheets.
     Csv "csv" true csv_table::render_scenes;
-    /// A self-contained page ([`page::GradePage`](crate::page::GradePage)); without cards, because cards are stored on
-    /// disk.
+    /// A page in a single file ([`page::GradePage`](crate::page::GradePage)). This function renders it without
+    /// pictures, because these are stored on disk.
     Html "html" false
         |grades, _| {
             render_first(grades, |grade| {
@@ -84,19 +85,19 @@ formats! {
         };
 }
 
-/// Renders the only grade of a format for one submission.
+/// Renders the first grade, for formats that hold only one.
 fn render_first(grades: &[Grade], render: impl Fn(&Grade) -> String) -> String {
     grades.first().map(render).unwrap_or_default()
 }
 
-/// Returns the entries that are not submissions, for a report on several; a report on one submission does not list
-/// them.
+/// Returns the skipped entries for a report on several submissions. A report on one submission does not list them.
 fn class_entries<'e>(grades: &[Grade], passed_over: &'e [SkippedEntry]) -> &'e [SkippedEntry] {
     if grades.len() > 1 { passed_over } else { &[] }
 }
 
 impl Format {
-    /// Renders the document. Formats for one submission ([`Format::takes_several`]) contain the first.
+    /// Renders the grades as one document. Formats that hold only one grade ([`Format::takes_several`]) render the
+    /// first.
     #[must_use]
     pub fn render(self, grades: &[Grade]) -> String {
         self.render_class(grades, &[])
@@ -108,7 +109,7 @@ impl Format {
         Self::ALL.iter().copied().find(|format| format.name() == name)
     }
 
-    /// Returns the names of the selected formats as a list, such as `text, json or csv`.
+    /// Returns the names of the formats that `wanted` selects, as a list such as `text, json or csv`.
     #[must_use]
     pub fn names(wanted: impl Fn(Self) -> bool) -> String {
         let wanted = Self::ALL.iter().copied().filter(|format| wanted(*format));
@@ -119,12 +120,13 @@ impl Format {
         }
     }
 
-    /// Returns the part of a grade for a document for `reader`. Reports for students leave out the groups that students
-    /// do not see immediately, unless the platform that requests them hides the groups itself (`platform_hides`).
+    /// Returns the part of a grade that a document for `reader` contains. Reports for students leave out the groups
+    /// that students do not see immediately, unless the platform that requests them hides the groups itself
+    /// (`platform_hides`).
     #[must_use]
     pub fn visible_part(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
         match (self, reader) {
-            // These formats are always for students. The platforms and the page themselves hide hidden groups.
+            // These formats are always for students. The platforms and the page hide the hidden groups themselves.
             (Self::Gradescope | Self::Prairielearn, _) | (Self::Html, Audience::Student) => told_to_students(grade),
             (_, Audience::Staff) => Cow::Borrowed(grade),
             (_, Audience::Student) if platform_hides => told_to_students(grade),

@@ -1,6 +1,6 @@
-//! Mathematical signs in formulas: `t^2: -x21.d21` becomes `t²: −x₂₁·Δx₂₁`. Sentences around formulas stay as they are.
+//! Mathematical signs in formulas: `t^2: -x21.d21` becomes `t²: −x₂₁·Δx₂₁`. Sentences around formulas do not change.
 
-/// Returns the line with Unicode's mathematical signs in its formulas.
+/// Returns a line whose formulas are written with Unicode's mathematical signs.
 ///
 /// ```
 /// let line = "t^2 lacks -4 e h, with e = d21.x21.";
@@ -27,7 +27,7 @@ pub fn with_signs(line: &str) -> String {
     out
 }
 
-/// Returns a name in a formula with subscript digits and Greek letters.
+/// Writes a name in a formula with subscript digits and Greek letters.
 fn format_symbol(word: &str, after: &str) -> String {
     let letters = word.trim_end_matches(|c: char| c.is_ascii_digit());
     let number = &word[letters.len()..];
@@ -45,12 +45,12 @@ fn format_symbol(word: &str, after: &str) -> String {
     }
 }
 
-/// Returns digits in another script of Unicode, which begins with `zero`.
+/// Writes digits with other characters of Unicode, which begin with `zero`.
 fn shift_digits(digits: &str, zero: char) -> String {
     digits.bytes().filter_map(|digit| char::from_u32(u32::from(zero) + u32::from(digit - b'0'))).collect()
 }
 
-/// Returns the power after a `^`, and its length.
+/// Returns the power that follows a `^`, and the length of its text.
 fn parse_power(rest: &str) -> Option<(String, usize)> {
     let raise = |c| "⁰¹²³⁴⁵⁶⁷⁸⁹ᵀ".chars().nth("0123456789T".find(c)?);
     let raised: String = rest.chars().map_while(raise).collect();
@@ -58,8 +58,8 @@ fn parse_power(rest: &str) -> Option<(String, usize)> {
     (length > 0).then_some((raised, length))
 }
 
-/// Returns whether the text before a sign ends with a short name or a parenthesis, and the text after it begins with
-/// one. Names of functions or files, and English words, do not count.
+/// Returns whether a sign is between two factors: the text before it ends with a short name or a parenthesis, and the
+/// text after it begins with one. Names of functions or files and English words do not count.
 fn is_between_factors(before: &str, behind: &str) -> bool {
     let is_name = |word: &str| word.len() <= 3 && word.starts_with(|c: char| c.is_ascii_alphabetic());
     let start = before.trim_end_matches(|c: char| c.is_ascii_alphanumeric() || c == '_').len();
@@ -69,7 +69,7 @@ fn is_between_factors(before: &str, behind: &str) -> bool {
         && (behind.starts_with('(') || is_name(&behind[..end]) && !is_called)
 }
 
-/// Returns whether a `-` between two texts is a sign or a difference, and not a hyphen.
+/// Returns whether a `-` between two texts is a minus sign, and not a hyphen.
 fn is_minus(before: &str, behind: &str) -> bool {
     let is_first = before.is_empty() || before.ends_with([' ', '(', '=', '|']);
     let begins = behind.starts_with(|c: char| c.is_ascii_alphanumeric() || matches!(c, '(' | '|'));

@@ -1,7 +1,7 @@
 //! Reports on results: text, JSON and the formats of learning platforms.
 //!
 //! Every renderer is a pure function from results to text; the crate opens no files, reads no clocks and computes no
-//! verdicts. `view` has the versions of the schemas.
+//! verdicts. The module `view` contains the versions of the schemas.
 //!
 //! ```
 //! use fosssim_report::{number::format_count, style::Style, table::{Align, Table}};

@@ -1,16 +1,18 @@
-//! Numbers as text: C's `%g` for everything that the original prints, and the shortest exact form for other reports.
+//! Formats numbers. What the original prints has the form of C's `%g`; other reports use the shortest text that is
+//! exact.
 //!
 //! The functions are pure.
 
 pub use fosssim_num::printed::format_g;
 
-/// Returns the shortest text that reads back as the same number, without the sign of a zero.
+/// Formats a number as the shortest text that reads back as the same number. A zero has no sign.
 #[must_use]
 pub fn format_exact(value: f64) -> String {
     fosssim_num::printed::format_exact(value + 0.0)
 }
 
-/// Returns a short fraction such as `1/3`, if the number equals one up to a few roundings and has many digits.
+/// Formats a number as a short fraction such as `1/3`. Returns `None` if it differs from the fraction by more than a
+/// few roundings, or has few digits anyway.
 fn format_fraction(value: f64) -> Option<String> {
     let is_near = |denominator: &f64| {
         let (scaled, whole) = (value * denominator, (value * denominator).round());
@@ -20,23 +22,23 @@ fn format_fraction(value: f64) -> Option<String> {
     Some(format!("{}/{denominator}", (value * denominator).round()))
 }
 
-/// The bound below which numbers count as zero, next to numbers near 1.
+/// The bound below which a number counts as zero if it is shown with numbers near 1.
 const ZERO_BOUND: f64 = 1e-13;
 
-/// Formats a number as in a calculation by hand: short decimals, a short fraction, or six digits.
+/// Formats a number as in a calculation by hand: with few decimals, as a short fraction, or with six digits.
 pub(crate) fn format_short(value: f64) -> String {
     format_tidy(if value.abs() < ZERO_BOUND { 0.0 } else { value }, format_g)
 }
 
-/// Returns short decimals or a short fraction if the number equals one up to a few roundings; otherwise the result of
-/// `other`.
+/// Formats a number with few decimals or as a short fraction, if it differs from that by at most a few roundings.
+/// Otherwise returns the result of `other`.
 pub(crate) fn format_tidy(value: f64, other: fn(f64) -> String) -> String {
     let rounded = (value * 1e6).round() / 1e6;
     let is_near = value.abs() < 1e9 && (rounded - value).abs() <= ZERO_BOUND * value.abs();
     if is_near { format_exact(rounded) } else { format_fraction(value).unwrap_or_else(|| other(value)) }
 }
 
-/// Returns a count with separated thousands, such as `1 234 567`; four digits stay together.
+/// Formats a count with separated thousands, such as `1 234 567`. Four digits are not separated.
 #[must_use]
 pub fn count(value: u64) -> String {
     let digits = value.to_string();
@@ -53,29 +55,29 @@ pub fn count(value: u64) -> String {
     grouped
 }
 
-/// Returns a count with its noun, such as `1 step` or `12 345 steps`.
+/// Formats a count and its noun, such as `1 step` or `12 345 steps`.
 #[must_use]
 pub fn format_count(value: u64, noun: &str) -> String {
     let plural = if value == 1 { "" } else { "s" };
     format!("{} {noun}{plural}", count(value))
 }
 
-/// Returns two values in one notation, as short as a comparison allows: six digits, and at least two from the first
-/// that differs. Also returns the position in both texts where they begin to differ; `None` if they are equal.
+/// Formats two values in the same notation, as short as a comparison allows: with six digits, but at least two digits
+/// from the first that differs. Also returns the position from which the texts differ; `None` if they are equal.
 #[must_use]
 pub fn format_pair(expected: f64, actual: f64) -> (String, String, Option<usize>) {
     let texts = in_one_notation(expected, actual).unwrap_or_else(|| (format_g(expected), format_g(actual)));
     let (one, other) = (texts.0.as_bytes(), texts.1.as_bytes());
     let common = one.iter().zip(other).take_while(|(one, other)| one == other).count();
     let parts = expected.to_bits() != actual.to_bits() && texts.0 != texts.1;
-    // If the parts before the point differ in length, no digits can be compared.
+    // If the parts before the decimal point have different lengths, digits can't be compared.
     let whole = |text: &str| text.find('.').unwrap_or(text.len());
     let place = if whole(&texts.0) == whole(&texts.1) { common } else { 0 };
     (texts.0, texts.1, parts.then_some(place))
 }
 
-/// Returns both values with as many decimals as needed, and with a common power of ten if they are very large or small;
-/// `None` if one notation does not fit both.
+/// Formats both values with as many decimals as needed. If they are very large or very small, both have the same power
+/// of ten. Returns `None` if no notation fits both.
 fn in_one_notation(expected: f64, actual: f64) -> Option<(String, String)> {
     let most = expected.abs().max(actual.abs());
     let power = |value: f64| -> Option<i32> { format!("{value:e}").split_once('e')?.1.parse().ok() };

@@ -1,16 +1,16 @@
-//! Problems of a scene, each drawn below the line that it is about.
+//! Shows the problems of a scene file. Each is below the line that it is about.
 use fosssim_model::scene::{Problem, Problems, Severity};
 
 /// The maximum number of characters of a source line that are shown.
 const MAX_SHOWN_CHARS: usize = 100;
 
-/// The maximum number of bytes that can be shown on either side of a place: a character takes at most four bytes, and
+/// The maximum number of bytes that can be shown on either side of a position. A character has at most four bytes, and
 /// lines may be megabytes long.
 const MAX_SHOWN_BYTES: usize = 4 * MAX_SHOWN_CHARS + 8;
 
-/// Returns the problems of a rejected scene: a head line, then each problem with its source line.
+/// Renders the problems of a rejected scene: a first line, and then each problem with its line of the file.
 ///
-/// `name` is the scene's name in messages, `source` its bytes.
+/// `name` is the scene's name in messages, and `source` is the content of its file.
 #[must_use]
 pub fn render_errors(name: &str, source: &[u8], refused: &Problems) -> String {
     let count = refused.list.iter().filter(|problem| problem.severity == Severity::Error).count();
@@ -25,13 +25,13 @@ pub fn render_errors(name: &str, source: &[u8], refused: &Problems) -> String {
     text
 }
 
-/// Returns the warnings about an accepted scene; empty if there are none.
+/// Renders the warnings about an accepted scene; empty if there are none.
 #[must_use]
 pub fn render_warnings(name: &str, source: &[u8], list: &[Problem]) -> String {
     list.iter().map(|problem| render_problem(name, source, problem) + "\n").collect()
 }
 
-/// Renders one problem:
+/// Renders one problem with its line of the file:
 ///
 /// ```text
 /// scene.xml:3:14: `m` of particle 0 is not a number
@@ -51,13 +51,13 @@ fn render_problem(name: &str, source: &[u8], problem: &Problem) -> String {
     let after = escape_line(&source[end..line_end(source, end)]);
     let advice = help.as_ref().map(|help| format!(" {help}")).unwrap_or_default();
     if before.is_empty() && marked.is_empty() && after.is_empty() {
-        // In an empty file or line there is nothing to mark.
+        // In an empty file or line there is nothing to point at.
         if !advice.is_empty() {
             text += &format!("    = {}\n", advice.trim_start());
         }
         return text;
     }
-    // Cut a long line on both sides of the place.
+    // A long line is cut on both sides of the position.
     let cut = before.chars().count().saturating_sub(MAX_SHOWN_CHARS / 2);
     let (dots, indent) = if cut > 0 { ("...", 3) } else { ("", 0) };
     let before: String = before.chars().skip(cut).collect();
@@ -74,13 +74,13 @@ fn render_problem(name: &str, source: &[u8], problem: &Problem) -> String {
     text
 }
 
-/// Returns the end of the line after `at`, or of the part that can be shown.
+/// Returns the end of the line that contains the position `at`, or the end of the part that can be shown.
 fn line_end(source: &[u8], at: usize) -> usize {
     let to = source.len().min(at + MAX_SHOWN_BYTES);
     source[at..to].iter().position(|&byte| byte == b'\n').map_or(to, |found| at + found)
 }
 
-/// Returns a part of the source in printable form: one column per character, without control characters.
+/// Returns a part of the file in printable form. Each character has one column, and control characters are replaced.
 fn escape_line(bytes: &[u8]) -> String {
     let text = String::from_utf8_lossy(bytes);
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text).trim_end_matches('\r');

@@ -1,4 +1,4 @@
-//! The list of scenes, with one line each.
+//! The list of scenes, one line for each.
 use super::{
     number::format_count,
     style::{Look, Style},
@@ -20,8 +20,8 @@ pub fn list(scenes: &[(&str, Scene)], style: Style) -> String {
     scenes.iter().map(line).collect()
 }
 
-/// Returns the size of a scene, such as `3 particles, 1 edge, 20 steps, for T1M2, T1M3`. Kinds of objects that the
-/// scene lacks are left out; the milestones are those whose programs can run the scene.
+/// Describes the size of a scene, such as `3 particles, 1 edge, 20 steps, for T1M2, T1M3`. Kinds of objects that the
+/// scene does not contain are left out. The milestones are those whose programs can run the scene.
 fn describe_size(scene: &Scene) -> String {
     let parts = [
         (scene.particles.len() as u64, "particle"),

@@ -1,10 +1,10 @@
-//! The schemas of the JSON reports, which are generated from the types of the reports.
+//! The schemas of the reports in JSON. They are generated from the types of the reports.
 use super::{check::CheckView, detect::DetectView, diagnosis::DiagnosisView, grade::GradeDocument};
 use schemars::{JsonSchema, Schema, generate::SchemaSettings, transform::RecursiveTransform};
 use serde_json::Value;
 
-/// Returns the schemas, each with the command that writes such documents. Each is `<command>.schema.json` in the folder
-/// `schemas`.
+/// Returns the schemas. Each has the name of the command that writes such documents, and is stored as
+/// `<command>.schema.json` in the folder `schemas`.
 #[must_use]
 pub fn all() -> [(&'static str, Schema); 4] {
     [
@@ -23,7 +23,7 @@ fn schema_of<Document: JsonSchema>(command: &str) -> Schema {
     schema
 }
 
-/// Joins the lines of descriptions, which are wrapped in the source.
+/// Joins the lines of descriptions, which are wrapped in the source code.
 fn join_lines(schema: &mut Schema) {
     if let Some(Value::String(description)) = schema.get_mut("description") {
         *description = description.replace('\n', " ");

@@ -1,4 +1,4 @@
-//! The number of right or wrong steps, as text that every report shares.
+//! Describes how many steps are right or wrong, in words that all reports use.
 
 /// Returns text such as `all 15 steps are right` or `the only step is right`. `count` formats numbers.
 #[must_use]

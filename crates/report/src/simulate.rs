@@ -1,4 +1,4 @@
-//! The summary of a simulation.
+//! The summary that `simulate` prints.
 use super::{
     number::{count, format_count},
     style::{Look, Style},
@@ -11,20 +11,20 @@ use fosssim_model::{
 };
 use serde_json::json;
 
-/// The results of a simulation.
+/// The results of simulating a scene.
 #[derive(Debug, Clone, Copy)]
 pub struct SimulationSummary<'a> {
-    /// The scene's name, as typed.
+    /// The name of the scene, as the user typed it.
     pub scene: &'a str,
-    /// The trace's name, as typed; `None` if no trace was written.
+    /// The name of the trace, as the user typed it; `None` if no trace was written.
     pub output: Option<&'a str>,
     /// The number of steps of the scene.
     pub steps: u32,
-    /// The numbers of events in all steps.
+    /// The number of events of each kind, in all steps together.
     pub counts: EventCounts,
-    /// The size of the trace.
+    /// The size of the trace that was written.
     pub written: WrittenTrace,
-    /// The root searches, if they were audited.
+    /// The counts of root searches, if certificates were audited.
     pub audited: Option<SearchCounts>,
 }
 

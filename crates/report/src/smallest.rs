@@ -10,7 +10,7 @@ use crate::{
 };
 use fosssim_findings::{Book, disclosure::DisclosedFinding, smallest::SmallestScene};
 
-/// Returns the size and the origin of the scene, as a sentence.
+/// Describes the size of the smallest scene, and the scene from which it was made.
 pub(crate) fn title(small: &SmallestScene) -> String {
     let SmallestScene { bodies, origin, .. } = small;
     let noun = if *bodies == 1 { "body" } else { "bodies" };
@@ -39,29 +39,29 @@ pub fn text(small: &SmallestScene, style: Style) -> String {
 }
 
 view! {
-    /// The smallest scene on which a program is still wrong for the same reason.
+    /// The smallest scene that was found on which a program is still wrong for the same reason.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct SmallestView from small: SmallestScene {
-        /// The name of the original scene.
+        /// The name of the scene from which this scene was made.
         origin: String = strip_control_characters(&small.origin),
         /// The content of the scene file.
         scene: String = small.xml.clone(),
-        /// The command that reproduces the scene.
+        /// The command that finds this scene again.
         again: String = strip_control_characters(&small.again),
-        /// The number of times that the program was run.
+        /// How often the program was run during the search.
         runs: u32 = small.runs,
-        /// Whether no single change makes the scene smaller; false if the search was stopped early.
+        /// Whether no single change makes the scene smaller. It is false if the search was stopped early.
         minimal: bool = small.is_minimal,
-        /// The end of the program, if it did not end well.
+        /// How the program ended, if it did not end well; null otherwise.
         note: Option<String> = small.note.as_deref().map(strip_control_characters),
         /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &small.first {
             Some(DisclosedFinding::Full(finding)) => Some(FindingView::from_finding(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,
         },
-        /// The likely mistakes, beginning with the cause.
+        /// The likely mistakes. The first one is the cause for which the scene was made.
         explanations: Vec<ExplanationView> = small.explanations.iter().map(ExplanationView::from).collect(),
-        /// The computation of the first wrong step by hand; null if hints hide it.
+        /// The computation of the first wrong step by hand; null if the hints hide it.
         by_hand: Option<String> = small.by_hand.clone(),
     }
 }

@@ -1,7 +1,7 @@
-//! The style of text for terminals. Colors and signs are added to text that can be understood without them.
+//! The style of text for terminals. The text can be understood without its colors and signs.
 use crate::formula;
 
-/// The style in which a report is written.
+/// The way in which a report is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Style {
     /// Plain text, for files, pipes and users who want no color.
@@ -9,27 +9,27 @@ pub enum Style {
     Plain,
     /// Colors, for terminals.
     Color,
-    /// Colors and mathematical signs in formulas, for terminals that can show them.
+    /// Colors, and mathematical signs in formulas, for terminals that can show them.
     ColorAndSigns,
 }
 
-/// The style of a piece of text.
+/// The purpose of a piece of text, which determines its color.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Look {
-    /// The style of a right verdict or value.
+    /// A verdict or a value that is right.
     Good,
-    /// The style of a wrong verdict or value.
+    /// A verdict or a value that is wrong.
     Bad,
-    /// The style of a warning.
+    /// A warning or a notice.
     Notice,
-    /// The style of a heading.
+    /// A heading.
     Strong,
-    /// The style of less important text.
+    /// Text that is less important.
     Faint,
 }
 
 impl Style {
-    /// Returns the text with the codes of a style. Padding must be added before this call.
+    /// Returns a text with the terminal codes for its color. Padding must be added before this call.
     #[must_use]
     pub fn paint(self, look: Look, text: &str) -> String {
         let code = match (self, look) {
@@ -43,7 +43,7 @@ impl Style {
         format!("\x1b[{code}m{text}\x1b[0m")
     }
 
-    /// Returns the line, with its formulas as the style requires.
+    /// Returns a line in which formulas are written as this style requires.
     pub(crate) fn set(self, line: &str) -> String {
         if self == Self::ColorAndSigns { formula::with_signs(line) } else { line.to_owned() }
     }

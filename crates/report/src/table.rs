@@ -1,10 +1,10 @@
-//! Text in aligned columns.
+//! A table of text with aligned columns.
 use super::{
     style::{Look, Style},
     wrap::count_columns,
 };
 
-/// A cell: its text and its style.
+/// A cell of a table, with its text and its style.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Cell {
     text: String,
@@ -12,7 +12,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    /// Creates a cell with a style.
+    /// Creates a cell whose text has a style.
     pub fn with_look(look: Look, text: impl Into<String>) -> Self {
         Self { text: text.into(), look: Some(look) }
     }
@@ -27,13 +27,13 @@ impl<T: Into<String>> From<T> for Cell {
 /// The alignment of a column's text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Align {
-    /// The text is aligned at the left edge, like words.
+    /// The text begins at the left edge, as words do.
     Left,
-    /// The text is aligned at the right edge, like numbers.
+    /// The text ends at the right edge, as numbers do.
     Right,
 }
 
-/// Rows of cells with a fixed number of columns.
+/// A table with a fixed number of columns.
 #[derive(Debug, Clone)]
 pub struct Table<const COLUMNS: usize> {
     columns: [Align; COLUMNS],
@@ -41,7 +41,7 @@ pub struct Table<const COLUMNS: usize> {
 }
 
 impl<const COLUMNS: usize> Table<COLUMNS> {
-    /// Creates a table without rows.
+    /// Creates a table without rows. `columns` has the alignment of each column.
     #[must_use]
     pub const fn new(columns: [Align; COLUMNS]) -> Self {
         Self { columns, rows: Vec::new() }
@@ -52,12 +52,12 @@ impl<const COLUMNS: usize> Table<COLUMNS> {
         self.rows.push(cells);
     }
 
-    /// Appends a row of headings.
+    /// Appends a row whose cells are headings.
     pub fn heading(&mut self, titles: [&str; COLUMNS]) {
         self.row(titles.map(|title| Cell::with_look(Look::Faint, title)));
     }
 
-    /// Renders the rows as lines, indented by two spaces, with three spaces between columns and no blanks at the ends
+    /// Renders each row as a line, indented by two blanks. There are three blanks between columns, and none at the ends
     /// of lines.
     #[must_use]
     pub fn render(&self, style: Style) -> String {

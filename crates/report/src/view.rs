@@ -1,7 +1,7 @@
-//! The serialized shapes of the reports, and their schema version.
+//! The values in the JSON reports, and the versions of these reports.
 //!
-//! `schemas/check.schema.json` documents the shape of a check. A field's meaning never changes within one schema
-//! version; fields may be added.
+//! `schemas/check.schema.json` describes the report of a check. Within one version, fields may be added, but the
+//! meaning of a field never changes.
 use fosssim_findings::{
     Book, Finding, FindingDetail, FindingKind, FindingPlace, PolynomialPlace, RescaledCoefficient, Role,
 };
@@ -13,8 +13,8 @@ use fosssim_num::polynomial::Polynomial;
 pub use fosssim_num::written::Number;
 use serde::Serialize;
 
-/// Declares a value of a report that is made from another value: each field has its meaning, its type and its
-/// expression.
+/// Declares a value of a report that is made from another value. Each field has its description, its type, and the
+/// expression that computes it.
 macro_rules! view {
     ($(#[$about:meta])* $vis:vis struct $name:ident$(<$life:lifetime>)? from $from:ident: $of:ty {
         $($(#[$field:meta])* $access:vis $part:ident: $type:ty = $value:expr,)*
@@ -34,14 +34,14 @@ macro_rules! view {
 }
 pub(crate) use view;
 
-/// The version of all shapes in this module, except for the check report.
+/// The version of all reports in JSON with types from this module, except for the report of a check.
 pub const SCHEMA: u32 = 1;
 
-/// The version of the check report. Version 2 added the fair rules, whose findings have additional kinds and may be in
-/// the first record.
+/// The version of the report of a check. Version 2 added the fair rules. Their findings have further kinds, and may be
+/// in the first record.
 pub const CHECK_SCHEMA: u32 = 2;
 
-/// Returns the name of a value in JSON, for other formats; empty for a value with fields.
+/// Returns the text that stands for a value in JSON, for use in other formats; empty for a value with fields.
 #[must_use]
 pub fn to_key(value: &impl Serialize) -> String {
     let written = serde_json::to_value(value).unwrap_or_default();
@@ -50,32 +50,32 @@ pub fn to_key(value: &impl Serialize) -> String {
 
 /// Renders a value as one JSON document, indented, with a line feed at its end.
 pub(crate) fn to_document(value: &impl Serialize) -> String {
-    // A struct of plain values can always be serialized.
+    // This cannot fail, because a struct of plain values can always be serialized.
     serde_json::to_string_pretty(value).unwrap_or_default() + "\n"
 }
 
-/// Returns several numbers in JSON.
+/// Converts several numbers for JSON.
 #[must_use]
 pub fn numbers(values: &[f64]) -> Vec<Number> {
     values.iter().copied().map(Number).collect()
 }
 
-/// A polynomial of a step.
+/// A polynomial of a step, and the reference's counterpart.
 #[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct PolynomialView {
-    /// The index of the polynomial in the frame's list, from 0.
+    /// The index of the polynomial in the record's list, from 0.
     pub index: usize,
-    /// The polynomial's role.
+    /// The condition that the polynomial describes.
     pub role: Role,
-    /// The detection pass of the polynomial.
+    /// The detection pass to which the polynomial belongs.
     pub pass: Pass,
-    /// The reference's coefficients, highest power first.
+    /// The coefficients of the reference's polynomial, highest power first.
     pub expected: Polynomial,
-    /// The trace's coefficients, highest power first, at most six.
+    /// The coefficients of the trace's polynomial, highest power first. At most six are listed.
     pub actual: Polynomial,
 }
 
-/// A value that a finding compares.
+/// One of the values that a finding compares.
 #[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 #[serde(untagged)]
 pub enum Value {
@@ -83,7 +83,7 @@ pub enum Value {
     Number(Number),
     /// A number of occurrences.
     Count(usize),
-    /// A vector.
+    /// A vector with two components.
     Point(
         #[serde(with = "fosssim_num::written")]
         #[schemars(with = "[Number; 2]")]
@@ -95,41 +95,42 @@ pub enum Value {
     Collision(LoggedImpulse),
 }
 
-/// A finding as a row with the same fields for every kind.
+/// A finding. The fields are the same for every kind of finding.
 #[derive(Debug, Clone, PartialEq, Serialize, schemars::JsonSchema)]
 pub struct FindingView {
-    /// The step number, from 1; 0 is the first record (fair rules).
+    /// The number of the step, from 1; 0 is the first record, which only the fair rules judge.
     pub step: u32,
-    /// The index of the trace's frame, from 0.
+    /// The index of the record in the trace, from 0.
     pub frame: u64,
-    /// The kind of the finding.
+    /// The kind of finding.
     pub kind: FindingKind,
-    /// The pair; null if the finding has none.
+    /// The pair that the finding is about; null if it is not about a pair.
     pub pair: Option<ImpulsePair>,
-    /// The particle's index, for positions and velocities.
+    /// The index of the particle, if the finding is about a position or a velocity.
     pub particle: Option<usize>,
-    /// The polynomial; null if the finding is not about one.
+    /// The polynomial; null if the finding is not about a polynomial.
     pub polynomial: Option<PolynomialView>,
-    /// The highest power of t whose coefficient differs after division by the factor of most coefficients.
+    /// The highest power of t whose coefficient differs after division by the factor that most coefficients have in
+    /// common.
     pub coefficient: Option<usize>,
-    /// The reference's value: a collision, a number of polynomials or coefficients, the coefficients, one coefficient
-    /// multiplied by the factor of the trace's polynomial, or a vector.
+    /// The reference's value. It is a collision, a number of polynomials or coefficients, a list of coefficients, a
+    /// vector, or a single coefficient, which is multiplied by the factor of the trace's polynomial.
     pub expected: Option<Value>,
-    /// The trace's value.
+    /// The trace's value, in the same form as `expected`.
     pub actual: Option<Value>,
     /// The distance between the two values, if it is defined.
     pub residual: Option<Number>,
-    /// The bound of the distance; for coefficients, the bound applies to the distance after rescaling. Null if it
-    /// depends on the values (fair rules).
+    /// The largest distance that is accepted. For coefficients, it applies after rescaling. Null for the fair rules,
+    /// whose bounds depend on the values.
     pub tolerance: Option<Number>,
-    /// A coefficient as the original compares it.
+    /// The coefficient in the form in which the original compares it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rescaled: Option<RescaledCoefficient>,
     /// The finding as a sentence.
     pub text: String,
 }
 
-/// Returns the tolerance of the distance for a kind of finding.
+/// Returns the largest distance that the original accepts for this kind of finding; `None` if the kind has no distance.
 #[must_use]
 pub const fn tolerance(kind: FindingKind) -> Option<f64> {
     use fosssim_num::tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL};
@@ -142,7 +143,8 @@ pub const fn tolerance(kind: FindingKind) -> Option<f64> {
 }
 
 impl FindingView {
-    /// Creates the view of a finding by a book. The tolerances of the fair rules depend on the values.
+    /// Creates the view of a finding by a rule book. For the fair rules, the tolerance is null, because it depends on
+    /// the values.
     #[must_use]
     pub fn from_finding(book: Book, finding: &Finding) -> Self {
         let (kind, detail) = (finding.kind(), &finding.detail);
@@ -177,7 +179,7 @@ impl FindingView {
     }
 }
 
-/// Returns the polynomial of a finding that compares two.
+/// Returns the polynomial of a finding that compares two polynomials.
 fn polynomial(detail: &FindingDetail) -> Option<PolynomialView> {
     let (place, expected, actual) = match *detail {
         FindingDetail::PolynomialDegree { place, expected, actual, .. }
@@ -191,7 +193,7 @@ fn polynomial(detail: &FindingDetail) -> Option<PolynomialView> {
     Some(PolynomialView { index, role, pass, expected, actual })
 }
 
-/// Returns the values that a finding compares, the reference's first, and their distance.
+/// Returns the two values that a finding compares, with the reference's first, and the distance between them.
 fn compare_values(detail: &FindingDetail) -> (Option<Value>, Option<Value>, Option<f64>) {
     let both = |expected, actual, residual| (Some(expected), Some(actual), residual);
     match *detail {

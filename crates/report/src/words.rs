@@ -1,4 +1,4 @@
-//! Results of scenes, as sentences. All reports take their sentences from this module.
+//! Describes results of scenes in sentences. All reports take their sentences from here.
 pub mod explanation;
 
 mod located;
@@ -18,14 +18,14 @@ use fosssim_judge::{FindingKind, PairWords, ReadFailure};
 use fosssim_mistakes::together::likely_mistakes;
 use fosssim_model::assignments::Assignment;
 
-/// The text about a trace without the lists that its scene requires.
+/// The text about a trace that lacks the lists that its scene requires.
 pub const STATES_ONLY: &str =
     "the trace holds only positions and velocities, like that of a program without collisions";
 
-/// The exit code of shells and loaders that cannot find their program.
+/// The exit code of a shell or a loader that cannot find its program.
 const NOT_FOUND_CODE: i32 = 127;
 
-/// Returns a sentence about the result of a scene.
+/// Describes the result of a scene in one sentence.
 #[must_use]
 pub fn summarize(result: &SceneResult) -> String {
     match &result.reason {
@@ -43,7 +43,7 @@ pub fn summarize(result: &SceneResult) -> String {
     }
 }
 
-/// Returns the end of the program, with its limit but without its progress, so that the text is the same in many
+/// Describes how the program ended, and at which limit. The progress is left out, so that the text is the same for many
 /// scenes.
 pub(crate) fn describe_ending(result: &SceneResult) -> String {
     let Reason::Program(reached) = result.reason else { return summarize(result) };
@@ -56,7 +56,8 @@ pub(crate) fn describe_ending(result: &SceneResult) -> String {
     format!("the program {ended}{limit}")
 }
 
-/// Returns further lines about a scene: the first difference, counts, damage, and the file of the trace.
+/// Returns further lines about a scene: the first difference, the counts of findings, any damage, and the file of the
+/// trace.
 #[must_use]
 pub fn list_details(result: &SceneResult) -> Vec<String> {
     let mut lines = Vec::new();
@@ -90,7 +91,8 @@ pub fn list_details(result: &SceneResult) -> Vec<String> {
     lines
 }
 
-/// Returns the fault of the whole submission, which is also that of each of its scenes.
+/// Describes why the whole submission could not be graded as usual, which applies to each of its scenes; `None` if it
+/// could.
 #[must_use]
 pub fn describe_unfit(grade: &Grade) -> Option<String> {
     grade.unfit().map(|unfit| match unfit {
@@ -101,12 +103,13 @@ pub fn describe_unfit(grade: &Grade) -> Option<String> {
     })
 }
 
-/// Returns the text for a program of a milestone other than the suite's.
+/// Describes a program that was written for another milestone than the suite's.
 fn describe_milestone(other: Assignment) -> String {
     format!("it looks like a program of {}, which is not the milestone of this suite", other.definition().title)
 }
 
-/// Returns the text for a submission that logs nothing in any scene, with the unwritten parts if hints allow it.
+/// Describes a submission that logs nothing in any scene. If the hints allow it, the text names the parts that are not
+/// written.
 fn describe_unwritten(grade: &Grade) -> String {
     let scenes = format_count(grade.scenes().count() as u64, "scene");
     let missing = match likely_mistakes(grade).first() {
@@ -116,7 +119,7 @@ fn describe_unwritten(grade: &Grade) -> String {
     format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
 }
 
-/// Returns a sentence about why a grade is not fully accepted; `None` if it is.
+/// Describes in one sentence why a grade is not fully accepted; `None` if it is.
 #[must_use]
 pub fn describe_reason(grade: &Grade) -> Option<String> {
     if let Some(unfit) = describe_unfit(grade) {
@@ -129,7 +132,7 @@ pub fn describe_reason(grade: &Grade) -> Option<String> {
     Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, summarize(first)))
 }
 
-/// Returns the end of a build, as text.
+/// Describes how a build ended.
 #[must_use]
 pub fn build(end: &BuildEnd) -> String {
     match end {
@@ -182,8 +185,8 @@ fn describe_bad_trace(bad: &BadTrace) -> String {
     }
 }
 
-/// Returns the progress of a program's trace. The number of records that a crash lost is unknown, because some may have
-/// been buffered.
+/// Describes how far a program's trace reaches. The number of records that a crash lost is unknown, because some may
+/// have been in a buffer.
 fn describe_progress(reached: ProgramProgress, steps: u32) -> String {
     match (reached.limit, reached.steps) {
         (_, done) if done == steps => " after its last step".to_owned(),
@@ -239,7 +242,7 @@ fn describe_failure(failure: &Failure) -> String {
     }
 }
 
-/// Returns the place where a trace first differs from the reference, if hints allow it.
+/// Describes where a trace first differs from the reference, as far as the hints allow it.
 pub(crate) fn describe_first(first: &DisclosedFinding) -> String {
     match first {
         DisclosedFinding::Full(finding) => format!("first difference: {finding}"),
@@ -256,11 +259,11 @@ pub(crate) fn describe_first(first: &DisclosedFinding) -> String {
     }
 }
 
-/// Returns the counts of findings, such as `counts: wrong coefficient (12), missed collision (3)`, if there is more
-/// than the first finding.
+/// Describes how many findings of each kind there are, such as `counts: wrong coefficient (12), missed collision (3)`;
+/// `None` if there is only the first finding.
 fn describe_counts(account: &DisclosedBook) -> Option<String> {
     let counts = &account.counts;
-    // A kind without an example occurs only in damaged records, so it proves nothing about the program.
+    // If a kind of finding has no example, it occurs only in damaged records, so it proves nothing about the program.
     let has_example = |kind: FindingKind| account.examples.iter().any(|example| example.kind() == kind);
     let list: Vec<String> = FindingKind::ALL
         .into_iter()

@@ -1,15 +1,15 @@
-//! Line breaks at blanks, for terminals of a given width.
+//! Breaks lines at blanks, for terminals of a given width.
 //!
-//! The functions work on finished text, so that renderers need no width. A continued line is indented below its
-//! beginning. Color codes have no width. A word that is too long stays whole, and so does a line to be copied, which
-//! begins with `$ `. Every line of a program's output has a mark (`| `), so that they can't be confused with the
-//! report's.
+//! The functions work on finished text, so that the code that renders reports needs no width. The rest of a broken line
+//! is indented like its beginning. Color codes have no width. A word that is too long is not broken, and neither is a
+//! line that the reader copies, which begins with `$ `. Every line of a program's output gets a mark (`| `), so that it
+//! can't be mistaken for a line of the report.
 use unicode_width::UnicodeWidthChar;
 
-/// The minimum width of the last column for which continued lines keep its indentation.
+/// The minimum width of the last column if the rest of a broken line is to be indented below it.
 const MIN_LAST_COLUMN: usize = 30;
 
-/// Returns the text with no line wider than `width`, if its words allow it.
+/// Breaks lines so that they are no wider than `width`, if their words allow it.
 #[must_use]
 pub fn wrap(text: &str, width: usize) -> String {
     let mut result = String::with_capacity(text.len());
@@ -21,7 +21,7 @@ pub fn wrap(text: &str, width: usize) -> String {
     result
 }
 
-/// Returns the width of a text in columns; color codes have none.
+/// Returns the width of a text in columns. Color codes have no width.
 #[must_use]
 pub fn count_columns(text: &str) -> usize {
     let mut inside_code = false;
@@ -52,7 +52,7 @@ fn push_broken(result: &mut String, line: &str, width: usize) {
     let mut fresh = true;
     for piece in line.split_inclusive(' ') {
         let (word, wide) = (piece.trim_end_matches(' '), count_columns(piece));
-        // Blanks at the end of a line take no space.
+        // Blanks at the end of a line need no space.
         if !fresh && !word.is_empty() && at + count_columns(word) > width {
             result.truncate(result.trim_end_matches(' ').len());
             result.push('\n');
@@ -66,7 +66,7 @@ fn push_broken(result: &mut String, line: &str, width: usize) {
     }
 }
 
-/// Returns the prefix of each continued line: a number of blanks, and the mark of a program's output.
+/// Returns the prefix for the rest of a broken line: a number of blanks, and the mark of a program's output.
 fn find_continuation(line: &str, body: &str, width: usize) -> (usize, &'static str) {
     let lead = line.len() - body.len();
     if body.starts_with("| ") {
@@ -75,7 +75,7 @@ fn find_continuation(line: &str, body: &str, width: usize) -> (usize, &'static s
     if body.starts_with("- ") {
         return (lead + 2, "");
     }
-    // A row of a table continues below its last column, if there is space.
+    // The rest of a broken row in a table is below the row's last column, if there is space.
     let gaps = line.match_indices("  ").map(|(at, _)| at).filter(|at| *at > lead);
     let columns_at = gaps.filter_map(|at| {
         let rest = line[at..].trim_start_matches(' ');

@@ -19,15 +19,15 @@ use fosssim_student::assignments::t2m2::{
     formulas::{Formula, readings},
 };
 
-/// Describes a step while it is computed.
+/// Describes the passes and responses of a step while the reference computes it.
 pub(super) struct CollisionWalk<'a> {
     scene: &'a Scene,
-    /// The pair whose detection is written in full, once.
+    /// The pair whose detection is written in full. It is written only once.
     pair: Option<(Pair, Option<Pass>)>,
     text: String,
     /// The positions at the start of the step.
     start: Vec<f64>,
-    /// The end positions that the last pass or collision used; for `simple` also the velocities.
+    /// The end positions that the last pass or collision used. For `simple` handling, also the end velocities.
     seen: State,
 }
 
@@ -38,7 +38,7 @@ impl<'a> CollisionWalk<'a> {
         Self { scene, pair, text: String::new(), start, seen: State::default() }
     }
 
-    /// Returns the description; `None` if the scene does not handle collisions.
+    /// Returns the description; `None` if the scene has no collision handling.
     pub(super) fn finish(self) -> Option<String> {
         (!self.text.is_empty()).then_some(self.text)
     }
@@ -47,7 +47,7 @@ impl<'a> CollisionWalk<'a> {
         vector_at(&self.seen.positions, particle) - vector_at(&self.start, particle)
     }
 
-    /// Renders the detection of a pair.
+    /// Renders the detection of a pair; `None` if its computation has no result.
     fn detection_text(&self, detection: &Detection<'_>) -> Option<String> {
         let &Detection { pass, pair, q_start, q_end, .. } = detection;
         if pass.stage == Stage::Simple {
@@ -163,7 +163,8 @@ impl Observer for CollisionWalk<'_> {
     }
 }
 
-/// Renders the formulas of a pair's polynomials, with the values of their letters. The course supplies the longest one.
+/// Renders the formulas of a pair's polynomials, and the values of their letters. The longest formula is left out,
+/// because the course's library contains it.
 fn render_letters(motion: &PairMotion) -> String {
     let (inputs, mut lines) = (Inputs::new(motion), Vec::new());
     for subject in Subject::all_of_kind(motion.kind()) {
@@ -193,14 +194,15 @@ fn render_letters(motion: &PairMotion) -> String {
     format!("Formulas\n{}\n", lines.join("\n"))
 }
 
-/// Returns the parts of a zone: `{0, 1, half-plane}`.
+/// Returns the parts of a zone as text, such as `{0, 1, half-plane}`.
 fn zone_name(zone: &Zone<'_>) -> String {
     let particles = zone.particles.iter().map(u32::to_string);
     let parts: Vec<String> = particles.chain(zone.half_plane.then(|| "half-plane".to_owned())).collect();
     format!("{{{}}}", parts.join(", "))
 }
 
-/// Renders the motion of a zone as one rigid body, from the positions at the start of the step and their changes.
+/// Renders the motion of a zone as one rigid body. The motion follows from the positions at the start of the step and
+/// their changes.
 fn rigid_motion(scene: &Scene, zone: &Zone<'_>, start: &[f64], shift: impl Fn(usize) -> Vec2) -> String {
     let members = || zone.particles.iter().map(|&particle| particle as usize);
     if zone.half_plane || members().any(|particle| scene.particles[particle].fixed) {

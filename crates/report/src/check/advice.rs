@@ -1,11 +1,12 @@
-//! Advice about the place to check in the program. If there is no likely mistake, the kind of the first finding
-//! suggests the place.
+//! Advice about where to look in the program. If there is no likely mistake, the advice depends on the kind of the
+//! first finding.
 use super::{Check, first};
 use crate::words::explanation;
 use fosssim_judge::{Finding, FindingDetail};
 use fosssim_model::assignments::CollisionType;
 
-/// Returns the advice; empty if the explanations are sufficient, because they name a known mistake or a polynomial.
+/// Returns the advice. It is empty if the explanations name a known mistake or a polynomial, because they are
+/// sufficient then.
 pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first::find_first(check) else { return Vec::new() };
     match check.explanations.iter().find(|one| explanation::is_known(one)) {

@@ -1,9 +1,9 @@
-//! Properties of an outcome that commands check before they report it.
+//! Tests of an outcome that commands make before they report it.
 use fosssim_findings::{Outcome, Overall, Stop};
 use fosssim_judge::{ReadFailure, fair::FairVerdict};
 use fosssim_model::sim::StepError;
 
-/// Returns whether there is something to explain; the fair rules decide this.
+/// Returns whether there is something to explain: whether the fair rules reject the trace.
 #[must_use]
 pub fn is_wrong(outcome: &Outcome) -> bool {
     match &outcome.fair {
@@ -12,7 +12,7 @@ pub fn is_wrong(outcome: &Outcome) -> bool {
     }
 }
 
-/// Returns the reason why a scene has no verdict for any trace; `None` for nearly all scenes.
+/// Returns the reason why no trace of this scene can get a verdict; `None` for nearly all scenes.
 #[must_use]
 pub fn describe_no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
     match outcome.parity.endless {
@@ -23,7 +23,7 @@ pub fn describe_no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
     }
 }
 
-/// Returns the message about a trace that could not be read to its end, and so has no verdict.
+/// Returns the message about a trace that could not be read to its end, and therefore has no verdict.
 #[must_use]
 pub fn describe_unread(outcome: &Outcome, trace: &str, why: &str) -> String {
     let place = match &outcome.stop {

@@ -1,4 +1,4 @@
-//! The verdicts of the rule books, with one line for each. Their tables are shown on request.
+//! The verdicts of both rule books, one line for each. The tables of findings are shown on request.
 use super::{Check, fair, follows};
 use crate::{
     number::format_count,
@@ -6,10 +6,10 @@ use crate::{
 };
 use fosssim_judge::{Overall, fair::find_cause};
 
-/// The verdict of one rule book: its name, its word with a style, and its reason.
+/// The verdict of one rule book: the book's name, the style and the text of the verdict, and the reason for it.
 pub(crate) type BookWords = (&'static str, Look, &'static str, String);
 
-/// Returns the verdicts of both books; `None` if the headline contains them.
+/// Returns the verdicts of both books; `None` if the headline already contains them.
 pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     let outcome = check.outcome;
     let judgement = outcome.fair.as_deref()?;
@@ -28,7 +28,7 @@ pub(crate) fn verdicts(check: &Check<'_>) -> Option<[BookWords; 2]> {
     Some([parity, ("the fair rules", look, word, fair::summarize(judgement, outcome))])
 }
 
-/// Renders the section about the rule books; `None` if the headline contains the verdicts.
+/// Renders the section about the rule books; `None` if the headline already contains the verdicts.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let mut text = format!("{}\n", style.paint(Look::Strong, "Rule books"));
     for (name, look, word, grounds) in verdicts(check)? {

@@ -1,9 +1,9 @@
-//! Commands that show more of the first fault.
+//! Commands with which a reader sees more of the first fault.
 use super::{Check, first};
 use crate::{describe::pair_key, foreign::quote};
 
-/// Returns the commands, ready to be typed; empty if the trace is right, or came from standard input and can't be read
-/// again.
+/// Returns the commands in a form that can be typed. There are none if the trace is right, or if it came from standard
+/// input and can't be read again.
 pub(super) fn list_commands(check: &Check<'_>) -> Vec<String> {
     let Some(first) = first::find_first(check).filter(|_| check.trace != "-") else { return Vec::new() };
     let (scene, trace, step) = (quote(check.scene), quote(check.trace), first.step);

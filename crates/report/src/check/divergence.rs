@@ -1,4 +1,4 @@
-//! Shows the first difference, with expected and actual values side by side.
+//! Shows the first difference, with the expected and the actual values side by side.
 use super::super::{
     number::{format_exact, format_g},
     style::{Look, Style},
@@ -16,7 +16,7 @@ pub(super) fn render(finding: &Finding, steps: u32, style: Style) -> String {
     )
 }
 
-/// Returns the place of a finding, for a heading.
+/// Describes where a finding is in the trace, for a heading.
 pub(crate) fn describe_place(finding: &Finding, steps: u32) -> String {
     let record = if finding.frame == 2 * u64::from(finding.step) { " (end record)" } else { "" };
     match finding.step {
@@ -25,15 +25,15 @@ pub(crate) fn describe_place(finding: &Finding, steps: u32) -> String {
     }
 }
 
-/// Returns one finding as a sentence, and its values side by side.
+/// Renders one finding as a sentence, with its values side by side.
 pub(super) fn render_finding(finding: &Finding, style: Style) -> String {
     format!("  {}\n{}", finding.what(), side_by_side(&finding.detail).text(style))
 }
 
-/// A value that a finding compares.
+/// One of the values that a finding compares.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Value {
-    /// There is no value.
+    /// No value, because this side has none.
     Nothing,
     /// A number of occurrences.
     Count(usize),
@@ -42,7 +42,7 @@ pub(crate) enum Value {
 }
 
 impl Value {
-    /// Returns the exact value as text.
+    /// Returns the value as text, with all digits.
     pub(crate) fn exact(self) -> String {
         match self {
             Self::Nothing => "none".to_owned(),
@@ -52,10 +52,10 @@ impl Value {
     }
 }
 
-/// Two values that a finding compares.
+/// Two values that a finding compares, and their name.
 #[derive(Debug, Clone, PartialEq)]
 pub(crate) struct Row {
-    /// The name of both values.
+    /// The common name of both values.
     pub(crate) name: &'static str,
     /// The reference's value.
     pub(crate) expected: Value,
@@ -65,14 +65,14 @@ pub(crate) struct Row {
     pub(crate) differs: bool,
 }
 
-/// The values of a finding side by side, with the remarks before and after them.
+/// The values of a finding side by side, and the remarks above and below them.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub(crate) struct SideBySide {
-    /// Lines above the table: the position in the trace, for readers who inspect its bytes.
+    /// Lines above the table. They give the position in the trace, for readers who inspect its bytes.
     before: Vec<String>,
     pub(crate) rows: Vec<Row>,
     pub(crate) after: Vec<String>,
-    /// The values that the original compares, if they are different.
+    /// A line about the values that the original compares, if they differ from those in the table.
     original: Option<String>,
 }
 
@@ -92,7 +92,7 @@ impl SideBySide {
     }
 }
 
-/// Returns the values of a finding.
+/// Returns the values that a finding compares.
 pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
     let rows = |rows: Vec<Row>| SideBySide { rows, ..SideBySide::default() };
     match detail {
@@ -123,7 +123,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
         } => {
             let (reference, trace) = (expected_polynomial.coefficients(), actual_polynomial.coefficients());
             let own = reference.iter().rev().nth(*power).copied().unwrap_or(0.0);
-            // This is the factor that was used for the finding.
+            // This is the same factor with which the finding was judged.
             let factor = if own == 0.0 { find_factor(reference, trace) } else { expected / own };
             let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
             sides.original = rescaled.as_ref().map(|RescaledCoefficient { power, expected, actual, .. }| {
@@ -157,12 +157,13 @@ fn logged_by(place: &fosssim_judge::PolynomialPlace) -> String {
     format!("polynomial {} of the record", place.index)
 }
 
-/// Returns two polynomials by power. Coefficients that differ after division by the common factor are marked.
+/// Compares two polynomials power by power. Coefficients that differ after division by the common factor are marked.
 fn polynomials(place: &fosssim_judge::PolynomialPlace, expected: &[f64], actual: &[f64]) -> SideBySide {
     polynomials_with(place, expected, actual, find_factor(expected, actual), None)
 }
 
-/// Compares two polynomials by power, where `factor` scales the expected values; `power` is known to differ.
+/// Compares two polynomials power by power. `factor` scales the expected values. The coefficients of `power` are known
+/// to differ.
 fn polynomials_with(
     place: &fosssim_judge::PolynomialPlace,
     expected: &[f64],
@@ -198,10 +199,10 @@ fn polynomials_with(
     }
 }
 
-/// The names of the powers of a polynomial's coefficients; no polynomial has more.
+/// The names of the powers for a polynomial's coefficients. No polynomial has a higher power.
 const POWERS: [&str; 7] = ["1", "t", "t^2", "t^3", "t^4", "t^5", "t^6"];
 
-/// Returns the contact normal and time.
+/// Compares the normals and the times of two logged collisions.
 fn collision_rows(expected: Option<LoggedImpulse>, actual: Option<LoggedImpulse>) -> Vec<Row> {
     let row = |name, part: fn(LoggedImpulse) -> f64| match (expected.map(part), actual.map(part)) {
         (Some(expected), Some(actual)) => number_row(name, expected, actual),

@@ -1,4 +1,4 @@
-//! The fair rules' part of the check report, for people.
+//! The section about the fair rules in the check report for people.
 use super::super::{
     number::{count, format_g},
     share,
@@ -60,7 +60,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
     Some(text)
 }
 
-/// Returns the kinds of findings of a book, with the first example of each.
+/// Lists the kinds of findings of a rule book, each with its first example.
 pub(super) fn describe_kinds(found: &BookFindings, style: Style) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left]);
     table.heading(["kind", "count", "first example"]);
@@ -71,7 +71,7 @@ pub(super) fn describe_kinds(found: &BookFindings, style: Style) -> String {
     table.render(style)
 }
 
-/// Returns the verdict's word and its style.
+/// Returns the text of the verdict and its style.
 pub(super) const fn verdict(fair: &Judgement) -> (Look, &'static str) {
     match fair.verdict {
         FairVerdict::Accepted => (Look::Good, "accepted"),
@@ -113,7 +113,8 @@ pub(super) fn summarize(fair: &Judgement, outcome: &Outcome) -> String {
     }
 }
 
-/// Returns the used shares of tolerances, such as `coefficients 12 %, positions 3 %`; unused shares are left out.
+/// Returns how much of each tolerance was used, such as `coefficients 12 %, positions 3 %`. Tolerances that were not
+/// used are left out.
 fn describe_shares(fair: &Judgement) -> Option<String> {
     let shares = fair.shares;
     let list: Vec<String> = [
@@ -133,7 +134,7 @@ fn format_percent(share: f64) -> String {
     if share < 0.01 { "< 1 %".to_owned() } else { format!("{:.0} %", 100.0 * share) }
 }
 
-/// Returns the sentence about which book accepts and which one rejects the trace.
+/// Returns a sentence about which rule book accepts the trace, and which one rejects it.
 pub(crate) const fn describe_sides(cause: Cause) -> &'static str {
     if cause.original_fails() {
         "the original fails this trace, the fair rules accept it"

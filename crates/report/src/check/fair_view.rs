@@ -1,4 +1,4 @@
-//! The fair rules' part of the check report, for programs.
+//! The section about the fair rules in the check report for programs.
 use super::super::view::{FindingView, view};
 use fosssim_findings::{
     Book, Cause, Finding, FindingKind,
@@ -7,33 +7,34 @@ use fosssim_findings::{
 use serde::Serialize;
 
 view! {
-    /// The fair rules' judgement.
+    /// The judgement by the fair rules.
     #[derive(Debug)]
     #[schemars(deny_unknown_fields)]
     pub(super) struct FairView<'a> from fair: Judgement {
-        /// The verdict; none if judging stopped early and had found no fault.
+        /// The verdict by the fair rules. It is `none` if judging stopped early before a fault was found.
         verdict: FairVerdict = fair.verdict,
-        /// The reason why the whole trace is rejected.
+        /// The reason why the whole trace is rejected; null if it is not.
         refusal: Option<FairRefusal> = fair.refusal,
-        /// The number of steps with at least one finding; the first record is not a step.
+        /// The number of steps with at least one finding. The first record is not a step.
         wrong_steps: u64 = fair.findings.wrong_steps,
         /// The first finding; null if there is none.
         first_divergence: Option<FindingView> =
             fair.findings.first_divergence.as_ref().map(|first| FindingView::from_finding(Book::Fair, first)),
-        /// The first finding of each kind, and the number of each kind. The tolerance is null, because it depends on
-        /// the values.
+        /// For each kind of finding, the number of findings and the first one. The tolerance is null, because it
+        /// depends on the values.
         findings: Vec<CountedView> =
             CountedView::count(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
-        /// The smallest and the largest factor of the polynomials; null if it is 1.
+        /// The smallest and the largest factor by which the trace's polynomials differ from the reference's; null if
+        /// all factors are 1.
         #[serde(with = "fosssim_num::written")]
         #[schemars(with = "Option<[crate::view::Number; 2]>")]
         factor: Option<[f64; 2]> = fair.factor,
         /// The accepted form of the particle-edge approach polynomial that the trace uses.
         approach_form: Form = fair.form,
-        /// The decisions that differ from the reference's, but may do so because of round-off. They are not findings.
+        /// The decisions that differ from the reference's, which round-off may explain. They do not count as findings.
         borderline: BorderlineView<'a> =
             BorderlineView { count: fair.borderline, examples: &fair.borderline_examples },
-        /// The largest shares of the tolerances that right values use, 0 to 1.
+        /// The largest shares of the tolerances that accepted values use, from 0 to 1.
         used_tolerance: &'a Shares = &fair.shares,
     }
 }
@@ -50,7 +51,7 @@ pub(super) struct CountedView {
 }
 
 impl CountedView {
-    /// Returns the first findings of each kind by a book, each with the number of findings.
+    /// Returns the first findings of each kind, and the numbers of findings.
     pub(super) fn count(book: Book, firsts: &[Finding], count: impl Fn(FindingKind) -> u64) -> Vec<Self> {
         firsts
             .iter()
@@ -59,18 +60,18 @@ impl CountedView {
     }
 }
 
-/// Borderline decisions.
+/// Decisions that round-off may turn around.
 #[derive(Debug, Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct BorderlineView<'a> {
     /// The number of borderline decisions.
     count: u64,
-    /// The first borderline decisions.
+    /// The first borderline decisions in the trace.
     examples: &'a [Borderline],
 }
 
 view! {
-    /// The reason why the two rule books differ.
+    /// The reason why the two rule books reach different verdicts.
     #[derive(Debug)]
     #[schemars(deny_unknown_fields)]
     pub(crate) struct CauseView from cause: Cause {

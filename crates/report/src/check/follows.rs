@@ -1,8 +1,8 @@
-//! Counts polynomials that differ only as a consequence of wrong input positions.
+//! Counts the polynomials that differ only because their input positions are wrong.
 use crate::number::count as number;
 use fosssim_judge::{Finding, FindingKind, Outcome, fair::FairVerdict};
 
-/// The kinds of faults of a formula, as opposed to faults of its input positions.
+/// The kinds of findings that are faults of a formula, and not of its input positions.
 const FORMULA_KINDS: [FindingKind; 6] = [
     FindingKind::PolynomialDegree,
     FindingKind::VanishingPolynomial,
@@ -17,15 +17,16 @@ pub(crate) fn is_of_formula(kind: FindingKind) -> bool {
     FORMULA_KINDS.contains(&kind)
 }
 
-/// Returns whether the finding is a formula's fault in a pass whose input positions come from earlier passes of the
-/// step.
+/// Returns whether the finding is about a formula in a pass whose input positions were computed by earlier passes of
+/// the same step.
 pub(super) fn is_of_later_pass(finding: &Finding) -> bool {
     is_of_formula(finding.kind()) && finding.detail.pass().is_some_and(|pass| pass.index > 0)
 }
 
-/// Counts the polynomials that the original's rules find wrong only because positions are wrong. If the fair rules,
-/// which use the trace's own positions, find no wrong formula except in later passes, these are all of them. The same
-/// holds if they find only wrong states, and the first differing formulas are those of later passes.
+/// Counts the polynomials that are wrong by the original's rules only because positions are wrong. This requires that
+/// the fair rules, which start from the trace's own positions, reject the trace without finding a wrong formula. They
+/// must find wrong positions between the passes of a step; or they must find wrong states, and the first wrong formulas
+/// by the original's rules must all be in later passes. Otherwise the count is 0.
 pub(crate) fn count(outcome: &Outcome) -> u64 {
     let Some(fair) = outcome.fair.as_ref().filter(|fair| fair.verdict == FairVerdict::Rejected) else { return 0 };
     let charged = |kind: FindingKind| fair.findings.counts.get(kind);
@@ -38,7 +39,7 @@ pub(crate) fn count(outcome: &Outcome) -> u64 {
     FORMULA_KINDS.into_iter().map(|kind| outcome.parity.findings.counts.get(kind)).sum()
 }
 
-/// Describes how many polynomials follow from wrong positions.
+/// Describes how many polynomials are wrong only because positions are wrong.
 pub(super) fn describe(follow: u64) -> String {
     format!("polynomials that follow from wrong positions: {}", number(follow))
 }

@@ -1,9 +1,9 @@
-//! Recognizes files that are not traces.
+//! Recognizes files that are something else than a trace.
 
-/// The number of bytes at the start of a file from which its kind is recognized.
+/// The number of bytes at the start of a file that are read to recognize its kind.
 pub const SNIFFED_BYTES: u64 = 512;
 
-/// Returns the kind of a file that begins with the given bytes, if it can't be a trace. A trace begins with the bits of
+/// Returns the kind of a file that begins with `start`, if such a file can't be a trace. Traces begin with the bits of
 /// a position.
 #[must_use]
 pub fn looks_like(start: &[u8]) -> Option<&'static str> {

@@ -1,7 +1,8 @@
-//! The report on one trace: verdict, residuals, the fair rules, findings, first difference.
+//! The report on one trace. It contains the verdict, the residuals, the fair rules' judgement, the findings and the
+//! first difference.
 //!
-//! [`text`](Check::text) is for people, [`json`](Check::json) for programs (`schemas/check.schema.json`). Both have the
-//! same content, and depend only on the outcome.
+//! [`text`](Check::text) renders the report for people, and [`json`](Check::json) renders it for programs
+//! (`schemas/check.schema.json`). Both have the same content, which depends only on the outcome.
 
 pub(crate) mod advice;
 mod asked;
@@ -38,31 +39,31 @@ use serde::Serialize;
 use std::collections::BTreeMap;
 use steps::WrongStepView;
 
-/// A judged trace, with the names that people use for it.
+/// A judged trace, and the names that people use for it.
 #[derive(Debug, Clone, Copy)]
 pub struct Check<'a> {
-    /// The scene's name, as typed.
+    /// The name of the scene, as the user typed it.
     pub scene: &'a str,
-    /// The trace's name, as typed.
+    /// The name of the trace, as the user typed it.
     pub trace: &'a str,
-    /// The outcome of judging.
+    /// The outcome of judging the trace.
     pub outcome: &'a Outcome,
     /// Likely mistakes, the likeliest first; empty if the trace is right, or if they were not requested.
     pub explanations: &'a [Explanation],
-    /// The rule books that judged.
+    /// The rule books by which the trace was judged.
     pub rules: Rules,
-    /// The wrong steps, and the selection of steps that are shown individually.
+    /// The wrong steps, and which of them the report shows one by one.
     pub steps: &'a WrongSteps,
-    /// Whether certificates were audited, so that the report includes the counts of root searches.
+    /// Whether the report includes the counts of root searches, because certificates were audited.
     pub audit: bool,
-    /// Whether the text contains all tables, or only as much as fits on a screen.
+    /// Whether the text contains all tables; otherwise it contains only as much as fits on a screen.
     pub tables: bool,
-    /// The kind of file that the trace seems to be, if it begins like another kind.
+    /// The kind of file that the trace probably is, if it begins like another kind.
     pub looks_like: Option<&'a str>,
 }
 
 impl Check<'_> {
-    /// Returns whether the trace is accepted.
+    /// Returns whether the official rule book accepts the trace.
     #[must_use]
     pub fn is_accepted(&self) -> bool {
         self.outcome.ruling(self.book()) == Ruling::Accepted
@@ -74,23 +75,23 @@ impl Check<'_> {
         self.outcome.ruling(self.book()).name()
     }
 
-    /// Returns whether the file is not a trace at all, so that the report contains only this fact.
+    /// Returns whether the file is not a trace at all. In that case, the report says only that.
     pub(crate) fn is_not_a_trace(&self) -> bool {
         self.looks_like.is_some() && !self.is_accepted()
     }
 
-    /// Returns the text about which book accepts the trace, if the rule books disagree.
+    /// Returns a sentence about which book accepts the trace; `None` if the rule books agree.
     #[must_use]
     pub fn difference(&self) -> Option<&'static str> {
         find_cause(self.outcome).map(fair::describe_sides)
     }
 
-    /// Returns the official book.
+    /// Returns the rule book that gives the verdict.
     const fn book(&self) -> Book {
         self.rules.official()
     }
 
-    /// Returns the findings of the official rule book.
+    /// Returns the findings by the official rule book.
     fn account(&self) -> &BookFindings {
         self.outcome.findings_by(self.book())
     }
@@ -101,14 +102,14 @@ impl Check<'_> {
         text::render(self, style)
     }
 
-    /// Renders the requested steps, with expected and actual values; empty if none is wrong.
+    /// Renders the requested steps, with expected and actual values. Returns `None` if none of them is wrong.
     #[must_use]
     pub fn steps_text(&self, style: Style) -> Option<String> {
         steps::render(self, style)
     }
 
-    /// Returns annotations for GitHub Actions: the verdict with the likely mistakes, if it is not accepted, and the
-    /// difference of the rule books.
+    /// Returns annotations for GitHub Actions: one for the verdict with the likely mistakes, if the trace is not
+    /// accepted, and one if the rule books differ.
     #[must_use]
     pub fn github(&self) -> String {
         let mut text = String::new();
@@ -134,7 +135,8 @@ impl Check<'_> {
     }
 }
 
-/// Counts how often the original prints each of its messages, with the texts that graders of its output search for.
+/// Counts how often the original would print each of its messages. The keys are the texts for which graders search in
+/// its output.
 fn count_messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
     let mut messages: BTreeMap<_, _> = FindingKind::ALL
         .into_iter()
@@ -157,84 +159,84 @@ fn count_messages(outcome: &Outcome) -> BTreeMap<&'static str, u64> {
 }
 
 view! {
-    /// The report on one trace. Within a version, fields may be added, but the meaning of a field does not change.
-    /// Numbers that are not finite are the texts nan, -nan, inf and -inf.
+    /// The report on one trace. Within one version, fields may be added, but the meaning of a field never changes.
+    /// Numbers that are not finite are written as the texts nan, -nan, inf and -inf.
     #[schemars(deny_unknown_fields)]
     pub(crate) struct CheckView<'a> from check: Check<'a> {
-        /// The version of this shape.
+        /// The version of this document's form.
         #[schemars(extend("const" = CHECK_SCHEMA))]
         schema: u32 = CHECK_SCHEMA,
-        /// The scene's name, as typed.
+        /// The name of the scene, as the user typed it.
         scene: &'a str = check.scene,
-        /// The trace's name, as typed.
+        /// The name of the trace, as the user typed it.
         trace: &'a str = check.trace,
         /// The requested rule books.
         rules: Rules = check.rules,
-        /// The book from which the verdict, the first difference, the findings and the wrong steps are taken.
+        /// The rule book that gives the verdict, the first difference, the findings and the wrong steps.
         official: Book = check.book(),
-        /// The verdict of the official book. Undecided: no fault was found, but judging stopped early. Bad trace: the
-        /// trace could not be read to the scene's last step. By the fair rules it may also be damaged, or have bytes
-        /// after its last record.
+        /// The verdict by the official rule book. Undecided means that no fault was found, but judging stopped early.
+        /// Bad trace means that the trace could not be read to the scene's last step. By the fair rules, a bad trace
+        /// may also be damaged, or have bytes after its last record.
         #[schemars(extend("enum" = Ruling::ALL.map(Ruling::name)))]
         verdict: &'static str = check.verdict(),
         /// The reason for the verdict, in one line.
         summary: String = text::render_headline(check),
-        /// The original's judgement.
+        /// The judgement by the original's rules.
         parity: Parity = Parity::from(check.outcome),
-        /// The fair rules' judgement; null if they did not judge.
+        /// The judgement by the fair rules; null if they were not used.
         fair: Option<FairView<'a>> = check.outcome.fair.as_deref().map(FairView::from),
-        /// The rule by which the two rule books differ; null if they agree.
+        /// The reason why the two rule books differ; null if they agree.
         difference: Option<CauseView> = find_cause(check.outcome).as_ref().map(CauseView::from),
-        /// The official book's first finding; null if there is none.
+        /// The first finding by the official rule book; null if there is none.
         first_divergence: Option<FindingView> =
             check.account().first_divergence.as_ref().map(|first| FindingView::from_finding(check.book(), first)),
-        /// The first finding of each kind by the official book, and the number of each kind.
+        /// For each kind of finding by the official rule book, the number of findings and the first one.
         findings: Vec<CountedView> =
             CountedView::count(check.book(), &check.account().examples, |kind| check.account().counts.get(kind)),
-        /// Advice for the kind of the first finding.
+        /// Advice that fits the kind of the first finding.
         advice: Vec<&'static str> = advice::lines(check),
-        /// Commands that show more of the first finding.
+        /// Commands with which a reader sees more of the first finding.
         commands: Vec<String> = closer::list_commands(check),
-        /// Other facts, such as damage or bytes after the end.
+        /// Further facts about the trace, such as damage, or bytes after its end.
         notes: Vec<String> = text::list_notes(check),
-        /// Likely mistakes, the likeliest first; empty if nothing is wrong, or with --no-explain.
+        /// Likely mistakes, the likeliest first. The list is empty if nothing is wrong, and with --no-explain.
         explanations: Vec<ExplanationView> = check.explanations.iter().map(ExplanationView::from).collect(),
         /// The number of steps of the scene.
         steps: u32 = check.outcome.steps,
-        /// The number of judged steps.
+        /// The number of steps that were judged.
         steps_judged: u32 = check.outcome.steps_judged,
-        /// The number of steps with at least one finding of the official book.
+        /// The number of steps with at least one finding by the official rule book.
         wrong_steps: u64 = check.account().wrong_steps,
-        /// The numbers of the wrong steps, from 1; only the first 1000.
+        /// The numbers of the wrong steps, from 1. Only the first 1000 are listed.
         #[schemars(length(max = MAX_LISTED), inner(range(min = 1)))]
         wrong_step_numbers: Vec<u32> = steps::step_numbers(check),
-        /// The wrong steps (the first 1000) with --all, or the requested steps with --step; null without both options.
-        /// The findings are the official book's, or the fair rules' if the official book found none.
+        /// With --all, the first 1000 wrong steps; with --step, the requested steps; null without these options. Their
+        /// findings are those of the official rule book, or those of the fair rules if the official rule book found
+        /// none.
         shown_steps: Option<Vec<WrongStepView>> = steps::step_views(check),
-        /// The reason why judging stopped before the scene's last step; null if it did not.
+        /// The reason why judging stopped before the scene's last step; null if all steps were judged.
         problem: Option<StopView> = check.outcome.stop_of(check.book()).as_ref().map(StopView::from),
-        /// The first damage that the original's reader skips silently.
+        /// The first damage that the original's reader skips without a message; null if there is none.
         damage: Option<DamageView> = check.outcome.damage.as_ref().map(DamageView::from),
         /// Whether bytes follow the last record.
         trailing_bytes: bool = check.outcome.trailing_bytes,
-        /// The counts of root searches; only with --audit.
+        /// The counts of root searches; null without --audit.
         #[serde(skip_serializing_if = "Option::is_none")]
         root_searches: Option<SearchCounts> = check.audit.then_some(check.outcome.searches),
     }
 }
 
 view! {
-    /// The original's judgement.
+    /// The judgement by the original's rules.
     #[schemars(deny_unknown_fields)]
     struct Parity from outcome: Outcome {
-        /// The original's verdict; none if grading did not finish.
+        /// The original's verdict. It is `none` if judging stopped early.
         overall: Overall = outcome.parity.overall,
         #[serde(flatten)]
         residuals: Residuals = outcome.parity.residuals,
-        /// Whether collisions and polynomials are right; null without a verdict.
+        /// Whether collisions and polynomials are right; null if there is no verdict.
         collisions_passed: Option<bool> = outcome.parity.collisions_passed,
-        /// The number of times that the original prints each of its messages; messages that it does not print are left
-        /// out.
+        /// How often the original would print each of its messages. Messages that it would not print are left out.
         messages: BTreeMap<&'static str, u64> = count_messages(outcome),
     }
 }
@@ -243,17 +245,17 @@ view! {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 struct StopView {
-    /// The kind of stop.
+    /// The kind of event that stopped judging.
     kind: StopKind,
     #[serde(flatten)]
     place: DamageView,
 }
 
-/// The kind of reason why judging stopped early.
+/// The kind of event that stopped judging early.
 #[derive(Serialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 enum StopKind {
-    /// A record's state can't be read to its end.
+    /// The state in a record can't be read to its end.
     StateUnreadable,
     /// The impulses or polynomials of a record can't be read.
     ImpulsesUnreadable,
@@ -261,20 +263,20 @@ enum StopKind {
     ImpossibleCount,
     /// A list claims more entries than the limits allow.
     BeyondLimit,
-    /// The file cannot be read further.
+    /// The operating system could not read more of the file.
     ReadError,
     /// The step that begins with the given values has no result.
     StepWithoutResult,
 }
 
 view! {
-    /// A damaged place in a trace.
+    /// A damaged part of a trace.
     struct DamageView from damage: Damage {
-        /// The step number, from 1; 0 is the initial record.
+        /// The number of the damaged step, from 1; 0 is the initial record.
         step: u32 = damage.step,
-        /// The index of the record, from 0.
+        /// The index of the damaged record, from 0.
         frame: Option<u64> = Some(damage.frame),
-        /// The byte offset of the damage.
+        /// The offset of the damage in the file, in bytes.
         offset: Option<u64> = Some(damage.offset),
         /// The damage as a sentence.
         message: String = damage.what.to_string(),

@@ -1,5 +1,5 @@
-//! The wrong steps of a trace, one by one. The steps are collected during judging, and shown with expected and actual
-//! values.
+//! The wrong steps of a trace, one by one. They are collected while the trace is judged, and shown with expected and
+//! actual values.
 use super::super::{
     number::{count, format_count},
     style::{Look, Style},
@@ -11,32 +11,32 @@ use fosssim_judge::{
 };
 use serde::Serialize;
 
-/// The maximum number of wrong steps whose numbers or findings are kept.
+/// The maximum number of wrong steps whose findings or numbers are kept.
 pub const MAX_LISTED: usize = 1000;
 
-/// The selection of steps that a report shows individually.
+/// The choice of steps that a report shows one by one.
 #[derive(Debug, Clone, PartialEq, Eq, Default)]
 pub enum StepChoice {
-    /// No step; only the numbers of the wrong steps are kept.
+    /// Show no steps; only the numbers of the wrong steps are kept.
     #[default]
     None,
-    /// All wrong steps, up to [`MAX_LISTED`].
+    /// Show all wrong steps, up to [`MAX_LISTED`].
     All,
-    /// The given steps, wrong or right; 0 is the first record.
+    /// Show these steps, whether they are wrong or right; 0 is the first record.
     These(Vec<u32>),
 }
 
-/// The findings of one book in one step.
+/// The findings by one rule book in one step.
 #[derive(Debug, Clone)]
 struct Step {
     number: u32,
     /// The first finding of each kind.
     firsts: Vec<Finding>,
-    /// The number of further findings of each kind.
+    /// The number of findings of each kind after the first.
     more: FindingCounts,
 }
 
-/// The wrong steps by one book, up to [`MAX_LISTED`], in order.
+/// The wrong steps by one rule book, in order, up to [`MAX_LISTED`].
 #[derive(Debug, Clone, Default)]
 struct Steps {
     numbers: Vec<u32>,
@@ -58,7 +58,7 @@ impl WrongSteps {
         Self { shown, ..Self::default() }
     }
 
-    /// Returns the findings of a book, including those that follow from the whole trace.
+    /// Returns the wrong steps by a rule book, including findings that can be made only at the end of the trace.
     fn findings_of(&self, book: Book, account: &BookFindings) -> Steps {
         let mut steps = match book {
             Book::Parity => self.parity.clone(),
@@ -80,7 +80,7 @@ impl Progress for WrongSteps {
 }
 
 impl Steps {
-    /// Adds findings of a step, which may already be in the collection.
+    /// Adds findings of a step, which the collection may contain already.
     fn add(&mut self, step: u32, findings: StepFindings<'_>, shown: &StepChoice) {
         if findings.firsts.is_empty() {
             return;
@@ -116,7 +116,7 @@ impl Steps {
     }
 }
 
-/// Returns the steps of the official book, or the other book's if the official book has none.
+/// Returns the wrong steps by the official rule book, or those by the other one if the official one has none.
 fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     let of = |book| (book, check.steps.findings_of(book, check.outcome.findings_by(book)));
     let official = of(check.book());
@@ -126,22 +126,22 @@ fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     official
 }
 
-/// Returns the numbers of the official book's wrong steps, up to [`MAX_LISTED`].
+/// Returns the numbers of the wrong steps by the official rule book, up to [`MAX_LISTED`].
 pub(super) fn step_numbers(check: &Check<'_>) -> Vec<u32> {
     check.steps.findings_of(check.book(), check.outcome.findings_by(check.book())).numbers
 }
 
-/// Returns whether the report contains only requested steps.
+/// Returns whether the report shows only particular steps that the user requested.
 pub(super) fn shows_only_these(check: &Check<'_>) -> bool {
     matches!(check.steps.shown, StepChoice::These(_))
 }
 
-/// Returns whether all wrong steps are requested.
+/// Returns whether the user requested all wrong steps.
 pub(super) fn are_all_requested(check: &Check<'_>) -> bool {
     check.steps.shown == StepChoice::All
 }
 
-/// Returns the requested steps, each with its findings; `None` if no step was requested.
+/// Returns the requested steps and the findings in each; `None` if no step was requested.
 fn requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, Option<&'a Step>)>> {
     let found = |number: u32| steps.kept.iter().find(|step| step.number == number);
     match &check.steps.shown {
@@ -151,7 +151,7 @@ fn requested_steps<'a>(check: &Check<'_>, steps: &'a Steps) -> Option<Vec<(u32, 
     }
 }
 
-/// Renders the section about single steps; `None` if no step was requested, or none is wrong.
+/// Renders the section about single steps. Returns `None` if no step was requested, or if none of them is wrong.
 pub(super) fn render(check: &Check<'_>, style: Style) -> Option<String> {
     let (book, steps) = steps_of(check);
     let block = |(number, found): (u32, Option<&Step>)| match found {
@@ -201,18 +201,18 @@ fn render_step(check: &Check<'_>, step: &Step, style: Style) -> String {
     text
 }
 
-/// A step with its findings.
+/// A step, and the findings in it.
 #[derive(Debug, Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(super) struct WrongStepView {
-    /// The step number, from 1; 0 is the first record.
+    /// The number of the step, from 1; 0 is the first record.
     step: u32,
-    /// The first finding of each kind in the step, and the number of each kind. Empty if the step is right, or if
-    /// judging stopped before it.
+    /// For each kind of finding in the step, the number of findings and the first one. The list is empty if the step is
+    /// right, or if judging stopped before it.
     findings: Vec<CountedView>,
 }
 
-/// Returns the requested steps; `None` if no step was requested.
+/// Returns the requested steps for the report in JSON; `None` if no step was requested.
 pub(super) fn step_views(check: &Check<'_>) -> Option<Vec<WrongStepView>> {
     let (book, steps) = steps_of(check);
     let counted = |step: &Step| CountedView::count(book, &step.firsts, |kind| 1 + step.more.get(kind));

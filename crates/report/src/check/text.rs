@@ -17,11 +17,11 @@ use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use std::{fmt::Display, iter};
 
-/// The advice for a trace that exceeds a limit.
+/// The advice for a trace that reaches a limit of this program.
 const LIMIT_ADVICE: &str =
     "this is a limit of this program, which the original does not have: it says nothing about the trace";
 
-/// The advice for a computation without a result.
+/// The advice for a step in which the reference's computation has no result.
 const NO_RESULT: &str = "the trace's own positions and velocities lead here; look for values that are not finite or \
                       absurdly large in the steps before";
 
@@ -43,10 +43,10 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         parts.extend(steps::render(check, style));
         return parts.join("\n");
     }
-    // Show the cause first, then its first occurrence.
+    // The cause is shown before its first occurrence.
     let is_told = !is_other_scene(check);
     parts.extend(render_mistakes(check, style).filter(|_| is_told));
-    // If all steps are shown, the first finding is among them.
+    // If all steps are shown, the first finding is one of them.
     let first = find_first(check).filter(|_| !steps::are_all_requested(check));
     parts.extend(first.map(|first| divergence::render(first, outcome.steps, style)));
     parts.extend(render_section("Where to look", "  - ", &advice::lines(check), style));
@@ -56,7 +56,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
         parts.push(render_residuals(outcome, style));
         parts.extend(fair::render(outcome, style));
         let account = outcome.findings_by(check.book());
-        // The fair rules' findings are in their own section.
+        // The findings by the fair rules have their own section.
         if !account.examples.is_empty() && check.book() == Book::Parity {
             parts.push(render_findings(account, follows::count(outcome), style));
         }
@@ -70,18 +70,18 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     parts.join("\n")
 }
 
-/// Returns the lines under a heading; `None` without lines.
+/// Renders lines below a heading; `None` if there are no lines.
 fn render_section(heading: &str, mark: &str, lines: &[impl Display], style: Style) -> Option<String> {
     let heading = style.paint(Look::Strong, heading) + "\n";
     let lines: String = lines.iter().map(|line| format!("{mark}{line}\n")).collect();
     (!lines.is_empty()).then(|| heading + &lines)
 }
 
-/// Renders the likely mistakes of the program, as many as fit on a screen.
+/// Renders the program's likely mistakes, as many as fit on a screen.
 fn render_mistakes(check: &Check<'_>, style: Style) -> Option<String> {
     let most = if check.tables { usize::MAX } else { MAX_EXPLANATIONS };
     let (shown, more) = check.explanations.split_at(check.explanations.len().min(most));
-    // The example is left out, because the first difference, which is also an example, follows.
+    // The example is left out here, because the first difference below is also an example.
     let has_example = check.tables || find_first(check).is_none();
     let without = |one: &Explanation| Explanation { example: None, ..one.clone() };
     let shown = if has_example { shown.to_vec() } else { shown.iter().map(without).collect() };
@@ -101,7 +101,7 @@ fn render_head(check: &Check<'_>, style: Style) -> String {
     format!("{verdict}: {}\n  scene {}\n  trace {}\n", render_headline(check), check.scene, check.trace)
 }
 
-/// Returns the reason for the verdict, in one line.
+/// Returns the verdict and the reason for it, in one line.
 pub(crate) fn render_headline(check: &Check<'_>) -> String {
     let outcome = check.outcome;
     if let (Some(kind), true) = (check.looks_like, check.is_not_a_trace()) {
@@ -142,7 +142,7 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
     }
 }
 
-/// Describes the damage of a trace that is read to its end, and the result of the steps before it.
+/// Describes the damage of a trace that could be read to its end, and the verdict on the steps before the damage.
 fn describe_damage(outcome: &Outcome) -> String {
     let place = match &outcome.damage {
         Some(damage) if damage.step > 0 => format!("the trace is damaged in step {} of {}", damage.step, outcome.steps),
@@ -165,7 +165,7 @@ fn describe_damage(outcome: &Outcome) -> String {
     }
 }
 
-/// Returns a line about where and why judging stopped.
+/// Describes where and why judging stopped, in one line.
 #[must_use]
 pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
     let (place, message, _) = describe_problem(stop, outcome);
@@ -176,12 +176,12 @@ pub fn describe_stop(stop: &Stop, outcome: &Outcome) -> String {
     format!("{what} {place}: {message}")
 }
 
-/// Returns whether judging ended at a limit of this program, which is not a fault of the trace.
+/// Returns whether judging ended at a limit of this program. Such a limit is not a fault of the trace.
 const fn is_limit(stop: &Stop) -> bool {
     matches!(stop, Stop::Trace { cause: ReadFailure::Limit, .. } | Stop::Step(StepError::Work { .. }))
 }
 
-/// Describes where and why judging stopped, with advice about the place to check if there is any.
+/// Describes where and why judging stopped. The second part is advice about what to check, if there is any.
 pub(crate) fn describe_problem(stop: &Stop, outcome: &Outcome) -> (String, String, Option<&'static str>) {
     let (place, message, advice) = match stop {
         Stop::Trace { frame, step, cause, offset, what } => {
@@ -241,7 +241,7 @@ fn pass_cell(yes: bool) -> Cell {
     if yes { Cell::with_look(Look::Good, "passed") } else { Cell::with_look(Look::Bad, "failed") }
 }
 
-/// Returns the used share of a residual's tolerance, as the text of a table cell.
+/// Formats the share of a tolerance that a residual uses, for a table cell.
 fn format_share(value: f64, bound: f64) -> String {
     let share = value / bound;
     if share.is_nan() {
@@ -269,7 +269,7 @@ fn render_findings(account: &BookFindings, follow: u64, style: Style) -> String 
     text
 }
 
-/// Returns further notes about the trace.
+/// Returns further remarks about the trace.
 pub(crate) fn list_notes(check: &Check<'_>) -> Vec<String> {
     let outcome = check.outcome;
     let mut notes = Vec::new();

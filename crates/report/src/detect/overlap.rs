@@ -1,4 +1,4 @@
-//! The report on a decision of `simple` handling: overlap, approach, and result.
+//! The report on a decision of simple collision handling: the overlap, the approach, and the result.
 use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, ShownNumber, render_motion, title};
 use crate::{
     number::format_exact,
@@ -10,20 +10,20 @@ use fosssim_model::sim::Pair;
 use fosssim_num::{vector::Vec2, written::WrittenNumbers};
 use serde::Serialize;
 
-/// The content of a report on an overlap decision, and its place in a scene's run.
+/// An overlap decision, and where in the run of a scene it was made.
 #[derive(Debug, Clone, Copy)]
 pub struct Overlap<'a> {
-    /// The reference's study of the pair.
+    /// The reference's computation for the pair.
     pub study: &'a OverlapStudy,
-    /// The scene's name, as typed.
+    /// The name of the scene, as the user typed it.
     pub scene: &'a str,
-    /// The trace's name, as typed; `None` for the reference's own run.
+    /// The name of the trace, as the user typed it; `None` for the reference's own run.
     pub trace: Option<&'a str>,
-    /// The step, from 1.
+    /// The number of the step, from 1.
     pub step: u32,
-    /// The pair.
+    /// The pair that was examined.
     pub pair: Pair,
-    /// Whether the trace has the collision, if there is a trace.
+    /// Whether the trace logs a collision of the pair; `None` for the reference's own run.
     pub logged: Option<bool>,
 }
 
@@ -36,7 +36,7 @@ impl Overlap<'_> {
             + &self.body(format_exact, style)
     }
 
-    /// Renders the report without its title; `number` formats numbers.
+    /// Renders the report without its title. `number` formats numbers.
     pub(crate) fn body(&self, number: ShownNumber, style: Style) -> String {
         let study = self.study;
         let heading = |words: &str| format!("\n{}\n", style.paint(Look::Strong, words));
@@ -128,7 +128,8 @@ const fn negation(is: bool) -> &'static str {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(super) struct OverlapView {
-    /// The position of the nearest point on the edge, from 0 at its first end to 1 at its second; null without an edge.
+    /// Where the nearest point is on the edge, from 0 at its first endpoint to 1 at its second; null if the pair has no
+    /// edge.
     alpha: Option<Number>,
     /// The vector from the first object to the nearest point of the second, not normalized.
     normal: [Number; 2],
@@ -136,14 +137,14 @@ pub(super) struct OverlapView {
     distance: Number,
     /// The sum of the radii.
     radii_together: Number,
-    /// Whether the distance is below the sum of the radii.
+    /// Whether the distance is smaller than the sum of the radii.
     overlaps: bool,
-    /// The velocities of the first object, and of the nearest point of the second.
+    /// The velocity of the first object, and that of the nearest point of the second object.
     velocities: [[Number; 2]; 2],
-    /// The difference of the velocities times the normal.
+    /// The dot product of the velocities' difference and the normal.
     approach: Number,
-    /// Whether `approach` is positive.
+    /// Whether `approach` is positive, so that the objects come closer.
     approaches: bool,
-    /// Whether the trace has a collision of the pair; null for the reference's run.
+    /// Whether the trace logs a collision of the pair; null for the reference's own run.
     logged: Option<bool>,
 }

@@ -1,16 +1,17 @@
-//! Groups the scenes of a submission by the cause of their verdicts, and selects the scene that shows a cause best, so
-//! that all reports show the same one.
+//! Groups the scenes of a submission by the cause of their verdicts, and selects the scene that shows each cause best.
+//! All reports use this order and these scenes.
 use super::likely_mistakes;
 use crate::words;
 use fosssim_findings::{Grade, Reason, SceneGrade, Verdict};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::{cmp::Reverse, collections::BTreeMap};
 
-/// Scenes whose verdicts have the same cause: first the one that shows it best, then the others in the suite's order.
+/// Scenes whose verdicts have the same cause. The first one shows the cause best, and the others are in the suite's
+/// order.
 pub type AlikeScenes<'a> = Vec<&'a SceneGrade>;
 
-/// Returns the listed scenes by cause: first likely mistakes, then causes that most scenes share, then skipped scenes,
-/// and last accepted scenes about which the rule books differ.
+/// Returns the listed scenes, grouped by cause. Groups with likely mistakes are first, then causes by the number of
+/// their scenes. Skipped scenes follow, and last come accepted scenes on which the rule books differ.
 #[must_use]
 pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     let likely: Vec<Explanation> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
@@ -32,40 +33,42 @@ pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     causes.into_iter().map(|(_, scenes)| scenes).collect()
 }
 
-/// Returns the scene that shows a mistake best.
+/// Returns the scene that shows a mistake most clearly.
 pub(crate) fn clearest_scene<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a SceneGrade> {
     let named = grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations));
     named.min_by_key(|scene| clarity_rank(scene))
 }
 
-/// Returns the rank of the best of some explanations among the likely mistakes. Other explanations come after them, and
-/// no explanation comes last.
+/// Returns the best rank that one of these explanations has among the likely mistakes. Explanations that are not likely
+/// mistakes rank after all of them, and no explanation ranks last.
 pub(crate) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
     let named = likely.iter().position(|one| is_named_in(one, own));
     named.unwrap_or(likely.len() + usize::from(own.is_empty()))
 }
 
-/// Returns how hard a cause is to see in a scene; the smallest value is the clearest scene. The criteria are, in this
-/// order: whether the rule books differ (the fault may be round-off), the number of named mistakes, the number of
-/// mistakes with the same effect, the number of faults (which grows with the motion), and its length.
+/// Returns how hard a cause is to see in a scene. The clearest scene has the smallest value. The criteria are, in this
+/// order: whether the rule books differ (then the fault may be round-off), the number of named mistakes, the number of
+/// mistakes with the same effect, the number of faults (which grows with the length of the motion), and the number of
+/// steps.
 fn clarity_rank(scene: &SceneGrade) -> (bool, usize, usize, u64, u32) {
     let found = scene.disclosure.as_ref().map_or(0, |all| all.official().counts.total());
     (scene.differs.is_some(), scene.settled.len(), scene.explanations.len(), found, scene.steps)
 }
 
-/// Returns whether the report lists the scene.
+/// Returns whether the report describes the scene: it is not accepted, or the rule books differ.
 pub(crate) fn is_listed(scene: &SceneGrade) -> bool {
     scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
 }
 
-/// Returns the cause of a scene's verdict, as text: the end of its program, its likely mistakes, the kind of the first
-/// finding, or the summary without numbers. A scene that the rule books judge differently has its own cause.
+/// Returns texts that are equal for scenes whose verdicts have the same cause: the end of the program, its likely
+/// mistakes, the kind of the first finding, or the summary without numbers. Scenes that the rule books judge
+/// differently have a cause of their own.
 fn describe_cause(scene: &SceneGrade) -> Vec<String> {
     if scene.verdict.is_accepted() || scene.differs.is_some() {
         return vec![scene.scene.clone()];
     }
     if !matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace) {
-        // If nothing is logged, the place of the first difference does not matter.
+        // If the program logs nothing, the place of the first difference does not matter.
         let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::list_details(scene) };
         return std::iter::once(words::describe_ending(scene)).chain(details).collect();
     }

@@ -1,12 +1,12 @@
-//! The changes of a submission since an earlier grading, as text.
+//! Describes how a submission changed since an earlier grading.
 use super::{format_optional_points, format_points, phrases::list_some};
 use crate::{number::format_count, style::Look};
 use fosssim_findings::{Grade, SceneGrade, Verdict, changes::Changes};
 
-/// The maximum number of scenes that a line names.
+/// The maximum number of scenes that one line names.
 const MAX_NAMED: usize = 5;
 
-/// Returns the lines about the changes, each with its style: points, and scenes by the kind of change.
+/// Returns lines about the changes of points, and about the scenes with each kind of change. Each line has its style.
 pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
     let Some(changes) = grade.changes() else { return Vec::new() };
     let name = |scene: &&SceneGrade| scene.scene.clone();

@@ -11,14 +11,14 @@ use fosssim_findings::{Grade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
 use std::{cmp::Ordering, collections::BTreeMap, fmt::Write};
 
-/// The numbers of submissions that were run on a scene, and that were accepted there.
+/// The number of submissions that were run on a scene, and the number of those that were accepted there.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(crate) struct SceneShare {
     pub(crate) accepted: usize,
     pub(crate) run: usize,
 }
 
-/// Returns the report on the class, with at most `most` scenes, mistakes, and names of submissions with the same
+/// Renders the report on the class. It lists at most `most` scenes, mistakes, and names of submissions with the same
 /// program.
 #[must_use]
 pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
@@ -64,7 +64,7 @@ pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
     text
 }
 
-/// Returns the groups of submissions with the same program, by their numbers.
+/// Returns groups of submissions with the same program. The numbers are indices into `grades`.
 pub(crate) fn same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
     let mut found: BTreeMap<&str, Vec<usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| !grade.same_program.is_empty()) {
@@ -75,20 +75,21 @@ pub(crate) fn same_programs(grades: &[Grade]) -> Vec<Vec<usize>> {
     groups
 }
 
-/// The figures of a class. Those about points count only submissions that were run.
+/// The statistics of a class. Those about points count only submissions that were run.
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub(crate) struct ClassFigures {
     pub(crate) submissions: usize,
-    /// The number of submissions that were run on some scene.
+    /// The number of submissions that were run on at least one scene.
     pub(crate) ran: usize,
     pub(crate) accepted: usize,
-    /// The number of submissions that were run and have no points.
+    /// The number of submissions that were run but have no points.
     pub(crate) without_points: usize,
     /// The mean, the median, the minimum and the maximum of the points.
     pub(crate) points: Option<[f64; 4]>,
-    /// The maximum number of points.
+    /// The maximum number of points of the suite.
     pub(crate) max_points: f64,
-    /// The numbers of submissions with more points than in the earlier grading, and with fewer.
+    /// The number of submissions with more points than in the earlier grading, and the number with fewer; `None` if
+    /// there is no earlier grading.
     pub(crate) since: Option<(usize, usize)>,
 }
 
@@ -120,8 +121,8 @@ impl ClassFigures {
     }
 }
 
-/// Returns the figures as text, such as `30 submissions, 28 ran, 12 accepted; of those that ran mean 63.2, median 71,
-/// from 0 to 100 of 100 points`.
+/// Describes the class in one line, such as `30 submissions, 28 ran, 12 accepted; of those that ran mean 63.2, median
+/// 71, from 0 to 100 of 100 points`.
 fn render_head(grades: &[Grade]) -> String {
     let figures = ClassFigures::from_grades(grades);
     let all = format_count(figures.submissions as u64, "submission");
@@ -142,13 +143,13 @@ fn render_head(grades: &[Grade]) -> String {
     text
 }
 
-/// Returns whether the submission was run on no scene, because it has no program or does not build.
+/// Returns whether the submission was run on no scene, because it has no program or could not be built.
 pub(crate) fn never_ran(grade: &Grade) -> bool {
     grade.scenes().all(|scene| matches!(scene.verdict, Verdict::NotRun | Verdict::Unusable | Verdict::CompileError))
 }
 
-/// Returns the scenes that not all submissions have right, the hardest first, and the number of further ones.
-/// Submissions that were never run, scenes that were not run, and failures of the grader do not count.
+/// Returns the scenes on which not all submissions are right, the hardest first, and the number of further such scenes.
+/// Submissions that were never run do not count, and neither do scenes that were not run or on which the grader failed.
 pub(crate) fn find_hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize) {
     let mut shares: BTreeMap<&str, SceneShare> = BTreeMap::new();
     let mut order = Vec::new();
@@ -169,13 +170,13 @@ pub(crate) fn find_hardest(grades: &[Grade]) -> (Vec<(&str, SceneShare)>, usize)
     (wrong, whole.len())
 }
 
-/// A likely mistake, and the numbers of the submissions that make it.
+/// A likely mistake, and the submissions that make it, as indices into the grades.
 pub(crate) struct SharedMistake {
     pub(crate) mistake: Explanation,
     pub(crate) members: Vec<usize>,
 }
 
-/// Returns the likely mistakes with the submissions that make them, the most frequent first.
+/// Returns the likely mistakes, the most frequent first. Each has the submissions that make it.
 pub(crate) fn find_frequent(grades: &[Grade]) -> Vec<SharedMistake> {
     let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {

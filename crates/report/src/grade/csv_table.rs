@@ -1,11 +1,11 @@
-//! CSV for spreadsheets. A cell that a spreadsheet would read as a formula begins with an apostrophe.
+//! CSV tables for spreadsheets. A cell that a spreadsheet would read as a formula gets an apostrophe at its beginning.
 use super::{format_points, likely_mistakes, no_points, phrases::NOT_GRADED};
 use crate::foreign::one_line;
 use crate::{view::to_key, words};
 use fosssim_findings::{Grade, SkippedEntry, speed::SpeedSource};
 use fosssim_mistakes::together::worth;
 
-/// Returns one row per scene.
+/// Renders a table with one row per scene.
 pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let head = "submission,group,scene,verdict,points,max_points,right_steps,steps,cpu_seconds,wall_seconds,summary,\
                 rules_differ,likely_mistake_key";
@@ -35,10 +35,10 @@ pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> S
     write(head, rows.chain(rest))
 }
 
-/// Returns one row per submission, with a column per group. `rules_differ` counts scenes that the rule books judge
-/// differently. Points are empty if the grader failed or was stopped. `reason` is one sentence about a submission that
-/// is not accepted everywhere, `same_program` names the others with the same program, and `worth` is the number of
-/// points that fixing the first likely mistake would give. Entries that are not submissions have rows with only the
+/// Renders a table with one row per submission and one column per group. `rules_differ` counts the scenes that the rule
+/// books judge differently. Points are empty if the grader failed or was stopped. `reason` is a sentence about why a
+/// submission is not accepted everywhere. `same_program` names the other submissions with the same program. `worth` is
+/// the number of points that fixing the first likely mistake would give. Skipped entries have rows with nothing but the
 /// reason.
 #[must_use]
 pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
@@ -78,7 +78,7 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> Str
     write(head, rows.chain(rest))
 }
 
-/// Returns rows for entries that are not graded, with the reason in the column for reasons.
+/// Returns rows for skipped entries. The column `reasons` has the reason why each was skipped.
 fn empty_rows(passed_over: &[SkippedEntry], head: &[String], reasons: &str) -> Vec<Vec<String>> {
     let cell = |entry: &SkippedEntry, column: &str| match column {
         "submission" => escape_formula(&entry.name),
@@ -86,7 +86,7 @@ fn empty_rows(passed_over: &[SkippedEntry], head: &[String], reasons: &str) -> V
         column if column == reasons => escape_formula(&entry.why),
         _ => String::new(),
     };
-    // The name of a group may equal that of another column.
+    // A group may have the same name as another column.
     let own = head.iter().position(|column| column == reasons).unwrap_or_default();
     let column = |number: usize| if number <= own { head[number].as_str() } else { "" };
     passed_over.iter().map(|entry| (0..head.len()).map(|number| cell(entry, column(number))).collect()).collect()
@@ -101,8 +101,8 @@ fn write(head: Vec<String>, rows: impl Iterator<Item = Vec<String>>) -> String {
     String::from_utf8(writer.into_inner().unwrap_or_default()).unwrap_or_default()
 }
 
-/// Returns text that no spreadsheet reads as a formula. Text that begins like an escaped formula is escaped again, so
-/// that different texts have different cells.
+/// Escapes text so that no spreadsheet reads it as a formula. Text that begins like an escaped formula is escaped
+/// again, so that different texts have different cells.
 fn escape_formula(text: &str) -> String {
     const FORMULA_STARTS: [char; 10] = ['=', '+', '-', '@', '|', '%', '\u{ff1d}', '\u{ff0b}', '\u{ff0d}', '\u{ff20}'];
     let text = one_line(text);

@@ -1,4 +1,4 @@
-//! GitHub Actions: one annotation per scene that is not accepted, and a summary in Markdown.
+//! Output for GitHub Actions: one annotation for each cause of scenes that are not accepted, and a summary in Markdown.
 use super::{
     super::explain,
     by_cause, change_lines, describe_difference, format_optional_points, format_points, head_lines, is_listed,
@@ -11,10 +11,10 @@ use crate::{number::format_count, words};
 use fosssim_findings::{Grade, SceneGrade, SkippedEntry, Verdict};
 use std::fmt::Write;
 
-/// The maximum number of scenes with the same cause that are named.
+/// The maximum number of scenes with the same cause that an annotation names.
 const MAX_NAMED: usize = 3;
 
-/// Returns annotations, with text that is escaped for workflow commands.
+/// Renders annotations. Text in them is escaped for workflow commands.
 pub(crate) fn render_annotations(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
@@ -26,7 +26,7 @@ pub(crate) fn render_annotations(grades: &[Grade]) -> String {
             let words: String = clean_output(&build.output).chars().take(4000).collect();
             text += &join_annotation("error", &title, words.lines());
         }
-        // GitHub shows only ten annotations, so the most important ones come first, without repetition.
+        // GitHub shows only ten annotations, so the most important ones come first and nothing is repeated.
         let head = head_lines(grade);
         if !head.is_empty() && grade.failed_build().is_none() {
             let title = format!("{}: {}, {}", grade.submission, grade.verdict, format_score(grade));
@@ -48,14 +48,14 @@ pub(crate) fn render_annotations(grades: &[Grade]) -> String {
     text
 }
 
-/// Returns a warning per entry that is not a submission.
+/// Renders one warning for each skipped entry.
 pub(crate) fn passed_over(entries: &[SkippedEntry]) -> String {
     let warning =
         |entry: &SkippedEntry| render_annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
     entries.iter().map(warning).collect()
 }
 
-/// Lists the entries that are not submissions in Markdown.
+/// Renders a Markdown list of the skipped entries.
 pub(crate) fn list_of_passed_over(entries: &[SkippedEntry]) -> String {
     if entries.is_empty() {
         return String::new();
@@ -64,7 +64,7 @@ pub(crate) fn list_of_passed_over(entries: &[SkippedEntry]) -> String {
     format!("### Not graded\n\n{}\n", entries.iter().map(item).collect::<String>())
 }
 
-/// Returns a Markdown table per submission.
+/// Renders a Markdown table for each submission.
 pub(crate) fn render_summary(grades: &[Grade]) -> String {
     let mut text = String::new();
     for grade in grades {
@@ -122,14 +122,14 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
     text
 }
 
-/// Returns the score, such as `12.5 of 20`, or the reason why there are no points.
+/// Formats the score, such as `12.5 of 20`, or the reason why there are no points.
 fn format_score(grade: &Grade) -> String {
     let reached =
         grade.points.map(|reached| format!("{} of {}", format_points(reached), format_points(grade.max_points)));
     reached.or_else(|| no_points(grade)).unwrap_or_default()
 }
 
-/// Returns text in which Markdown and HTML are escaped.
+/// Escapes the characters in a text that have a meaning in Markdown or HTML.
 fn escape_cell(text: &str) -> String {
     let mut cell = String::new();
     for c in one_line(text).chars() {

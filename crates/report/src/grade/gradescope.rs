@@ -1,5 +1,5 @@
-//! Gradescope's results.json. If the grader failed there is no score: the harness exits with an error instead of giving
-//! zero points.
+//! The file results.json for Gradescope. If the grader failed, the file has no score: the harness then exits with an
+//! error instead of giving zero points.
 use super::{super::explain, describe_difference, describe_speed, format_points, head_lines, see_above};
 use crate::foreign::{clean_output, strip_control_characters};
 use crate::{number::format_count, style::Style, view::to_document, words};
@@ -126,7 +126,7 @@ fn describe_grade(grade: &Grade) -> String {
     if let Some(build) = grade.failed_build() {
         lines.push(format!("{}\n{}", strip_control_characters(&words::build(&build.end)), clean_output(&build.output)));
     } else {
-        // A fault of the whole upload reveals nothing about hidden scenes.
+        // A fault of the whole upload does not reveal anything about hidden scenes.
         let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
         lines.extend(head_lines(&shown).iter().map(|line| strip_control_characters(line)));
     }
@@ -134,8 +134,8 @@ fn describe_grade(grade: &Grade) -> String {
     lines.join("\n")
 }
 
-/// Returns the message to a student if the platform's time limit was reached; it names the scenes that used most of the
-/// time.
+/// Returns the message to a student whose grading was stopped at the platform's time limit. It names the scenes that
+/// used most of the time.
 fn describe_timeout(grade: &Grade) -> String {
     let missing = grade.count(Verdict::NotRun);
     let mut text = format!(
@@ -172,7 +172,7 @@ fn describe_scene(scene: &SceneGrade) -> String {
     lines.join("\n")
 }
 
-/// Returns the points with at most six decimals, so that the shares of a group add up to its sum.
+/// Rounds points to six decimals, so that the shares of a group's scenes add up to the group's points.
 fn round_points(value: f64) -> f64 {
     (value * 1e6).round() / 1e6
 }

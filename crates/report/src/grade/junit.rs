@@ -1,11 +1,12 @@
-//! JUnit XML: a suite per group, a case per scene. Wrong programs are failures; errors of the grader are errors.
+//! JUnit XML, with one suite per group and one case per scene. Wrong results are failures, and faults of the grader are
+//! errors.
 use super::{super::explain, describe_difference, head_lines, phrases::NOT_GRADED};
 use crate::foreign::{clean_output, strip_control_characters};
 use crate::{style::Style, words};
 use fosssim_findings::{Grade, SceneGrade, SkippedEntry, Verdict};
 use quick_junit::{NonSuccessKind, Report, TestCase, TestCaseStatus, TestSuite};
 
-/// Renders all grades in one report.
+/// Renders all grades as one document.
 pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let mut report = Report::new("fosssim-oracle");
     for grade in grades {
@@ -31,7 +32,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
                 ));
             }
             for scene in &group.scenes {
-                // A JUnit test case can contain only its result and the program's output.
+                // A JUnit test case has room only for its result and the program's output.
                 if let Some(words) = describe_difference(scene) {
                     let name = format!("rules_differ.{}", strip_control_characters(&scene.scene));
                     suite.add_property(quick_junit::Property::new(name, words));
@@ -53,7 +54,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     report.to_string().unwrap_or_default()
 }
 
-/// Returns a suite with one case: the fault of the whole submission, which was not run.
+/// Returns a suite with a single case, for a submission that could not be run as a whole.
 fn fault_suite(grade: &Grade, unfit: &str) -> TestSuite {
     let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
     status.set_type(grade.verdict.name());

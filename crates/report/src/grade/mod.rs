@@ -1,7 +1,8 @@
-//! Grades in every format that courses use: pure functions from [`Grade`] to text.
+//! Renders grades in every format that courses use. All functions are pure, from [`Grade`] to text.
 //!
 //! Names and program output are untrusted text. Each format removes control characters with `plain` or `one_line` of
-//! `foreign`, and escapes characters with a meaning in its syntax. A test sends hostile text through every format.
+//! `foreign`, and escapes the characters that have a meaning in its syntax. A test sends hostile text through every
+//! format.
 
 mod causes;
 mod changes;
@@ -19,7 +20,7 @@ mod text;
 
 use fosssim_findings::Grade;
 
-/// Returns only the JSON document, without the data for other formats.
+/// Renders only the JSON document. The data for other formats are not computed.
 #[must_use]
 pub fn json(grades: &[Grade]) -> String {
     json::render(grades, &[])

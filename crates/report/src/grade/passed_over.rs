@@ -7,8 +7,8 @@ use crate::{
 };
 use fosssim_findings::{Grade, SkippedEntry};
 
-/// Adds a warning about each skipped entry to the only grade, because a report on one submission has no list of skipped
-/// entries.
+/// Adds a warning about each skipped entry to the grade if there is only one. A report on one submission has no list of
+/// skipped entries.
 pub fn add_warnings(grades: &mut [Grade], passed_over: &[SkippedEntry]) {
     if let [grade] = grades {
         let words = |entry: &SkippedEntry| format!("passed over {}: {}", entry.name, entry.why);
@@ -16,7 +16,7 @@ pub fn add_warnings(grades: &mut [Grade], passed_over: &[SkippedEntry]) {
     }
 }
 
-/// Returns the list of skipped entries below a class, for people.
+/// Returns the list of skipped entries that follows a class's table, for people.
 #[must_use]
 pub fn not_graded(grades: &[Grade], passed_over: &[SkippedEntry], style: Style) -> String {
     if passed_over.is_empty() || grades.len() < 2 {

@@ -1,14 +1,14 @@
-//! Sentences about a grade that several formats share.
+//! Sentences about a grade that appear in several formats.
 use crate::{foreign::one_line, number::format_count, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
 pub use fosssim_mistakes::together::likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
 
-/// The text instead of a verdict for an entry that is not a submission.
+/// The text that a skipped entry has instead of a verdict.
 pub(super) const NOT_GRADED: &str = "not graded";
 
-/// Returns the first lines of a report, above all scenes: the fault of the whole submission, or its failures and likely
-/// mistakes.
+/// Returns the first lines of a report, above all scenes. They name the fault of the whole submission, or the scenes in
+/// which the program fails and the likely mistakes.
 #[must_use]
 pub fn head_lines(grade: &Grade) -> Vec<String> {
     if let Some(unfit) = words::describe_unfit(grade) {
@@ -28,25 +28,25 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
-/// Returns the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene fails
-/// only because of it.
+/// Describes the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene is
+/// wrong only because of this mistake.
 pub(crate) fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
     let lost = together::worth(grade, mistake);
     (lost > 0.0).then(|| format!("worth {}", format_score(lost, grade.max_points)))
 }
 
-/// Returns the course's note on a mistake, to follow the report's text; empty if there is none.
+/// Returns the course's note on a mistake, in a form that follows the report's sentence; empty if there is no note.
 pub(crate) fn describe_note(grade: &Grade, mistake: &Explanation) -> String {
     grade.note(mistake).map(|note| format!(" (The course: {note})")).unwrap_or_default()
 }
 
-/// Returns the number of scenes for which an explanation is searched, with their noun.
+/// Returns how many scenes were to be explained, such as `12 wrong scenes`.
 pub(crate) fn count_wrong(grade: &Grade) -> String {
     let wrong = grade.scenes().filter(|scene| scene.verdict.is_wrong_trace());
     format_count(wrong.count() as u64, "wrong scene")
 }
 
-/// Returns the text for a scene if the reason is already given for the whole submission.
+/// Returns the text for a scene whose verdict has a reason that the report has already given for the whole submission.
 pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
     match scene.result.verdict {
         Verdict::Unwritten => "see above",
@@ -54,7 +54,7 @@ pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
     }
 }
 
-/// Returns the sentence about a scene that the two rule books judge differently.
+/// Returns a sentence about a scene that the two rule books judge differently; `None` if they agree.
 #[must_use]
 pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
     scene.differs.map(|cause| {
@@ -67,34 +67,34 @@ pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
     })
 }
 
-/// Returns the first of some names as a list, such as `a, b, c and 2 more`.
+/// Joins the first names into a list, such as `a, b, c and 2 more`.
 pub(super) fn list_some(names: &[impl AsRef<str>], most: usize) -> String {
     let shown: Vec<_> = names.iter().take(most).map(|name| one_line(name.as_ref())).collect();
     let more = if names.len() > most { format!(" and {} more", names.len() - most) } else { String::new() };
     shown.join(", ") + &more
 }
 
-/// Returns points without trailing zeros, such as `12.5` or `10`.
+/// Formats points without trailing zeros, such as `12.5` or `10`.
 #[must_use]
 pub fn format_points(value: f64) -> String {
     let text = format!("{value:.2}");
     text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
-/// Returns a score, such as `12.5 of 20 points`.
+/// Formats a score, such as `12.5 of 20 points`.
 #[must_use]
 pub fn format_score(reached: f64, most: f64) -> String {
     let plural = if format_points(most) == "1" { "" } else { "s" };
     format!("{} of {} point{plural}", format_points(reached), format_points(most))
 }
 
-/// Returns the points as text. They may be missing, because a failure of the grader does not give zero points.
+/// Formats points that may be missing. They are missing if the grader failed, which does not give zero points.
 #[must_use]
 pub fn format_optional_points(value: Option<f64>) -> String {
     value.map_or_else(|| "-".to_owned(), format_points)
 }
 
-/// Returns the reason why a grade has no points.
+/// Returns the reason why a grade has no points; `None` if it has points.
 #[must_use]
 pub fn no_points(grade: &Grade) -> Option<String> {
     if grade.points.is_some() {

@@ -1,5 +1,5 @@
-//! PrairieLearn's results.json: a score from 0 to 1. `gradable: false` stands for errors of the grader and for uploads
-//! without a runnable program, which do not count as an attempt.
+//! PrairieLearn's results.json: a score from 0 to 1. If the grader failed, or the upload has no program that can be
+//! run, `gradable` is false, and the upload does not count as an attempt.
 use super::{super::explain, describe_difference, describe_speed, format_score, head_lines, see_above};
 use crate::foreign::{clean_output, one_line, strip_control_characters};
 use crate::{style::Style, view::to_document, words};
@@ -7,7 +7,7 @@ use fosssim_findings::{Grade, SceneGrade, Verdict};
 use fosssim_mistakes::together::for_students;
 use serde::Serialize;
 
-/// The maximum length of a text, far below the megabyte that PrairieLearn accepts.
+/// The maximum length of a text, in characters. PrairieLearn accepts up to a megabyte.
 const MAX_TEXT_LENGTH: usize = 4000;
 
 #[derive(Serialize)]
@@ -21,7 +21,8 @@ struct Results {
     tests: Vec<Test>,
 }
 
-/// A group of the suite, for the PrairieLearn element `fosssim-report` (`integrations/prairielearn`).
+/// A group of the suite, in the form that the PrairieLearn element `fosssim-report` reads
+/// (`integrations/prairielearn`).
 #[derive(Serialize)]
 struct Group {
     name: String,
@@ -73,7 +74,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         }))
         .collect();
     let build = grade.failed_build();
-    // A fault of the whole upload concerns all groups.
+    // A fault of the whole upload applies to all groups.
     let head = match build {
         Some(_) => Vec::new(),
         None if grade.unfit().is_some() => head_lines(grade),
@@ -89,7 +90,7 @@ pub(crate) fn render(grade: &Grade) -> String {
         message: match grade.verdict {
             Verdict::JudgeError => "The grader failed; this attempt is not counted.".to_owned(),
             _ if grade.is_incomplete() => "Grading was stopped before its end; this attempt is not counted.".to_owned(),
-            // The verdict must not reveal groups that students do not see.
+            // The verdict must not reveal results of groups that students do not see.
             verdict if shown.groups.len() == grade.groups.len() => verdict.name().to_owned(),
             _ => format!(
                 "{} on the tests shown here ({}); other tests are hidden",
@@ -121,7 +122,7 @@ pub(crate) fn render(grade: &Grade) -> String {
     to_document(&results)
 }
 
-/// Returns everything about a scene except for its message.
+/// Returns everything about a scene that follows its summary.
 fn describe_scene(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = describe_difference(scene).into_iter().collect();
     lines.extend(words::list_details(scene));

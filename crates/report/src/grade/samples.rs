@@ -1,4 +1,4 @@
-//! Grades for tests: an accepted one, and one with every kind of fault and with hostile text.
+//! Grades for tests: an accepted one, and others with every kind of fault and with hostile text.
 use fosssim_findings::{FindingPlace, smallest::SmallestScene};
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
@@ -13,7 +13,7 @@ use fosssim_mistakes::together::reconcile_explanations;
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::{collections::BTreeMap, time::Duration};
 
-/// Returns a reason with the given text, to test untrusted text in every report.
+/// Returns a reason that consists of the given text, to test how reports show untrusted text.
 pub(crate) fn saying(words: &str) -> Reason {
     Reason::Failed(Failure::Machine(words.to_owned()))
 }
@@ -66,7 +66,7 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
     }
 }
 
-/// Returns a grade with everything accepted.
+/// Returns a grade in which everything is accepted.
 pub(crate) fn accepted_grade() -> Grade {
     let scenes = |names: &[&str]| {
         names.iter().map(|name| scene(name, Verdict::Accepted, "all 100 steps are right")).collect::<Vec<_>>()
@@ -80,8 +80,8 @@ pub(crate) fn accepted_grade() -> Grade {
     )
 }
 
-/// Returns a grade with every verdict of a run, and with texts that would break the syntax of a report if they were not
-/// escaped.
+/// Returns a grade with every verdict that a run can have, and with texts that would break a report's syntax if they
+/// were not escaped.
 pub(crate) fn failing_grade() -> Grade {
     let mut wrong =
         scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");
@@ -128,7 +128,7 @@ pub(crate) fn failing_grade() -> Grade {
     grade
 }
 
-/// Returns the grade of an upload without a program.
+/// Returns the grade of an upload that contains no program.
 pub(crate) fn unfit() -> Grade {
     let names = ["main.cpp", "fosssim-sample"].map(str::to_owned).into();
     let found = FolderContents::Others { names, more: 0, elsewhere: None };
@@ -146,7 +146,7 @@ pub(crate) fn unfit() -> Grade {
     )
 }
 
-/// Returns a grade that was stopped while its second scene ran.
+/// Returns a grade that was stopped while the second scene ran.
 pub(crate) fn stopped_grade() -> Grade {
     let mut running = scene("Detection/b", Verdict::NotRun, "the program was stopped by the grader");
     running.measured.wall = Duration::from_secs(14);
@@ -155,7 +155,7 @@ pub(crate) fn stopped_grade() -> Grade {
     grade("kim", vec![group("Detection", Visibility::Visible, scenes)])
 }
 
-/// Returns the grade of a program that was stopped at its limit, with the other scenes skipped.
+/// Returns the grade of a program that was stopped at its time limit, after which the other scenes were skipped.
 pub(crate) fn endless() -> Grade {
     let mut stopped = scene("Detection/a", Verdict::TimeLimit, "it ran for 5 s");
     stopped.ended = Some(RunEnd::CpuLimit);
@@ -171,7 +171,7 @@ fn missing(name: &str) -> SceneResult {
     SceneResult::without_run(name, 100, Verdict::NotRun, Reason::Stopped)
 }
 
-/// Returns the grade after a failure of the grader.
+/// Returns the grade of a submission on which the grader failed.
 pub(crate) fn fault() -> Grade {
     grade(
         "bob",
@@ -183,7 +183,7 @@ pub(crate) fn fault() -> Grade {
     )
 }
 
-/// Returns the grade of the template for students, in which nothing is written.
+/// Returns the grade of the course's template, in which nothing is written yet.
 pub(crate) fn unwritten() -> Grade {
     let empty = |key: &str| Explanation {
         key: key.to_owned(),
@@ -209,7 +209,7 @@ pub(crate) fn unwritten() -> Grade {
     grade
 }
 
-/// Returns a smallest scene with these explanations.
+/// Returns a smallest scene that has these explanations.
 pub(crate) fn smallest(explanations: Vec<Explanation>) -> SmallestScene {
     SmallestScene {
         origin: "Holistic/first".to_owned(),

@@ -1,9 +1,9 @@
-//! The sentence about points for speed.
+//! Describes points for speed.
 use super::format_points;
 use crate::number::format_count;
 use fosssim_findings::speed::{SpeedGrade, SpeedMarking, SpeedRatio, SpeedSource};
 
-/// Returns the sentence about a group's speed: the points, and how they were computed.
+/// Describes a group's points for speed, and how they were computed.
 #[must_use]
 pub fn describe_speed(speed: &SpeedGrade) -> String {
     let SpeedGrade { marking, points: reached, source } = speed;
@@ -22,7 +22,7 @@ pub fn describe_speed(speed: &SpeedGrade) -> String {
     }
 }
 
-/// Returns the ratio, its spread, and the effect of the spread on the points.
+/// Describes the measured ratio, its spread, and how the spread affects the points.
 fn describe_ratio(marking: &SpeedMarking, measured: &SpeedRatio) -> String {
     let SpeedRatio { ratio, least, most, runs } = *measured;
     let (high, low) = (format_points(marking.points_at(least)), format_points(marking.points_at(most)));

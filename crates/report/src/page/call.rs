@@ -1,4 +1,4 @@
-//! A detection call on a page: curves, intervals, coefficients.
+//! A detection call on a page, with its curves, intervals and coefficients.
 use super::{
     markup::{mark_difference, render_number},
     render_template,
@@ -16,13 +16,13 @@ use fosssim_render::{
     plot::{PlotTarget, PlottedPolynomial, PolynomialPlot},
 };
 
-/// Renders a call under its name, unfolded if `open`.
+/// Renders a detection call below its name. It is unfolded if `open`.
 pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
     let (pair, pass) = (PairWords(call.pair), PassWords(call.pass));
     render_template(&CallContent { step, call, depth, open, pair, pass, key: pair_key(call.pair) })
 }
 
-/// A detection call and its name, for the template.
+/// A detection call and its name, as the template reads them.
 #[derive(Template)]
 #[template(path = "call.html")]
 struct CallContent<'a> {
@@ -35,18 +35,18 @@ struct CallContent<'a> {
     key: String,
 }
 
-/// A coefficient of both sides, as HTML.
+/// A coefficient of the reference and of the trace, as HTML.
 struct Row {
     role: String,
     power: usize,
     expected: String,
     own: String,
-    /// The fault of the coefficient as a word; empty if there is none.
+    /// A word for what is wrong with the coefficient; empty if nothing is.
     word: &'static str,
 }
 
 impl CallContent<'_> {
-    /// Returns the polynomials of the trace.
+    /// Returns the polynomials that the trace logs.
     fn logged_polynomials(&self) -> &[Vec<f64>] {
         match &self.call.logged {
             CallLog::These(logged) => logged,
@@ -58,12 +58,13 @@ impl CallContent<'_> {
         self.call.logged == CallLog::Nothing
     }
 
-    /// Draws the expected curves.
+    /// Draws the curves of the expected polynomials.
     fn draw_expected(&self, study: &Study) -> String {
         detection::render_picture(study, &format!("Expected in step {}: {}", self.step, self.pair), PlotTarget::Page)
     }
 
-    /// Renders the decision by the trace's own polynomials, and their curves, if one of them is wrong.
+    /// Renders the decision that follows from the trace's own polynomials, and their curves. Returns an empty text if
+    /// all of them are right.
     fn draw_own(&self, study: &Study, logged: &[Vec<f64>]) -> String {
         let mut wrong = study.curves.iter().zip(logged).filter(|(curve, own)| is_wrong(curve, own));
         let curves = match (wrong.next(), wrong.next()) {
@@ -77,18 +78,18 @@ impl CallContent<'_> {
     }
 }
 
-/// Returns the decision by the expected polynomials.
+/// Describes the decision that follows from the expected polynomials.
 fn describe_decision(study: &Study) -> String {
     Detect { study, place: None }.decision(format_g)
 }
 
-/// Returns whether a curve has a zero within the step. Curves without a zero are flat lines, which text describes
-/// better.
+/// Returns whether a curve has a zero within the step. Without a zero, a curve is nearly a flat line, which a sentence
+/// describes better.
 fn changes_sign(study: &Study) -> bool {
     study.curves.iter().any(|curve| curve.real_zeros().iter().any(|zero| (0.0..=1.0).contains(zero)))
 }
 
-/// Describes the polynomials that keep their signs over the whole step.
+/// Describes the polynomials whose signs do not change within the step.
 fn describe_signs(study: &Study) -> String {
     let of = |is_wanted: bool| {
         let is_positive = |curve: &study::Curve| curve.positive.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
@@ -101,12 +102,12 @@ fn describe_signs(study: &Study) -> String {
     format!("No expected polynomial changes its sign in the step. {}.", parts.join("; "))
 }
 
-/// Returns whether a set begins or ends within the step.
+/// Returns whether a set of times neither begins nor ends within the step.
 fn is_flat(set: &[Interval]) -> bool {
     !set_ends(set).iter().any(|end| (0.0..=1.0).contains(end))
 }
 
-/// Returns the curves of the trace, drawn like the expected ones.
+/// Returns the curves of the trace's polynomials, drawn like the expected ones.
 fn own_curves(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>]) -> String {
     let sets: Vec<Vec<Interval>> = logged.iter().map(|own| positive_intervals(own)).collect();
     let own = study.curves.iter().zip(logged).zip(&sets);
@@ -122,12 +123,12 @@ fn own_curves(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
-/// Returns the curve of a polynomial that is positive on a given set.
+/// Returns the curve of a polynomial that is positive at the times in `positive`.
 fn plot_polynomial<'a>(name: String, coefficients: &'a [f64], positive: &'a [Interval]) -> PlottedPolynomial<'a> {
     PlottedPolynomial { name, coefficients, zeros: set_ends(positive), positive }
 }
 
-/// Returns the zeros of a polynomial, which are the ends of its set within the step.
+/// Returns the zeros of a polynomial within the step. They are the ends of the intervals in which it is positive.
 fn set_ends(set: &[Interval]) -> Vec<f64> {
     set.iter().flat_map(|one| [one.lo, one.hi]).collect()
 }
@@ -136,7 +137,7 @@ fn is_wrong(curve: &study::Curve, own: &[f64]) -> bool {
     !own.is_empty() && mark_differences(curve.logged.coefficients(), own).contains(&true)
 }
 
-/// Returns the intervals in which a polynomial of a trace is positive; empty if its zeros can't be found.
+/// Returns the intervals in which a polynomial of the trace is positive; empty if its zeros can't be found.
 fn positive_intervals(own: &[f64]) -> Vec<Interval> {
     match own.len() <= 6 && own.iter().all(|c| c.is_finite()) {
         true => positive_set(own).map(|set| set.as_slice().to_vec()).unwrap_or_default(),
@@ -144,7 +145,7 @@ fn positive_intervals(own: &[f64]) -> Vec<Interval> {
     }
 }
 
-/// Returns the intervals within the step in which all polynomials of a trace are positive.
+/// Returns the intervals within the step in which all polynomials of the trace are positive.
 fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
     let mut common = vec![Interval { lo: 0.0, hi: 1.0 }];
     for own in logged.iter().map(|own| positive_intervals(own)) {
@@ -155,7 +156,7 @@ fn common_intervals(logged: &[Vec<f64>]) -> Vec<Interval> {
     common
 }
 
-/// Returns the decision by the trace's own polynomials.
+/// Describes the decision that follows from the trace's own polynomials.
 fn own_decision(logged: &[Vec<f64>]) -> String {
     let says = match common_intervals(logged).iter().map(|set| set.lo).reduce(f64::min) {
         Some(time) => format!("all are positive from time {} on: a collision", render_number(time)),
@@ -164,7 +165,7 @@ fn own_decision(logged: &[Vec<f64>]) -> String {
     format!("<p>According to your polynomials, {says}.</p>\n")
 }
 
-/// Draws the expected and the actual curve of one polynomial.
+/// Draws the expected and the actual curve of one polynomial in the same plot.
 fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: &[f64]) -> String {
     let own = positive_intervals(logged);
     if is_flat(set) && is_flat(&own) {
@@ -179,7 +180,7 @@ fn draw_both(step: u32, role: &str, expected: &[f64], set: &[Interval], logged: 
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }
 
-/// Returns all coefficients side by side; those that differ after division by the common factor are marked.
+/// Returns all coefficients side by side. Those that differ after division by the common factor are marked.
 fn coefficient_rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Row> {
     let mut rows = Vec::new();
     for (place, curve) in study.curves.iter().enumerate() {
@@ -203,7 +204,7 @@ fn coefficient_rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Ro
     rows
 }
 
-/// Returns for each power whether the coefficients differ after division by the common factor.
+/// Returns for each power of t whether its coefficients differ after division by the common factor.
 fn mark_differences(expected: &[f64], own: &[f64]) -> Vec<bool> {
     let differing = differing_powers(expected, own, find_factor(expected, own));
     (0..expected.len().max(own.len())).map(|power| differing.contains(&power)).collect()

@@ -1,31 +1,32 @@
-//! The card of a scene: the picture and the text about a wrong trace, for pages that are assembled later.
+//! The card of a scene: the picture and the text about a wrong trace. Cards are stored, and pages are assembled from
+//! them later.
 use super::{Case, data, packed::Precision};
 use fosssim_findings::Hints;
 use serde::{Deserialize, Serialize};
 
-/// The placeholder for a card's key until its page is known. The key is a control character, which no text contains.
+/// The placeholder for a card's key, until the card's page is known. It is a control character, which no text contains.
 const KEY_PLACEHOLDER: &str = "\u{1}";
 
-/// The placeholder for the common cause of all scenes, which is known later.
+/// The placeholder for the mistakes that all scenes have in common, which are known later.
 const CAUSE_MARK: &str = "\u{2}";
 
-/// A card.
+/// The stored part of a page about one scene.
 #[derive(Debug, Clone, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub struct Card {
-    /// The part that works without a script.
+    /// The HTML that is useful without a script.
     html: String,
-    /// The motions and the findings for the viewer; empty without a motion.
+    /// The motions and the findings for the viewer, as script text; empty if there is no motion.
     data: String,
-    /// The data with rounded motions, for pages that have no space for exact ones; empty if rounding saves nothing.
+    /// The same data with rounded motions, for pages without space for exact ones; empty if rounding saves nothing.
     #[serde(default)]
     rounded: String,
 }
 
-/// The minimum size of motions that are rounded, in bytes.
+/// The size in bytes from which motions are rounded.
 const MIN_ROUNDED_BYTES: usize = 60_000;
 
 impl Card {
-    /// Returns the card of a case below a heading of level `depth`; `None` if hints forbid it.
+    /// Returns the card of a case, below a heading of level `depth`; `None` if the hints do not allow it.
     #[must_use]
     pub fn for_case(case: &Case<'_>, depth: usize) -> Option<Self> {
         if case.hints == Hints::None {
@@ -48,25 +49,25 @@ impl Card {
         Self { html: format!("<p>{}</p>\n", super::markup::text(words)), ..Self::default() }
     }
 
-    /// Returns the card with a note above its content.
+    /// Returns the card with a remark above its content.
     #[must_use]
     pub fn with_remark(self, words: &str) -> Self {
         Self { html: Self::from_words(words).html + &self.html, ..self }
     }
 
-    /// Returns the card in its stored form.
+    /// Returns the card in the form in which it is stored.
     #[must_use]
     pub fn to_stored(&self) -> String {
         serde_json::to_string(self).unwrap_or_default()
     }
 
-    /// Parses a card in its stored form.
+    /// Parses a card in the form in which it is stored; `None` if it is damaged.
     #[must_use]
     pub fn from_stored(text: &str) -> Option<Self> {
         serde_json::from_str(text).ok()
     }
 
-    /// Returns the sizes of the part without script and of the motions, in bytes.
+    /// Returns the size of the HTML and that of the motions, in bytes.
     pub(super) fn sizes(&self) -> (usize, usize) {
         (self.html.len(), self.data.len())
     }
@@ -76,23 +77,23 @@ impl Card {
         self.html.contains(super::case::FIRST_HEADING)
     }
 
-    /// Renders the part without script, with its mistakes, under a key that is unique on the page.
+    /// Renders the HTML with the mistakes in it, under a key that is unique on the page.
     pub(super) fn html(&self, key: &str, mistakes: &str) -> String {
         let html = self.html.replace(KEY_PLACEHOLDER, key);
         if html.contains(CAUSE_MARK) { html.replace(CAUSE_MARK, mistakes) } else { mistakes.to_owned() + &html }
     }
 
-    /// Returns the exact motions as script text, with the key replaced by `key`.
+    /// Returns the exact motions as script text, in which `key` replaces the placeholder.
     pub(super) fn data(&self, key: &str) -> String {
         self.data.replace(KEY_PLACEHOLDER, key)
     }
 
-    /// Returns the number of bytes of rounded motions; `None` if rounding saves nothing.
+    /// Returns the size of the rounded motions in bytes; `None` if rounding saves nothing.
     pub(super) fn rounded_size(&self) -> Option<usize> {
         (!self.rounded.is_empty()).then_some(self.rounded.len())
     }
 
-    /// Returns the rounded motions as script text.
+    /// Returns the rounded motions as script text, in which `key` replaces the placeholder.
     pub(super) fn round_motions(&self, key: &str) -> String {
         self.rounded.replace(KEY_PLACEHOLDER, key)
     }

@@ -30,7 +30,7 @@ use fosssim_num::{
 };
 use fosssim_render::plot::{PassPlot, PlotTarget, ResidualPlot, STEPS_AXIS, Series};
 
-/// The maximum number of detection calls on a page.
+/// The maximum number of detection calls that a page shows.
 const MAX_CALLS: usize = 6;
 
 /// The heading of the first difference.
@@ -40,7 +40,7 @@ pub(super) const FIRST_HEADING: &str = "First difference";
 type StepCall<'e> = (u32, &'e InspectedCall);
 
 impl Case<'_> {
-    /// Renders a page about one case; the title is that of the window.
+    /// Renders a page about one case. `title` is the title of the browser's window.
     pub(super) fn page(&self, title: &str) -> String {
         render_document(title, &self.html("0"), script())
     }
@@ -65,18 +65,18 @@ impl Case<'_> {
         find_first(&self.check).filter(|_| self.hints == Hints::Full)
     }
 
-    /// Renders the part about the trace, below a heading of the given depth: the motion next to its cause and the first
-    /// wrong values, and below them everything that needs more space.
+    /// Renders the part about the trace, below a heading of level `depth`. The motion is next to its cause and the
+    /// first wrong values. Everything that needs more space is below them.
     pub(super) fn trace_part(&self, key: &str, depth: usize, mistakes: &str) -> String {
         render_template(&TraceContent { case: self, check: &self.check, key, depth, mistakes })
     }
 
-    /// Returns the data of the motion, if there is one.
+    /// Returns the data of the motion viewer, if there are any.
     fn motion(&self) -> Option<&Evidence> {
         self.evidence.filter(|evidence| !evidence.steps.is_empty())
     }
 
-    /// Returns a sentence about where and why judging stopped, with advice about the place to check.
+    /// Describes where and why judging stopped, with advice about what to check.
     fn describe_stop(&self) -> String {
         let outcome = self.check.outcome;
         let Some(stop) = outcome.stop_of(self.check.rules.official()) else { return String::new() };
@@ -90,7 +90,8 @@ impl Case<'_> {
         )
     }
 
-    /// Returns the sentence that a program with the likely mistake writes the same trace.
+    /// Returns a sentence about whether a program with the likely mistake writes the same trace; `None` if there is no
+    /// such run, or if the hints hide it.
     fn proof(&self) -> Option<&'static str> {
         let what = self.what_if.filter(|_| self.hints == Hints::Full)?;
         Some(if what.equal {
@@ -102,7 +103,7 @@ impl Case<'_> {
     }
 }
 
-/// The content of a page about one case.
+/// The content of a page about one case, for the template.
 #[derive(Template)]
 #[template(path = "case.html")]
 struct CaseContent<'a> {
@@ -112,7 +113,7 @@ struct CaseContent<'a> {
     content: String,
 }
 
-/// The content of the part about a trace, with the mistakes as HTML.
+/// The content of the part about a trace, for the template, with the mistakes as HTML.
 #[derive(Template)]
 #[template(path = "trace.html")]
 struct TraceContent<'a> {
@@ -123,7 +124,7 @@ struct TraceContent<'a> {
     mistakes: &'a str,
 }
 
-/// Explanations, each in its own box.
+/// Explanations for the template, which gives each its own box.
 #[derive(Template)]
 #[template(path = "mistakes.html")]
 struct Mistakes {
@@ -132,8 +133,8 @@ struct Mistakes {
 }
 
 impl TraceContent<'_> {
-    /// Returns the detection calls with their steps, those of the first wrong step first. The first list has the calls
-    /// that only follow from wrong earlier passes; the second has the wrong ones.
+    /// Returns the detection calls and their steps, with those of the first wrong step first. The first list has calls
+    /// whose differences only follow from earlier wrong passes. The second list has calls that are wrong themselves.
     fn calls<'e>(&self, evidence: &'e Evidence) -> (Vec<StepCall<'e>>, Vec<StepCall<'e>>) {
         let first = self.case.first().map(|first| first.step);
         let calls = evidence.inspected.iter().flat_map(|up| up.calls.iter().map(move |one| (up.step, one)));
@@ -143,7 +144,7 @@ impl TraceContent<'_> {
         calls.into_iter().partition(|(_, call)| follows && call.pass.index > 0)
     }
 
-    /// Renders the first of some calls; the first one is unfolded if `open`.
+    /// Renders the first calls of a list. If `open`, the first one is unfolded.
     fn render_some(&self, calls: &[StepCall<'_>], open: bool) -> String {
         let call =
             |(number, (step, one)): (usize, &StepCall<'_>)| call::html(*step, one, self.depth + 2, open && number == 0);
@@ -154,13 +155,13 @@ impl TraceContent<'_> {
         out
     }
 
-    /// Returns the first findings of each kind, without consequences of wrong positions.
+    /// Returns the first finding of each kind, without findings that only follow from wrong positions.
     fn examples<'b>(&self, account: &'b BookFindings) -> impl Iterator<Item = &'b Finding> {
         let follows = follows::count(self.check.outcome) > 0;
         account.examples.iter().filter(move |example| !(follows && follows::is_of_formula(example.kind())))
     }
 
-    /// Renders the plots of the error at the end of each step, and of the detection passes.
+    /// Renders plots of the error at the end of each step, and of the detection passes.
     fn plots(&self, evidence: &Evidence) -> String {
         let (key, first) = (self.key, self.case.first().map(|first| first.step));
         let tolerance = state_bound(evidence, self.check.rules.official());
@@ -186,7 +187,7 @@ impl TraceContent<'_> {
             )
         };
         let mut out = String::new();
-        // A flat curve is not drawn.
+        // A curve that would be flat is not drawn.
         if evidence.steps.iter().any(|step| !(step.position.max(step.velocity) <= tolerance)) {
             out += &figure(&residuals.svg(PlotTarget::Page));
         }
@@ -198,7 +199,7 @@ impl TraceContent<'_> {
     }
 }
 
-/// Returns the step of a finding as text.
+/// Names the step of a finding.
 fn step_of(step: u32, steps: u32) -> String {
     match step {
         0 => "the first record".to_owned(),
@@ -206,7 +207,7 @@ fn step_of(step: u32, steps: u32) -> String {
     }
 }
 
-/// Returns the text about a finding whose values are in a table next to it.
+/// Describes a finding whose values are in a table next to the text.
 fn subject(finding: &Finding) -> String {
     match &finding.detail {
         FindingDetail::Coefficient { place, .. } | FindingDetail::PolynomialDegree { place, .. } => place.to_string(),
@@ -224,7 +225,7 @@ fn subject(finding: &Finding) -> String {
     }
 }
 
-/// Returns two values side by side as HTML, in one notation, and marked from the first digit that differs.
+/// Formats two values side by side as HTML, in the same notation. They are marked from the first digit that differs.
 fn compare_cells(row: &Row) -> (String, String) {
     match (row.expected, row.actual) {
         (Value::Number(expected), Value::Number(actual)) => mark_difference(expected, actual, row.differs),
@@ -233,7 +234,7 @@ fn compare_cells(row: &Row) -> (String, String) {
     }
 }
 
-/// Returns a single value as HTML; its title has all digits.
+/// Formats a single value as HTML. All digits are in its tooltip.
 fn format_value(value: Value) -> String {
     match value {
         Value::Number(number) => markup::render_number(number),
@@ -241,13 +242,14 @@ fn format_value(value: Value) -> String {
     }
 }
 
-/// Renders explanations, each in its own box. An example is left out if the first wrong values are shown next to it.
+/// Renders explanations, each in its own box. If the first wrong values are shown next to them, an explanation's
+/// example is left out.
 pub(super) fn mistakes(explanations: &[Explanation], is_shown_beside: bool) -> String {
     let parts = explanations.iter().map(|one| ExplanationParts::new(one, Style::ColorAndSigns));
     render_template(&Mistakes { mistakes: parts.collect(), is_shown_beside })
 }
 
-/// Returns the first sentence, which is the heading, and the general rule after it.
+/// Splits a sentence about a mistake into its first sentence, which becomes the heading, and the general rule after it.
 fn split_lead(what: &str) -> (String, Option<&str>) {
     match what.split_once(". ") {
         Some((lead, more)) if !more.is_empty() => (format!("{lead}."), Some(more)),
@@ -255,13 +257,13 @@ fn split_lead(what: &str) -> (String, Option<&str>) {
     }
 }
 
-/// Returns the pair of a finding, in the viewer's notation.
+/// Returns the pair of a finding in the notation of the viewer.
 fn pair_of(finding: &Finding) -> String {
     Focus::from(finding).pair.map(pair_key).unwrap_or_default()
 }
 
-/// Returns the bound beyond which a book rejects a state. By the fair rules the bound grows with the numbers; the
-/// returned bound is that of the largest numbers.
+/// Returns the bound beyond which a rule book rejects a state. For the fair rules, the bound grows with the numbers, so
+/// this is the bound for the largest numbers.
 fn state_bound(evidence: &Evidence, book: Book) -> f64 {
     match book {
         Book::Parity => PARITY_MAXIMUM,

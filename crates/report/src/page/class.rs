@@ -24,28 +24,28 @@ use std::collections::BTreeMap;
 
 const SCRIPT: &str = include_str!("class.js");
 
-/// The maximum number of characters of a likely mistake or a summary in a table.
+/// The maximum number of characters of a likely mistake or a summary in the table.
 const MAX_SUMMARY_LENGTH: usize = 120;
 
-/// The maximum number of shared mistakes that are not folded, so that the table begins on the first screen.
+/// The maximum number of shared mistakes that are shown unfolded, so that the table begins on the first screen.
 const MAX_UNFOLDED: usize = 5;
 
-/// The maximum number of listed names of a cluster.
+/// The maximum number of names of submissions that are listed for one mistake.
 const MAX_NAMES: usize = 400;
 
-/// The grades of a class.
+/// The page of a class, which shows these grades.
 #[derive(Clone, Copy)]
 pub struct ClassPage<'a> {
-    /// The grades.
+    /// The grades of all submissions.
     pub grades: &'a [Grade],
-    /// The entries that are not submissions.
+    /// The skipped entries of the class's folder, which are not submissions.
     pub passed_over: &'a [SkippedEntry],
     /// A function that returns the address of a submission's page, relative to the class's page.
     pub page: &'a dyn Fn(&Grade) -> String,
 }
 
 impl ClassPage<'_> {
-    /// Renders the file.
+    /// Renders the page as one HTML file.
     #[must_use]
     pub fn html(&self) -> String {
         let content = ClassContent {
@@ -57,13 +57,13 @@ impl ClassPage<'_> {
     }
 }
 
-/// The content of the file.
+/// The content of the page, for the template.
 #[derive(Template)]
 #[template(path = "class.html")]
 struct ClassContent<'a> {
     class: &'a ClassPage<'a>,
     mistakes: Vec<SharedMistake>,
-    /// Whether there are points of an earlier grading.
+    /// Whether the grades contain points of an earlier grading.
     is_compared: bool,
 }
 
@@ -72,14 +72,15 @@ struct ClassContent<'a> {
 struct Cluster<'a> {
     heading: String,
     members: Vec<usize>,
-    /// A scene that shows the members' mistake, and its address.
+    /// A scene in which the members' mistake is visible, and the scene's address.
     scene: Option<(String, String)>,
     note: Option<&'a CourseNote>,
-    /// The smallest scene on which a member's program shows the mistake, to demonstrate in class.
+    /// The smallest scene on which the mistake is visible with a member's program. Teachers can demonstrate it in
+    /// class.
     smallest: Option<&'a SmallestScene>,
-    /// The first scene that all members fail, if no mistake is named.
+    /// The first scene that all members fail, if they share no named mistake.
     first: Option<String>,
-    /// The number of the members' mistake, by which the table can be filtered.
+    /// The number of the members' mistake, with which the table can be filtered.
     mistake: Option<usize>,
 }
 
@@ -89,13 +90,13 @@ impl ClassContent<'_> {
         format!("{}#scene-{}", (self.class.page)(grade), scene_key(scene))
     }
 
-    /// Returns the names of submissions, to be copied into a letter.
+    /// Returns the names of submissions as text, to be copied into a letter.
     fn names(&self, members: &[usize]) -> String {
         let names = members.iter().map(|&number| one_line(&self.class.grades[number].submission));
         names.collect::<Vec<_>>().join(", ")
     }
 
-    /// Returns the filters by verdict that match some submissions, each with the number of matches.
+    /// Returns the filters by verdict that match at least one submission, and how many each matches.
     fn states(&self) -> impl Iterator<Item = (&'static str, &'static str, usize)> {
         let count = |wanted: &str| self.class.grades.iter().filter(|grade| submission_state(grade) == wanted).count();
         let states = [
@@ -107,7 +108,7 @@ impl ClassContent<'_> {
         states.into_iter().filter(|(.., count)| *count > 0)
     }
 
-    /// Returns the numbers of a submission's mistakes, as used by filters.
+    /// Returns the numbers of a submission's mistakes, in the form that the filter reads.
     fn mistake_numbers(&self, number: usize) -> String {
         let made = self.mistakes.iter().enumerate().filter(|(_, one)| one.members.contains(&number));
         made.map(|(place, _)| format!("m{place}")).collect::<Vec<_>>().join(" ")
@@ -147,7 +148,7 @@ impl ClassContent<'_> {
         named.chain(same).collect()
     }
 
-    /// Returns the submissions with the same program, group by group.
+    /// Returns groups of submissions with the same program.
     fn same_programs(&self) -> Vec<Cluster<'_>> {
         let cluster = |members: Vec<usize>| {
             let heading = shorten(&self.names(&members));
@@ -156,36 +157,36 @@ impl ClassContent<'_> {
         same_programs(self.class.grades).into_iter().map(cluster).collect()
     }
 
-    /// Returns the address of the first submission's page that shows a wrong scene.
+    /// Returns the address of the first submission's page on which the scene is described, because it is wrong.
     fn scenes_naming(&self, name: &str) -> Option<String> {
         let fails = |grade: &&Grade| grade.scenes().any(|scene| scene.scene == name && is_failed(scene));
         self.class.grades.iter().find(fails).map(|grade| self.address(grade, name))
     }
 }
 
-/// Returns the name of the suite.
+/// Returns the name of the suite of these grades.
 fn suite_name(grades: &[Grade]) -> &str {
     grades.first().map_or("", |grade| grade.suite.as_str())
 }
 
-/// Returns the names of the scenes, in the form that the script reads.
+/// Returns the names of the scenes in the form that the page's script reads.
 fn scene_names(grades: &[Grade]) -> String {
     let names: Vec<&str> =
         grades.first().iter().flat_map(|grade| grade.scenes()).map(|one| one.scene.as_str()).collect();
     render_data(&serde_json::json!(names))
 }
 
-/// Returns points in the form by which the script sorts.
+/// Returns points in a form by which the page's script can sort.
 fn sort_key(points: Option<f64>) -> String {
     points.map_or_else(String::new, |points| points.to_string())
 }
 
-/// Returns the points of an earlier grading.
+/// Returns the points of the earlier grading, if there is one.
 fn points_before(grade: &Grade) -> Option<f64> {
     grade.changes()?.points
 }
 
-/// Returns the number of accepted scenes.
+/// Returns the number of scenes that are accepted.
 fn accepted_of(grade: &Grade) -> usize {
     grade.count(Verdict::Accepted)
 }
@@ -201,7 +202,7 @@ fn describe_reason(grade: &Grade) -> String {
     }
 }
 
-/// Returns the causes of differences between the rule books, each with the submissions and their numbers of scenes.
+/// Returns the reasons why the rule books differ. Each has the submissions concerned, and their numbers of scenes.
 fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
     let mut found: BTreeMap<String, BTreeMap<usize, usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {
@@ -216,19 +217,19 @@ fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
     found
 }
 
-/// Returns the beginning of a long text, which ends between two words if possible.
+/// Cuts a long text, between two words if possible.
 fn shorten(words: &str) -> String {
     let Some((end, _)) = words.char_indices().nth(MAX_SUMMARY_LENGTH) else { return words.to_owned() };
     let cut = &words[..end];
     format!("{} ...", cut.rsplit_once(' ').map_or(cut, |(whole, _)| whole))
 }
 
-/// Returns whether a scene counts as failed; scenes that were not run, or on which the grader failed, do not.
+/// Returns whether a scene counts as failed. Scenes that were not run, or on which the grader failed, do not count.
 fn is_failed(scene: &SceneGrade) -> bool {
     !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun | Verdict::JudgeError)
 }
 
-/// Returns the state of a submission, by which rows are filtered and colored.
+/// Returns the state of a submission. Rows are filtered and colored by it.
 fn submission_state(grade: &Grade) -> &'static str {
     match grade {
         _ if grade.verdict.is_accepted() => "good",
@@ -237,13 +238,13 @@ fn submission_state(grade: &Grade) -> &'static str {
     }
 }
 
-/// Returns the letters of a submission's scenes, as one row.
+/// Returns one letter for each of a submission's scenes.
 fn row_of_scenes(grade: &Grade) -> String {
     let letters = grade.groups.iter().map(|group| group.scenes.iter().map(letter_of).collect::<String>());
     heat::html(&letters.collect::<Vec<_>>().join("|"))
 }
 
-/// Returns the letter of a scene in its row: accepted, not run, wrong, or without a trace that can be judged.
+/// Returns the letter for a scene: accepted, wrong, not run, or without a trace that can be judged.
 fn letter_of(scene: &SceneGrade) -> char {
     match scene.verdict {
         Verdict::Accepted => 'r',
@@ -253,7 +254,7 @@ fn letter_of(scene: &SceneGrade) -> char {
     }
 }
 
-/// Returns the statistics of the class, each with its name.
+/// Returns the names and the values of the class's statistics.
 fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
     let figures = ClassFigures::from_grades(grades);
     let [mean, median, ..] = figures.points.map_or([None; 4], |all| all.map(Some)).map(format_optional_points);
@@ -270,8 +271,8 @@ fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
     rows.into_iter().chain(since).collect()
 }
 
-/// Returns groups of submissions without a likely mistake that fail the same scenes for the same reasons, the largest
-/// first.
+/// Returns groups of submissions that fail the same scenes for the same reasons, the largest first. Submissions with a
+/// likely mistake are left out.
 fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     let mut found: BTreeMap<Vec<(&str, Verdict, String)>, Vec<usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| likely_mistakes(grade).is_empty()) {
@@ -287,7 +288,7 @@ fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     several
 }
 
-/// Renders how many submissions that ran reach which share of the points.
+/// Renders a histogram of the shares of points, for the submissions that were run.
 fn render_bars(grades: &[Grade]) -> String {
     let ran = grades.iter().filter(|grade| !never_ran(grade));
     histogram::html(ran.filter_map(|grade| Some(grade.points? / grade.max_points)))

@@ -1,4 +1,4 @@
-//! The data of the motion viewer: one JSON block per case, and the motions as packed doubles.
+//! The data for the motion viewer: one JSON block per case, and the motions as packed doubles.
 use super::{
     Case, markup,
     packed::{PackedMotions, Precision, Rounding},
@@ -20,10 +20,10 @@ use std::fmt::Write;
 
 /// Returns all data blocks of a case.
 pub(super) fn render_blocks(case: &Case<'_>, evidence: &Evidence, key: &str, precision: Precision) -> String {
-    // Without full hints, a page contains only data that the program itself wrote.
+    // With restricted hints, the page contains only data that the program itself wrote.
     let is_full = case.hints == Hints::Full;
     let reference = is_full.then_some(("reference", &evidence.reference));
-    // If both motions are identical bit for bit, only one is stored.
+    // If both motions are the same bit for bit, only one of them is stored.
     let what = case.what_if.filter(|what| is_full && !what.equal).map(|what| ("what", &what.track));
     let tracks: Vec<(&str, &Track)> =
         [("submission", &evidence.submission)].into_iter().chain(reference).chain(what).collect();

@@ -8,8 +8,8 @@ use fosssim_model::scene::Scene;
 use fosssim_student::{self as student};
 
 impl WhatIf {
-    /// Returns the reference's run with the named mistake, next to the trace. `None` if the mistake reproduces no step,
-    /// if the trace was not kept completely, or if the evidence does not contain the whole motion.
+    /// Simulates the reference with the named mistake, to compare it with the trace. Returns `None` if the mistake
+    /// reproduces no step, if the trace was not kept completely, or if the evidence does not contain the whole motion.
     #[must_use]
     pub fn for_scene(scene: &Scene, named: &Explanation, trace: Option<&[u8]>, evidence: &Evidence) -> Option<Self> {
         // An incomplete motion cannot be compared.
@@ -25,7 +25,7 @@ impl WhatIf {
     }
 }
 
-/// Returns the page about one judged trace, with full hints, because the trace's author requests it.
+/// Renders the page about one judged trace. It has full hints, because the author of the trace requests it.
 #[must_use]
 pub fn examined_page(check: Check<'_>, examined: &ExaminedTrace<'_>, evidence: &Evidence) -> String {
     let scene = examined.scene;

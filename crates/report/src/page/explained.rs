@@ -1,4 +1,4 @@
-//! The page of `explain`: the likely mistakes of a program, for each trace and for all traces.
+//! The page of `explain`. It shows the likely mistakes of a program, for each trace and for all traces together.
 use super::{
     Card,
     case::mistakes,
@@ -9,27 +9,28 @@ use crate::{case::Case, diagnosis::Diagnosis, grade::rank, words::describe_first
 use askama::Template;
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 
-/// A trace, with its card if one was drawn.
+/// A trace, and its card if it has one.
 type ExplainedCase<'a> = (&'a Case, Option<&'a Card>);
 
-/// Returns how hard the fault of a case is to see; the smallest value is the clearest case. A case is less clear if it
-/// has no picture, a mistake that is not one of the common ones, several indistinguishable mistakes, or a large motion.
+/// Returns how hard the fault of a case is to see. The clearest case has the smallest value. The criteria are whether
+/// the case has a picture, whether its mistake is a common one, how many mistakes can't be distinguished, and how large
+/// the motion is.
 fn clarity_rank((case, card): ExplainedCase<'_>, common: &[Explanation]) -> (bool, usize, usize, usize) {
     let own = &case.explanations;
     (card.is_none(), rank(common, own), own.len(), card.map_or(0, |card| card.sizes().1))
 }
 
-/// A page about several traces of one program.
+/// A page about several traces of the same program.
 #[derive(Debug, Clone)]
 pub struct ExplainedPage<'a> {
     /// The diagnosis that the page shows.
     pub diagnosis: &'a Diagnosis,
-    /// The cards of the diagnosis's traces, in order, followed by those of its smallest scenes.
+    /// The cards of the diagnosis's traces, in order, and after them the cards of its smallest scenes.
     pub cards: &'a [Option<Card>],
 }
 
 impl ExplainedPage<'_> {
-    /// Renders the file.
+    /// Renders the page as one HTML file.
     #[must_use]
     pub fn html(&self) -> String {
         let cases = &self.diagnosis.cases;
@@ -47,18 +48,18 @@ impl ExplainedPage<'_> {
     }
 }
 
-/// The content of the file.
+/// The content of the page, for the template.
 #[derive(Template)]
 #[template(path = "explained.html")]
 struct ExplainedContent<'a> {
     page: &'a ExplainedPage<'a>,
     title: &'a str,
     look: &'static str,
-    /// The number of wrong traces.
+    /// The number of traces that are wrong.
     wrong: usize,
 }
 
-/// The details of a trace: its card, if one was drawn, and its motion.
+/// The part of the page about one trace, with its card and its motion if it has them.
 struct Trace<'a> {
     case: &'a Case,
     key: String,
@@ -68,8 +69,8 @@ struct Trace<'a> {
 }
 
 impl ExplainedContent<'_> {
-    /// Returns the mistakes that explain several traces, with the number of traces; empty for a single trace, whose
-    /// card names them.
+    /// Returns the mistakes that explain several traces, and the number of these traces. For a single trace the list is
+    /// empty, because its card names them.
     fn shared_mistakes(&self) -> impl Iterator<Item = (&Explanation, usize)> {
         let Diagnosis { cases, common, .. } = self.page.diagnosis;
         let explained = |one| cases.iter().filter(|case| is_named_in(one, &case.explanations)).count();
@@ -83,7 +84,7 @@ impl ExplainedContent<'_> {
         small.map(|((small, card), number)| smallest::render_article(small, card.as_ref(), number)).collect()
     }
 
-    /// Returns the traces; the clearest one is unfolded.
+    /// Returns the parts about the traces. The clearest one is unfolded.
     fn traces(&self) -> Vec<Trace<'_>> {
         let Diagnosis { cases, common, .. } = self.page.diagnosis;
         let all: Vec<ExplainedCase<'_>> = cases.iter().zip(self.page.cards.iter().map(Option::as_ref)).collect();

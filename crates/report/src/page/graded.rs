@@ -1,4 +1,4 @@
-//! The page of one submission: its points, its likely mistakes, and a card per scene.
+//! The page of one submission, with its points, its likely mistakes, and a card for each scene.
 use super::{
     Card,
     case::mistakes,
@@ -25,34 +25,34 @@ use fosssim_mistakes::together::for_students;
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 
-/// The maximum number of characters of a program's output in a scene.
+/// The maximum number of characters of a program's output that the page shows for a scene.
 const MAX_OUTPUT_LENGTH: usize = 2_000;
 
-/// The readers of a page.
+/// The reader for whom a report is written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum Audience {
-    /// Staff, who see every group, with its visibility.
+    /// Staff, who see every group and how visible it is to students.
     #[default]
     Staff,
-    /// The student, who sees only groups that are visible immediately, and conclusions from these.
+    /// The student. A student sees only groups that are visible immediately, and only conclusions from these.
     Student,
 }
 
-/// One submission's grade, with the pictures of its traces.
+/// The page of one submission's grade, with pictures of its traces.
 #[derive(Clone, Copy)]
 pub struct GradePage<'a> {
-    /// The grade.
+    /// The grade that the page shows.
     pub grade: &'a Grade,
-    /// A function that returns the stored card with a name.
+    /// A function that returns the stored card of this name, if there is one.
     pub card: &'a dyn Fn(Option<&str>) -> Option<Card>,
-    /// The address of the class's page, relative to the page.
+    /// The address of the class's page, relative to this page; `None` if there is no such page.
     pub class: Option<&'a str>,
-    /// The reader of the page.
+    /// The reader for whom the page is made.
     pub reader: Audience,
 }
 
 impl GradePage<'_> {
-    /// Renders the file.
+    /// Renders the page as one HTML file.
     #[must_use]
     pub fn html(&self) -> String {
         let shown = match self.reader {
@@ -75,51 +75,51 @@ impl GradePage<'_> {
             alike: causes.iter().map(Vec::len).collect(),
             told,
         };
-        // The viewer is left out if there are no cards, because it would be most of the page.
+        // Without cards, the viewer is left out, because it would be most of the page.
         let script = if content.has_scenes && !content.told.is_empty() { script() } else { "" };
         render_document(&format!("{}: {}", grade.submission, grade.verdict.name()), &render_template(&content), script)
     }
 }
 
-/// The content of the file.
+/// The content of the page, for the template.
 #[derive(Template)]
 #[template(path = "graded.html")]
 struct GradeContent<'a> {
     page: &'a GradePage<'a>,
     /// The part of the grade that the reader may see.
     grade: &'a Grade,
-    /// The listed scenes by cause, each with the parts of its card that fit on the page.
+    /// The listed scenes, ordered by cause. Each has the parts of its card that fit on the page.
     told: Vec<(&'a SceneGrade, Option<Card>)>,
     rooms: Vec<Room>,
-    /// The number of scenes with each cause.
+    /// The number of scenes with each cause, in the same order.
     alike: Vec<usize>,
     has_scenes: bool,
-    /// Whether nothing is wrong, so that all listed scenes are listed only because the rule books differ.
+    /// Whether nothing is wrong. Scenes are then listed only because the rule books differ on them.
     is_accepted: bool,
-    /// Whether the table of groups has a column with the readers of each group.
+    /// Whether the table of groups has a column that says who sees each group.
     tells_who: bool,
     columns: usize,
 }
 
-/// The details of a scene.
+/// The part of the page about one scene.
 struct Article<'a> {
     scene: &'a SceneGrade,
     key: String,
     lines: Vec<String>,
-    /// The parts of the card that fit, and the program's output.
+    /// The parts of the card that fit on the page, and the program's output.
     shown: String,
     outputs: String,
     motion: String,
 }
 
 impl GradeContent<'_> {
-    /// Returns the likely mistakes, each with the number of scenes that it explains; empty if a fault of the whole
+    /// Returns the likely mistakes, and how many scenes each explains. The list is empty if a fault of the whole
     /// submission explains everything.
     fn likely(&self) -> Vec<(Explanation, usize)> {
         if self.has_scenes { likely_mistakes(self.grade) } else { Vec::new() }
     }
 
-    /// Returns the first listed scene of a group.
+    /// Returns the first scene of a group that the page lists.
     fn first_of(&self, group: &GroupGrade) -> Option<&SceneGrade> {
         let is_here = |scene: &SceneGrade| group.scenes.iter().any(|one| one.scene == scene.scene);
         self.told.iter().map(|(scene, _)| *scene).find(|scene| self.has_scenes && is_here(scene))
@@ -137,7 +137,7 @@ impl GradeContent<'_> {
         self.told.iter().map(|(_, card)| card.as_ref())
     }
 
-    /// Returns the details of each listed scene, by cause.
+    /// Returns the parts of the page about the listed scenes, grouped by cause.
     fn articles(&self) -> Vec<Vec<Article<'_>>> {
         let mut outputs = if self.grade.shows_output { OUTPUT_BUDGET } else { 0 };
         let told = self.told.iter().zip(&self.rooms);
@@ -145,20 +145,20 @@ impl GradeContent<'_> {
         self.alike.iter().map(|&count| articles.by_ref().take(count).collect()).collect()
     }
 
-    /// Returns the number of accepted scenes that are not listed, and all scenes that are not listed.
+    /// Returns the scenes that are not listed, and how many of them are accepted.
     fn rest(&self) -> (usize, Vec<&SceneGrade>) {
         let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_listed(scene)).collect();
         (rest.iter().filter(|scene| scene.verdict.is_accepted()).count(), rest)
     }
 }
 
-/// Returns the common properties of scenes in which a program fails, as HTML.
+/// Describes as HTML what the scenes in which a program fails have in common.
 pub(super) fn render_located(found: &LocatedFailure) -> String {
     let words = text(&one_line(&words::describe_located(found)));
     format!("<h2>Where it fails</h2>\n<div class=\"card mistake\"><p class=\"lead\">{words}</p></div>\n")
 }
 
-/// Returns the sentence about which rule book counts.
+/// Describes which rule book gives the verdict.
 fn describe_books(grade: &Grade) -> String {
     let other = format_count(grade.differing() as u64, "scene");
     match (grade.rules, grade.differing()) {
@@ -170,7 +170,7 @@ fn describe_books(grade: &Grade) -> String {
     }
 }
 
-/// Returns the points of a grade, or the reason why there are none.
+/// Describes the points of a grade, or why there are none.
 fn score_or_why(grade: &Grade) -> String {
     match grade.points {
         Some(reached) => format_score(reached, grade.max_points) + &extra(grade),
@@ -178,12 +178,12 @@ fn score_or_why(grade: &Grade) -> String {
     }
 }
 
-/// Returns the output of a build.
+/// Renders the output of a build.
 fn printed_by(build: &Build) -> String {
     render_output("What it printed", &build.output, &mut OUTPUT_BUDGET.clone())
 }
 
-/// Returns the readers of groups with this visibility.
+/// Describes who sees groups with this visibility.
 const fn describe_readers(visibility: Visibility) -> &'static str {
     match visibility {
         Visibility::Visible => "everybody",
@@ -193,16 +193,17 @@ const fn describe_readers(visibility: Visibility) -> &'static str {
     }
 }
 
-/// Returns the number of accepted scenes of a group.
+/// Returns the number of a group's scenes that are accepted.
 fn accepted_of(group: &GroupGrade) -> usize {
     group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count()
 }
 
 impl<'a> Article<'a> {
-    /// Creates the details of a scene, reduced to the remaining space for its card and its output.
+    /// Creates the part of the page about a scene. Its card is reduced to what fits, and its output to the remaining
+    /// space.
     fn new(scene: &'a SceneGrade, card: Option<&Card>, room: Room, room_of_outputs: &mut usize) -> Self {
         let key = scene_key(&scene.scene);
-        // A detail is left out if the card already shows it with values.
+        // A detail is left out if the card already shows it together with the values.
         let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
         let details = words::list_details(scene).into_iter().skip(usize::from(is_shown));
         let mistakes = mistakes(&scene.settled, is_shown);
@@ -225,12 +226,12 @@ impl<'a> Article<'a> {
     }
 }
 
-/// Returns a key that is different for every name of a scene.
+/// Returns a key for a scene that is part of addresses. Scenes with different names have different keys.
 pub(super) fn scene_key(name: &str) -> String {
     Sha256::digest(name.as_bytes())[..6].iter().map(|byte| format!("{byte:02x}")).collect()
 }
 
-/// Returns the output of a program, cut to the remaining space.
+/// Renders a program's output, cut to the remaining space.
 fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
     if output.trim().is_empty() || *room == 0 {
         return String::new();
@@ -238,7 +239,7 @@ fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
     let output = without_codes(output);
     let shown: String = output.chars().take(MAX_OUTPUT_LENGTH).collect();
     let cut = if shown.len() < output.len() { "\n[cut short]" } else { "" };
-    // The length is measured after escaping, because escaping makes hostile text longer.
+    // The length is measured after escaping, which makes hostile text longer.
     let shown = text(&shown);
     if shown.len() > *room {
         *room = 0;

@@ -1,8 +1,9 @@
-//! The scenes of a submission as a row of colored cells, for tables of a class. The server's pages show the rows, too.
+//! The scenes of a submission as a row of colored cells, for tables of a class. Pages of the server contain the same
+//! rows.
 use std::fmt::Write;
 
-/// Renders a row from the letters of its scenes, with `|` between groups. The letters mean: accepted, wrong, without a
-/// trace that can be judged, or not run (`r`, `w`, `e`, `n`).
+/// Renders a row of cells from one letter per scene, with `|` between groups. The letters are `r` for accepted, `w` for
+/// wrong, `e` for a scene without a trace that can be judged, and `n` for a scene that was not run.
 pub(super) fn html(letters: &str) -> String {
     let scenes = letters.replace('|', "");
     let words = format!("{} of {} scenes accepted", scenes.matches('r').count(), scenes.len());
@@ -26,7 +27,7 @@ pub(super) fn html(letters: &str) -> String {
     svg + "</svg>"
 }
 
-/// Draws the scenes of one state, or the borders of groups.
+/// Draws all cells of one state, or all borders between groups.
 fn draw_scenes(svg: &mut String, kind: &str, path: &str) {
     if !path.is_empty() {
         let _ = write!(svg, "<path class=\"h-{kind}\" d=\"{path}\"/>");

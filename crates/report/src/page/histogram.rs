@@ -1,13 +1,13 @@
-//! The histogram of a class's points. The server's pages show it, too.
+//! The histogram of a class's points. Pages of the server contain the same histogram.
 use std::fmt::Write;
 
-/// The number of bars.
+/// The number of bars in the histogram.
 const BAR_COUNT: usize = 10;
 
 /// The height of the highest bar, in pixels.
 const MAX_BAR_HEIGHT: usize = 108;
 
-/// Renders a histogram of shares of the points, from 0 to 1; empty if there are no shares.
+/// Renders a histogram of the shares of points, which are between 0 and 1. Without shares, the result is empty.
 pub(super) fn html(shares: impl Iterator<Item = f64>) -> String {
     let mut counts = [0_usize; BAR_COUNT];
     for share in shares.filter(|share| share.is_finite()) {

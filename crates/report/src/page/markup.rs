@@ -1,11 +1,10 @@
-//! HTML with untrusted text in it, which is escaped.
+//! Writes untrusted text into HTML, with escapes.
 use crate::foreign::is_unseen;
 use crate::number::{format_count, format_g, format_pair};
 use fosssim_findings::CourseNote;
 use std::fmt::Write;
 
-/// Returns text in which characters that are invisible, or change the direction of writing, are replaced by their code
-/// points.
+/// Replaces characters that are invisible, or that change the direction of writing, by their code points.
 pub(super) fn show_hidden(raw: &str) -> String {
     let mut out = String::with_capacity(raw.len());
     for c in raw.chars() {
@@ -34,7 +33,7 @@ pub(super) fn text(raw: &str) -> String {
     out
 }
 
-/// The escaper of templates.
+/// The escaper for templates. It also makes invisible characters visible.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct PageText;
 
@@ -44,36 +43,36 @@ impl askama::filters::Escaper for PageText {
     }
 }
 
-/// Returns a number of scenes with its noun.
+/// Formats a number of scenes, such as `3 scenes`.
 pub(super) fn count_scenes(count: usize) -> String {
     format_count(count as u64, "scene")
 }
 
-/// Returns a course's note, with its link.
+/// Renders a course's note and its link.
 pub(super) fn note(note: Option<&CourseNote>) -> String {
     let Some(note) = note else { return String::new() };
     let link = |address: &str| format!("<a href=\"{0}\" rel=\"noopener\">{0}</a>", text(address));
     format!(" <span class=\"hint\">The course: {}.</span> ", note.line(text, link))
 }
 
-/// Returns a line with its formulas in HTML: mathematical signs, and letters with subscripts.
+/// Renders a line whose formulas are written in HTML, with mathematical signs and with letters that have subscripts.
 pub(super) fn render_formula(line: &str) -> String {
     let set = |line: String, index| line.replace(&format!("_{index}"), &format!("<sub>{index}</sub>"));
     ["cm", "a", "b", "i"].into_iter().fold(text(line), set)
 }
 
-/// Writes JSON for a data block, so that nothing in it ends the element.
+/// Writes JSON for a data block. Nothing in it can end the block's element.
 pub(super) fn render_data(value: &serde_json::Value) -> String {
     value.to_string().replace('<', "\\u003c").replace('\u{2028}', "\\u2028").replace('\u{2029}', "\\u2029")
 }
 
-/// Returns a number in a table.
+/// Formats a number for a table.
 pub(super) fn render_number(value: f64) -> String {
     text(&format_g(value))
 }
 
-/// Returns two numbers as HTML, with marks on the digits of the second that differ from the first. Numbers that count
-/// as equal are shown without the digits that differ only because of rounding.
+/// Formats two numbers as HTML, and marks the digits of the second that differ from the first. If the numbers count as
+/// equal, digits that differ only because of rounding are left out.
 pub(super) fn mark_difference(expected: f64, actual: f64, differs: bool) -> (String, String) {
     if !differs {
         return (render_number(expected), render_number(actual));

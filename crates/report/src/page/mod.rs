@@ -1,8 +1,8 @@
-//! Reports as a single HTML file, with the essentials as text and SVG, and a motion viewer.
+//! Renders reports as a single HTML file. The essentials are text and SVG, and a viewer shows the motion.
 //!
-//! The file loads nothing else, from the network or from other files. Its policy allows one script and one style sheet
-//! by their digests, and no evaluated code. All text from a submission, a scene or a path is escaped (`markup`).
-//! Without script, only the viewer is missing, and the page can be printed.
+//! The file loads nothing from the network or from other files. Its policy allows one script and one style sheet by
+//! their digests, and no evaluated code. All text from a submission, a scene or a path is escaped (`markup`). Without
+//! script, only the viewer is missing, and the page can be printed.
 
 mod call;
 mod card;
@@ -36,44 +36,44 @@ use fosssim_model::scene::Scene;
 use sha2::{Digest, Sha256};
 use std::sync::LazyLock;
 
-/// The part of the viewer's script that creates elements, which the page around reports uses, too.
+/// The part of the viewer's script that creates elements. The page around reports uses it as well.
 pub const ELEMENTS: &str = include_str!("viewer/elements.js");
 
-/// The viewer's script, which the server's pages contain, too.
+/// The viewer's script. Pages of the server contain it as well.
 const VIEWER: &str = include!("viewer/viewer.in");
 const STYLE: &str = include_str!("style.css");
 
-/// The reference's run with a named mistake.
+/// The reference's run if it makes a named mistake.
 #[derive(Debug, Clone, PartialEq)]
 pub struct WhatIf {
     /// The mistake's key in the catalogue.
     pub id: String,
     /// The mistake as a sentence.
     pub sentence: String,
-    /// The motion, in the evidence's window of steps.
+    /// The motion of this run, for the same steps as in the evidence.
     pub track: Track,
-    /// Whether the run writes the same bytes as the submission.
+    /// Whether this run writes the same bytes as the submission.
     pub equal: bool,
 }
 
-/// One judged trace.
+/// One judged trace, and everything that a page shows about it.
 #[derive(Debug, Clone, Copy)]
 pub struct Case<'a> {
     /// The verdict, the findings and the explanations.
     pub check: Check<'a>,
-    /// The scene.
+    /// The scene that the trace belongs to.
     pub scene: &'a Scene,
-    /// The data of the viewer; `None` omits viewer and plots.
+    /// The data for the motion viewer. With `None`, the page has no viewer and no plots.
     pub evidence: Option<&'a Evidence>,
-    /// The reference's run with the first explanation's mistake, as proof.
+    /// The reference's run if it makes the mistake of the first explanation, as a proof.
     pub what_if: Option<&'a WhatIf>,
-    /// The hints of the page. The file does not contain hidden parts.
+    /// The amount of detail on the page. The file does not contain what the hints hide.
     pub hints: Hints,
-    /// Whether the reader of the page has the trace, so that commands can name it.
+    /// Whether the reader of the page has the trace. Commands on the page can then name its file.
     pub has_trace: bool,
 }
 
-/// Returns the viewer's script without indentation and comments. No string in it spans several lines.
+/// Returns the viewer's script without indentation and comments. No string in the script spans several lines.
 fn script() -> &'static str {
     static SCRIPT: LazyLock<String> = LazyLock::new(|| {
         let lines = VIEWER.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
@@ -82,20 +82,21 @@ fn script() -> &'static str {
     &SCRIPT
 }
 
-/// Returns the style sheet of all pages, for other pages with the same design.
+/// Returns the style sheet of all pages. Other pages use it to have the same design.
 #[must_use]
 pub fn style() -> String {
     format!("{}{STYLE}", fosssim_render::plot::STYLE)
 }
 
-/// Returns the policy sources for the script and the style of a report. A page that shows a report in a frame must
-/// allow them, because a frame inherits the policy of the surrounding page.
+/// Returns the policy sources that allow the script and the style of a report. A page that shows a report in a frame
+/// must allow them as well, because a frame inherits the policy of the surrounding page.
 #[must_use]
 pub fn framed_digests() -> [String; 2] {
     [script(), &style()].map(|text| format!("'{}'", digest(text)))
 }
 
-/// Renders a file around a body: one style sheet, at most one script, and a policy that allows only these.
+/// Renders an HTML file around a body. It has one style sheet, at most one script, and a policy that allows nothing
+/// else.
 fn render_document(title: &str, body: &str, script: &str) -> String {
     let style = style();
     let allowed = if script.is_empty() { "'none'".to_owned() } else { format!("'{}'", digest(script)) };
@@ -119,12 +120,12 @@ fn render_document(title: &str, body: &str, script: &str) -> String {
     )
 }
 
-/// Renders a template, which can't fail, because it is written to memory.
+/// Renders a template. This can't fail, because the text is written to memory.
 fn render_template(template: &impl Template) -> String {
     template.render().unwrap_or_default()
 }
 
-/// Returns the digest with which a policy allows a script or a style sheet.
+/// Returns the digest by which a content security policy allows a script or a style sheet.
 #[must_use]
 pub fn digest(text: &str) -> String {
     use base64::Engine;

@@ -1,43 +1,44 @@
-//! Motions in the form that the viewer reads: exact doubles, deflated and in base64. Motions that would take too much
-//! space become rounded positions.
+//! Motions in the form that the viewer reads: exact doubles, deflated and encoded in base64. Motions that would take
+//! too much space become rounded positions.
 //!
-//! A rounded motion is a block of bytes: a count of exact records as an 8-byte integer, these records as doubles, then
-//! for each record and coordinate the difference from the record before, in units, zigzag-coded, seven bits a byte, the
-//! lowest first (as Protocol Buffers code integers). Little-endian throughout.
+//! A rounded motion is a block of bytes. It begins with the number of exact records as an 8-byte integer, and these
+//! records as doubles. For each record and each coordinate follows the difference from the previous record, in units.
+//! The difference is zigzag-coded, with seven bits per byte and the lowest bits first (as Protocol Buffers code
+//! integers). All numbers are little-endian.
 use base64::Engine;
 use fosssim_evidence::{Evidence, Track};
 
 /// The maximum size of one case's exact motions on a page, in bytes. The largest course scene (11 particles, 1,601
-/// records) takes 384 KB with both of them.
+/// records) takes 384 KB for both motions.
 pub const MAX_EXACT_BYTES: usize = 540_000;
 
-/// The maximum size of raw motions that are compressed, in bytes; larger ones are rounded immediately.
+/// The maximum size in bytes of motions before compression. Larger motions are rounded without trying to compress them.
 const MAX_COMPRESSED_BYTES: usize = 12 * MAX_EXACT_BYTES;
 
-/// The maximum number of exact values in a rounded motion, which are those around steps with details.
+/// The maximum number of exact values in a rounded motion. The records around steps with details are exact.
 const MAX_EXACT_VALUES: usize = 16_000;
 
-/// The number of units of rounded positions in the bodies' extent.
+/// The number of units across the extent of all bodies, for rounded positions.
 const UNITS_PER_EXTENT: f64 = 65536.0;
 
-/// The mark of a value that is NaN, or too large to be a number of units.
+/// The number that stands for a value that is NaN, or that is too large for a number of units.
 const NO_UNIT_MARK: i64 = 1 << 40;
 
 /// The precision of stored motions.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Precision {
-    /// Motions are exact if there is space for them, otherwise rounded.
+    /// Motions are exact if there is space for them; otherwise they are rounded.
     AsRoomAllows,
-    /// Motions are rounded.
+    /// Motions are rounded in any case.
     Rounded,
 }
 
-/// The rounding of motions.
+/// How the motions are rounded.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rounding {
-    /// The unit of positions, a power of two.
+    /// The unit of rounded positions, which is a power of two.
     pub(super) unit: f64,
-    /// The indices of the exact records, from the first that is stored.
+    /// The indices of the records that stay exact, counted from the first stored record.
     pub(super) exact: Vec<usize>,
 }
 
@@ -75,7 +76,7 @@ fn encode_base64(bytes: &[u8]) -> String {
     base64::engine::general_purpose::STANDARD.encode(miniz_oxide::deflate::compress_to_vec(bytes, 8))
 }
 
-/// Returns the unit of positions, a power of two, so that multiples are exact.
+/// Returns the unit of rounded positions. It is a power of two, so that its multiples are exact.
 fn position_unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     for (_, track) in tracks {
@@ -89,7 +90,7 @@ fn position_unit(tracks: &[(&str, &Track)], particles: usize) -> f64 {
     (extent / UNITS_PER_EXTENT).log2().floor().exp2()
 }
 
-/// Returns the indices of the records around steps with details, first those around the first wrong steps.
+/// Returns the indices of the records around steps with details. Those around the first wrong steps come first.
 fn exact(evidence: &Evidence) -> Vec<usize> {
     let (layout, window) = (evidence.layout, evidence.window);
     let room = MAX_EXACT_VALUES / (4 * layout.particles).max(1);

@@ -1,4 +1,4 @@
-//! The size budget of a page, which decides the parts of each scene's card that fit.
+//! The size limit of a page, and how it is shared among the cards of the scenes.
 use super::{Card, script};
 
 /// The maximum size of a page, in bytes. Pages are sent by mail, and opened on old machines.
@@ -7,24 +7,24 @@ pub const PAGE_BUDGET: usize = 2_950_000;
 /// The maximum number of bytes on a page for the output of programs, in all scenes together.
 pub(super) const OUTPUT_BUDGET: usize = 200_000;
 
-/// The part of the budget for pictures and tables, before the first motion gets space.
+/// The part of the size limit that pictures and tables may use before the first motion gets space.
 const PICTURE_BUDGET: usize = PAGE_BUDGET / 3 * 2;
 
-/// The parts of a scene's card that fit on the page; each level includes the lower ones.
+/// How much of a scene's card fits on the page. Each level includes the lower ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
-    /// The text.
+    /// Only the text fits.
     Words,
-    /// The text and the pictures.
+    /// The text and the pictures fit.
     Pictures,
-    /// The text, the pictures and the rounded motion.
+    /// The text, the pictures and the rounded motion fit.
     Rounded,
-    /// The text, the pictures and the exact motion.
+    /// The text, the pictures and the exact motion fit.
     Exact,
 }
 
-/// Distributes the size budget. Text is always included. Then pictures are added in the order of the cards, then
-/// motions in their smallest form, and last exact motions, again in the order of the cards.
+/// Decides for each card how much of it the page contains. Text is always included. Pictures are added in the order of
+/// the cards, then rounded motions, and then exact motions, again in the order of the cards.
 pub(super) fn distribute<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clone) -> Vec<Room> {
     let count = cards.clone().count();
     let mut rooms = vec![Room::Words; count];
@@ -57,7 +57,7 @@ pub(super) fn distribute<'a>(cards: impl Iterator<Item = Option<&'a Card>> + Clo
     rooms
 }
 
-/// Returns the page's text about cards that do not fit.
+/// Describes which cards the page does not contain completely.
 pub(super) fn describe_left_out<'a>(cards: impl Iterator<Item = Option<&'a Card>>, rooms: &[Room]) -> String {
     let with_motion = cards.zip(rooms).filter(|(card, _)| card.is_some_and(|card| card.sizes().1 > 0));
     let of: Vec<Room> = with_motion.map(|(_, room)| *room).collect();

@@ -1,11 +1,11 @@
-//! The smallest scene for a cause, on a page: the scene, both motions, the differing values, and the computation by
-//! hand.
+//! The part of a page about the smallest scene for a cause: the scene, both motions, the differing values, and the
+//! computation by hand.
 use super::{Card, case::mistakes, markup::text, render_template};
 use crate::{smallest::title, words::describe_first};
 use askama::Template;
 use fosssim_findings::smallest::SmallestScene;
 
-/// Renders a smallest scene, the `number`-th of its page, with its card if there is one.
+/// Renders a smallest scene, and its card if it has one. `number` counts the smallest scenes of the page from 1.
 pub(super) fn render_article(small: &SmallestScene, card: Option<&Card>, number: usize) -> String {
     let key = format!("small-{number}");
     let mistakes = mistakes(&small.explanations[..small.explanations.len().min(1)], card.is_some_and(Card::has_values));
@@ -13,7 +13,7 @@ pub(super) fn render_article(small: &SmallestScene, card: Option<&Card>, number:
     render_template(&SmallestContent { small, card, number, key: &key, shown })
 }
 
-/// A smallest scene and its card, for the template.
+/// A smallest scene and its card, as the template reads them.
 #[derive(Template)]
 #[template(path = "smallest.html")]
 struct SmallestContent<'a> {
@@ -24,14 +24,14 @@ struct SmallestContent<'a> {
     shown: String,
 }
 
-/// Returns the preformatted parts, each with its name; the scene comes first.
+/// Returns the preformatted parts and their names. The scene itself comes first.
 pub(super) fn parts(small: &SmallestScene) -> Vec<(&'static str, &str)> {
     let parts = [Some(small.xml.as_str()), small.differs.as_deref(), small.by_hand.as_deref()];
     let named = ["The scene", "The values that differ", "By hand"].into_iter().zip(parts);
     named.filter_map(|(name, words)| Some((name, words?))).collect()
 }
 
-/// Renders preformatted text.
+/// Renders preformatted text below a label.
 pub(super) fn format_pre(label: &str, words: &str) -> String {
     format!("<pre tabindex=\"0\" role=\"region\" aria-label=\"{label}\">{}</pre>\n", text(words.trim_end()))
 }

@@ -1,15 +1,16 @@
-//! The strip of all steps: right, wrong by itself, or wrong as a consequence. The kinds differ in height, so that they
-//! can be distinguished without color.
+//! A strip that shows every step as right, wrong by itself, or wrong as a consequence. The three kinds have different
+//! heights, so that they can be distinguished without color.
 use fosssim_evidence::{Step, StepClass};
 use std::fmt::Write;
 
-/// The width of the strip.
+/// The width of the strip, in units of the drawing.
 const WIDTH: f64 = 960.0;
 const HEIGHT: f64 = 26.0;
-/// The maximum number of columns. If there are more steps, several share a column, which shows the worst of them.
+/// The maximum number of columns. If there are more steps, several share a column, and the column shows the worst of
+/// them.
 const MAX_COLUMNS: usize = 480;
 
-/// Renders the strip, and its counts as text.
+/// Renders the strip, and a text with the number of steps of each kind.
 pub(super) fn html(steps: &[Step]) -> String {
     let of = |class: StepClass| steps.iter().filter(|step| step.class == class).count();
     let words = format!(

@@ -1,9 +1,9 @@
-//! The contents of a trace as JSON. The report for people is the text of the summary itself.
+//! The summary of a trace as JSON. The report for people is the text of the summary itself.
 use super::super::view::SCHEMA;
 use fosssim_model::trace::{Summary, TraceError};
 use serde_json::{Value, json};
 
-/// Returns one JSON object, indented, with a line feed at its end.
+/// Renders the summary as one JSON object, indented, with a line feed at its end.
 #[must_use]
 pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
     let layout = summary.layout;
@@ -32,7 +32,7 @@ pub fn info_json(scene: &str, trace: &str, summary: &Summary) -> String {
     format!("{value:#}\n")
 }
 
-/// Returns the damage of a trace and its place.
+/// Describes the damage of a trace, and where it is.
 pub(super) fn describe_place(error: &TraceError) -> Value {
     json!({ "offset": error.offset, "frame": error.frame, "step": error.step, "message": error.what.to_string() })
 }

@@ -1,4 +1,4 @@
-//! Reports about traces: the contents of a trace, and one of its steps.
+//! Reports about traces: a summary of a trace, and one of its steps.
 
 mod info;
 mod show;

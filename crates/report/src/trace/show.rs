@@ -1,4 +1,4 @@
-//! One step of a trace, as text or JSON.
+//! The report on one step of a trace, as text and as JSON.
 use super::super::{
     detect::format_polynomial,
     style::{Look, Style},
@@ -10,14 +10,14 @@ use fosssim_model::trace::{Frame, PolynomialLabel};
 use fosssim_num::printed::format_exact;
 use serde_json::{Value, json};
 
-/// A record of the step.
+/// One of the step's records, as the report shows it.
 #[derive(Debug, Clone)]
 pub struct ShownRecord {
-    /// The index of the record in the trace, from 0.
+    /// The index of the record in the trace, counted from 0.
     pub number: u64,
-    /// The byte offset of the record.
+    /// The position of the record in the file, in bytes.
     pub offset: u64,
-    /// Whether the record is the step's mid record.
+    /// Whether the record is the step's mid record; otherwise it is the end record.
     pub mid: bool,
     /// The record's content.
     pub frame: Frame,
@@ -25,21 +25,21 @@ pub struct ShownRecord {
     pub notes: Vec<String>,
 }
 
-/// The content of a report on a step.
+/// A step of a trace, as the report shows it.
 #[derive(Debug, Clone, Copy)]
 pub struct ShownStep<'a> {
-    /// The step number, from 1; 0 is the initial record.
+    /// The number of the step, from 1; 0 is the initial record.
     pub step: u32,
     /// The number of steps of the scene.
     pub steps: u32,
-    /// The step's records.
+    /// The records of the step.
     pub records: &'a [ShownRecord],
-    /// The origins of the reference's polynomials of the step.
+    /// What the reference's polynomials in this step belong to, in the order of the log.
     pub labels: &'a [PolynomialLabel],
 }
 
 impl ShownStep<'_> {
-    /// Renders the step for people: both records, or only the end record if both are equal.
+    /// Renders the step for people. If both records are equal, only the end record is shown.
     #[must_use]
     pub fn text(&self, style: Style) -> String {
         let heading = match self.step {

@@ -1,10 +1,10 @@
-//! Sentences about the common properties of scenes in which a program crashes or exceeds a limit.
+//! Describes what the scenes in which a program crashes or exceeds a limit have in common.
 use fosssim_findings::located::{Content, LocatedFailure};
 
-/// The maximum number of named contents that the scenes can't distinguish from the first one.
+/// The maximum number of further contents that are named if the scenes can't distinguish them from the first one.
 const MAX_NAMED_CONTENTS: usize = 2;
 
-/// Returns the common contents, with counts, and the end of the first failing scene.
+/// Describes what the failing scenes have in common, with counts, and how the program ended in the first of them.
 #[must_use]
 pub fn describe_located(found: &LocatedFailure) -> String {
     let LocatedFailure { failing, contents, failed, with, without, first, step } = found;
@@ -29,7 +29,8 @@ pub fn describe_located(found: &LocatedFailure) -> String {
     text
 }
 
-/// Returns a relative clause on the contents, such as `in which the failsafe moves a zone (held by: a half-plane)`.
+/// Describes the contents of a scene as a relative clause, such as `in which the failsafe moves a zone (held by: a
+/// half-plane)`.
 fn describe_place(content: &Content) -> String {
     let Content { family, value } = content;
     let value = value.as_ref().map(|[axis, value]| format!(" ({axis}: {value})"));

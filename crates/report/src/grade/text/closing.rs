@@ -1,5 +1,5 @@
-//! The result of a submission's grading. It is short enough for a small terminal and comes last, so that it stays
-//! visible.
+//! The closing lines of a report on one submission, which give the result. It is short enough for a small terminal and
+//! comes last, so that it stays visible.
 use super::{Text, verdict_style};
 use crate::foreign::{one_line, strip_control_characters};
 use crate::{
@@ -15,11 +15,11 @@ use crate::{
 use fosssim_findings::{Grade, GroupGrade, Verdict};
 use std::fmt::Write;
 
-/// The maximum number of listed groups if there are more than one further group. Groups that are not accepted come
-/// first.
+/// The maximum number of groups that are listed. If only one more group exists, it is listed as well. Groups that are
+/// not accepted come first.
 const MAX_GROUPS: usize = 12;
 
-/// Renders the closing lines below the verdict. `alone` is whether the report lists no scenes.
+/// Renders the closing lines below the verdict. With `alone`, the report lists no scenes above them.
 pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let style = options.style;
     let mut text = String::new();
@@ -37,7 +37,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let heading = style.paint(Look::Strong, "Where it fails");
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::describe_located(located)));
     }
-    // A fault of the whole submission explains all groups.
+    // A fault of the whole submission explains what is wrong in all groups.
     let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
     let wrong = count_wrong(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
@@ -71,7 +71,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     text
 }
 
-/// Returns a row per group, with the points and the number of accepted scenes.
+/// Renders one row per group, with the points and the number of accepted scenes.
 fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
     let mut table = Table::new([Align::Left, Align::Right, Align::Left, Align::Left]);
     let mut listed: Vec<&GroupGrade> = grade.groups.iter().collect();
@@ -100,7 +100,7 @@ fn render_groups(options: &Text<'_>, grade: &Grade) -> String {
     text
 }
 
-/// Returns the accepted share of a group, such as `all 12 scenes` or `8 of 12 scenes, 2 not run`.
+/// Describes how many scenes of a group are accepted, such as `all 12 scenes` or `8 of 12 scenes, 2 not run`.
 fn describe_share(group: &GroupGrade) -> String {
     let all = group.scenes.len();
     let of = |verdict: Verdict| group.scenes.iter().filter(|scene| scene.verdict == verdict).count();

@@ -1,4 +1,4 @@
-//! Renders grades for people at a terminal. The faults come first and the result last, because a terminal shows the
+//! Renders grades for people at a terminal. Faults come first and the result comes last, because a terminal shows the
 //! last lines.
 
 mod closing;
@@ -14,15 +14,15 @@ use fosssim_findings::{Grade, SceneGrade, SubmissionFault, Verdict};
 use fosssim_judge::Rules;
 use std::fmt::Write;
 
-/// The maximum number of lines of a program's output that are shown.
+/// The maximum number of lines of a program's output in the report.
 const MAX_SHOWN_LINES: usize = 10;
 
-/// The level of detail of the output.
+/// The amount of detail in the text.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Default)]
 pub enum TextDetail {
     /// One line per submission.
     Line,
-    /// A table with a row for each submission, or the result if there is only one submission.
+    /// A table with one row per submission. If there is only one submission, its result.
     Table,
     /// The summary and every scene that is not accepted.
     #[default]
@@ -31,24 +31,24 @@ pub enum TextDetail {
     All,
 }
 
-/// A function that returns the lines of advice on a scene. Lines that begin with `$ ` are commands.
+/// A function that returns lines of advice about a scene. Lines that begin with `$ ` are commands.
 pub type Advice<'a> = &'a dyn Fn(&Grade, &SceneGrade) -> Vec<String>;
 
-/// The options of the text.
+/// Renders grades as text, with these options.
 #[derive(Clone, Copy, Default)]
 pub struct Text<'a> {
-    /// The style of the text.
+    /// The style of terminal text.
     pub style: Style,
-    /// The level of detail for each submission.
+    /// The amount of detail for each submission.
     pub shown: TextDetail,
-    /// The maximum width of tables, in columns; `None` for any width.
+    /// The maximum width of tables in columns; `None` for no limit.
     pub width: Option<usize>,
-    /// The function that returns the command that shows more of the first wrong scene.
+    /// The function that suggests commands with which the reader sees more of the first wrong scene.
     pub closer: Option<Advice<'a>>,
 }
 
 impl Text<'_> {
-    /// Renders the whole report.
+    /// Renders the report on all grades.
     #[must_use]
     pub fn render(&self, grades: &[Grade]) -> String {
         let mut text = String::new();
@@ -73,8 +73,8 @@ impl Text<'_> {
         text
     }
 
-    /// Writes one submission. Its verdict is above its scenes and, unless other submissions follow, also below them,
-    /// where a terminal still shows it.
+    /// Writes one submission. Its verdict is above its scenes. If no other submission follows, the verdict is also
+    /// below them, where a terminal still shows it.
     fn write_submission(&self, text: &mut String, grade: &Grade, is_one_of_several: bool) {
         let details = scenes::render(self, grade);
         if !details.is_empty() {
@@ -91,7 +91,7 @@ impl Text<'_> {
         text.push('\n');
     }
 
-    /// Returns the submission, its verdict and its points.
+    /// Renders one line with the submission's name, its verdict and its points.
     fn verdict(&self, grade: &Grade) -> String {
         let look = if grade.verdict.is_accepted() { Look::Good } else { Look::Bad };
         let (name, verdict) = (one_line(&grade.submission), grade.verdict.name());
@@ -102,7 +102,8 @@ impl Text<'_> {
         format!("{}: {}, {reached}", self.style.paint(Look::Strong, &name), self.style.paint(look, verdict))
     }
 
-    /// Returns the fault of the whole submission, with the option that helps, if the reader runs the command.
+    /// Describes the fault of the whole submission. If the reader runs the command, the text also names the option that
+    /// helps.
     fn unfit(&self, grade: &Grade) -> Option<String> {
         let option = match (grade.unfit(), self.closer) {
             (Some(SubmissionFault::Milestone(other)), Some(_)) => {
@@ -113,7 +114,7 @@ impl Text<'_> {
         words::describe_unfit(grade).map(|unfit| one_line(&unfit) + &option)
     }
 
-    /// Returns the suite, the weaknesses of the sandbox, and a failed build.
+    /// Renders the lines above the scenes: the suite, the weaknesses of the sandbox, and a failed build.
     fn render_header(&self, grade: &Grade) -> String {
         let mut text = format!("suite {}{}\n", one_line(&grade.suite), describe_rules(grade));
         for warning in &grade.warnings {
@@ -137,7 +138,7 @@ impl Text<'_> {
     }
 }
 
-/// Returns the extra points, such as `, 15 of 20 extra points`; empty if the suite gives none.
+/// Describes extra points, such as `, 15 of 20 extra points`; empty if the suite has no extra points.
 #[must_use]
 pub fn extra(grade: &Grade) -> String {
     grade.extra().map_or_else(String::new, |(reached, most)| {
@@ -150,7 +151,7 @@ pub fn extra(grade: &Grade) -> String {
     })
 }
 
-/// Returns the name of the rule book that counts, if it matters; empty if both books agree.
+/// Names the rule book that gives the verdict, if that matters; empty if both books agree.
 fn describe_rules(grade: &Grade) -> String {
     match (grade.rules, grade.differing() as u64) {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
@@ -164,7 +165,7 @@ fn describe_rules(grade: &Grade) -> String {
     }
 }
 
-/// Returns the style of a scene's verdict.
+/// Returns the style in which a scene's verdict is shown.
 const fn verdict_style(verdict: Verdict) -> Look {
     match verdict {
         Verdict::Accepted => Look::Good,
@@ -173,7 +174,7 @@ const fn verdict_style(verdict: Verdict) -> Look {
     }
 }
 
-/// Returns the lines of program output, each with a mark, so that they cannot be confused with lines of the report.
+/// Returns lines of a program's output. Each has a mark, so that it cannot be mistaken for a line of the report.
 fn quote_output(output: &str, most: usize) -> String {
     let output = clean_output(output);
     let mut lines: Vec<String> = output.lines().take(most).map(|line| format!("      | {line}")).collect();

@@ -1,5 +1,5 @@
-//! The scenes of a submission, group by group. Accepted scenes are only counted, and scenes that fail for the same
-//! cause are described once.
+//! The scenes of a submission, group by group. Accepted scenes are only counted. If scenes fail for the same cause,
+//! only one of them is described.
 use super::{super::phrases::list_some, Text, TextDetail, quote_output, verdict_style};
 use crate::foreign::one_line;
 use crate::{
@@ -13,16 +13,16 @@ use crate::{
 use fosssim_findings::{Grade, GroupGrade, SceneGrade, Verdict};
 use std::{collections::BTreeMap, fmt::Write};
 
-/// The maximum number of causes that are described with an example. Other causes get only a sentence, unless every
+/// The maximum number of causes that are described with an example. Further causes get only a sentence, unless every
 /// scene is shown.
 const MAX_DESCRIBED: usize = 3;
 
-/// The maximum number of scenes with the same end that are named.
+/// The maximum number of scenes that are named if they end in the same way.
 const MAX_NAMED: usize = 3;
 
-/// Renders the groups that have something to show.
+/// Renders the groups in which there is something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
-    // A fault of the whole submission is reported once, not for each scene.
+    // A fault of the whole submission is reported once, and not for each scene.
     if options.shown < TextDetail::Wrong || grade.unfit().is_some() {
         return String::new();
     }
@@ -40,7 +40,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
 
 struct Scenes<'a, 'b> {
     options: &'b Text<'b>,
-    /// The width of the longest name, in columns.
+    /// The width of the longest scene name, in columns.
     width: usize,
     by_cause: Vec<AlikeScenes<'a>>,
 }
@@ -79,7 +79,7 @@ impl<'a> Scenes<'a, '_> {
         text
     }
 
-    /// Returns whether a scene is only counted, because it is accepted, or another scene with the same cause is
+    /// Returns whether a scene is only counted. It is either accepted, or has the same cause as another scene that is
     /// described.
     fn is_folded(&self, scene: &SceneGrade) -> bool {
         self.options.shown < TextDetail::All
@@ -87,13 +87,13 @@ impl<'a> Scenes<'a, '_> {
                 || self.alike_scenes(scene).first().is_some_and(|first| first.scene != scene.scene))
     }
 
-    /// Returns the scenes with the same cause.
+    /// Returns the scenes whose verdicts have the same cause as this scene's.
     fn alike_scenes(&self, scene: &SceneGrade) -> &[&'a SceneGrade] {
         let is_in = |scenes: &&AlikeScenes<'_>| scenes.iter().any(|one| one.scene == scene.scene);
         self.by_cause.iter().find(is_in).map_or(&[][..], Vec::as_slice)
     }
 
-    /// Returns whether a scene shows one of the causes that are described with an example.
+    /// Returns whether the scene's cause is one of those that are described with an example.
     fn is_described(&self, scene: &SceneGrade) -> bool {
         let mut causes = self.by_cause.iter().take(MAX_DESCRIBED);
         self.options.shown == TextDetail::All || causes.any(|alike| alike[0].scene == scene.scene)

@@ -7,14 +7,15 @@ use crate::{
 };
 use fosssim_findings::{Grade, GroupGrade, changes::Changes};
 
-/// A column: its cells, beginning with the heading, and their alignment.
+/// A column of the table: its cells, of which the first is the heading, and their alignment.
 struct TextColumn {
     cells: Vec<String>,
     right: bool,
 }
 
-/// Returns one row per submission: points, worst verdict, scenes per group, time. Columns that do not fit the width are
-/// left out: first the time, then the groups, which are replaced by the number of accepted scenes.
+/// Renders one row per submission with the points, the worst verdict, the scenes of each group, and the time. If the
+/// table is too wide, columns are left out: first the time, then the groups, which are replaced by the total number of
+/// accepted scenes.
 #[must_use]
 pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> String {
     let of = |heading: &str, right: bool, cell: &dyn Fn(&Grade) -> String| {
@@ -59,13 +60,13 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
     render_rows(&chosen, grades, style)
 }
 
-/// The last word of the course's group names, which headings leave out.
+/// The last word of the course's group names. It is left out in headings.
 const GROUP_SUFFIX: &str = "Tests";
 
-/// The maximum width of a name, in columns; the middle of a longer name is left out.
+/// The maximum width of a name, in columns. From the middle of a longer name, letters are left out.
 const MAX_NAME_WIDTH: usize = 40;
 
-/// Returns a name, shortened to the width of the table's column.
+/// Shortens a name to the width of the table's column.
 #[must_use]
 pub fn shorten_name(name: &str) -> String {
     const END_WIDTH: usize = MAX_NAME_WIDTH / 2 - 2;
@@ -108,7 +109,7 @@ fn render_rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> St
             let blanks = " ".repeat(column_width(column) - count_columns(cell));
             let look = match row.checked_sub(1) {
                 None => Some(Look::Faint),
-                // This is the column of the verdict.
+                // Column 2 contains the verdict.
                 Some(grade) if number == 2 => Some(super::verdict_style(grades[grade].verdict)),
                 Some(_) => None,
             };
@@ -121,7 +122,7 @@ fn render_rows(columns_of: &[&TextColumn], grades: &[Grade], style: Style) -> St
     text
 }
 
-/// Returns `AC`, or the worst verdict and the number of accepted scenes.
+/// Returns the text of a cell: `AC`, or the worst verdict and the number of accepted scenes.
 fn cell_of(group: &GroupGrade) -> String {
     let accepted = group.scenes.iter().filter(|scene| scene.verdict.is_accepted()).count();
     if accepted == group.scenes.len() {

@@ -1,9 +1,10 @@
-//! The meanings of a formula's letters, for lines that contain the formula.
+//! Explains the letters of a formula, for lines that contain the formula.
 use fosssim_model::sim::PairKind;
 
-/// Returns the sentence that explains the names of differences, of the sum of the radii, and of a zone's motion, that
-/// occur in `lines`; `None` if no name does. `R` is the sum of the radii in polynomials, and the rotation in lines
-/// about zones. `kinds` are the kinds of the pairs in the lines, if known.
+/// Returns a sentence that explains the names in `lines`: those of differences, of the sum of the radii, and of a
+/// zone's motion. Returns `None` if the lines contain no such name. `R` is the sum of the radii in lines about
+/// polynomials, and the rotation in lines about zones. `kinds` are the kinds of pairs that the lines are about, if they
+/// are known.
 pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<String> {
     let example = lines.iter().find_map(|line| difference(line, |_| true));
     let all = |kind| !kinds.is_empty() && kinds.iter().all(|one| *one == kind);
@@ -49,18 +50,18 @@ pub(crate) fn explain_letters(lines: &[String], kinds: &[PairKind]) -> Option<St
     (!parts.is_empty()).then(|| format!("Here {}.", parts.join("; ")))
 }
 
-/// Returns a line about two radii with the names for the kind of pair; an edge's radius is `re`.
+/// Returns a line in which two radii have the names that fit the kind of pair: the radius of an edge is `re`.
 pub(super) fn radii(line: &str, of_edges: bool) -> String {
     if of_edges { line.replace("r2", "re") } else { line.to_owned() }
 }
 
-/// Returns the words of a line, which consist of letters and digits.
+/// Splits a line into words of letters and digits.
 fn split_words(line: &str) -> impl Iterator<Item = &str> {
     line.split(|letter: char| !letter.is_alphanumeric())
 }
 
-/// Returns the first name such as `x21` or `d32` in a line whose letter satisfies `has`, as its letter and its two
-/// numbers.
+/// Returns the first name in a line such as `x21` or `d32` whose letter satisfies `has`. The result is the letter and
+/// the two numbers.
 fn difference(line: &str, has: impl Fn(char) -> bool) -> Option<(char, char, char)> {
     split_words(line).find_map(|word| {
         let mut letters = word.chars();

@@ -1,7 +1,7 @@
-//! Explanations as sentences.
+//! Describes explanations in sentences.
 //!
-//! Sentences that depend on an assignment (its known mistakes, the meanings of its letters) are in its data, found by
-//! their keys; all others are in this module.
+//! Sentences that depend on an assignment are found by their keys in the assignment's data: the known mistakes, and the
+//! meanings of letters. All other sentences are in this module.
 mod letters;
 mod near;
 mod not_finite;
@@ -15,7 +15,7 @@ use fosssim_student::{Area, Mistake, Row, StepMistake, find};
 pub(crate) use letters::explain_letters;
 pub(crate) use places::describe_place;
 
-/// Returns the mistake as a sentence for the student, which does not reveal a formula.
+/// Describes the mistake in one sentence for the student. The sentence does not reveal a formula.
 #[must_use]
 pub fn describe(explanation: &Explanation) -> String {
     let sentence = match &explanation.about {
@@ -34,7 +34,8 @@ pub fn describe(explanation: &Explanation) -> String {
     sentence
 }
 
-/// Returns the sentence for a list of a program's mistakes, with other mistakes that its traces can't distinguish.
+/// Describes the mistake in a list of a program's mistakes, together with other mistakes that the traces can't
+/// distinguish from it.
 #[must_use]
 pub fn what_or(explanation: &Explanation) -> String {
     let rivals = explanation.same_as.iter().filter(|_| explanation.about == About::Mistake);
@@ -50,8 +51,9 @@ pub fn what_or(explanation: &Explanation) -> String {
     }
 }
 
-/// Returns the lines of the exact form: the terms of each coefficient and their weights. The exact form may reveal the
-/// right formula. A known mistake, which the reference has reproduced, has no lines about other weights that fit.
+/// Returns lines with the exact form of the mistake: the terms of each coefficient, and the weights of the terms. The
+/// exact form may reveal the right formula. If the mistake is a known one that the reference has reproduced, lines
+/// about other weights that fit are left out.
 #[must_use]
 pub fn list_details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
@@ -74,7 +76,7 @@ pub fn list_details(explanation: &Explanation) -> Vec<String> {
     lines
 }
 
-/// Returns only the exact form of polynomials without a known mistake, with one line per term.
+/// Returns only the exact forms of polynomials that no known mistake explains, one line per term.
 pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
     let is_form = |detail: &&Detail| matches!(detail, Detail::Polynomial(_)) && !explanation.is_unexplained();
     let details = explanation.details.iter().filter(is_form).cloned().collect();
@@ -84,7 +86,7 @@ pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
     }
 }
 
-/// Returns advice about the place of a wrong stage in the program.
+/// Returns advice about where in the program a wrong stage probably is.
 pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     match &explanation.about {
         About::Stage(fault) => fault.areas().first().map(|area| area.advice()),
@@ -92,17 +94,17 @@ pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
     }
 }
 
-/// Returns whether an explanation contains more than the fact that something is wrong.
+/// Returns whether an explanation says more than that something is wrong.
 pub(crate) fn is_known(explanation: &Explanation) -> bool {
     !matches!(explanation.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
 }
 
-/// Returns the sentence about a known mistake.
+/// Returns the sentence about a known mistake; `None` if the key is not in a catalogue.
 pub(crate) fn known_sentence(key: &str) -> Option<String> {
     find(key).map(Row::sentence)
 }
 
-/// Returns the unwritten stages, in a few words each.
+/// Lists the stages that are not written, in a few words each.
 fn describe_unfinished(keys: &[String]) -> String {
     let mut stages: Vec<String> = Vec::new();
     let mut detections: [Vec<&str>; 2] = Default::default();
@@ -128,7 +130,8 @@ fn describe_unfinished(keys: &[String]) -> String {
     detections.chain(stages).collect::<Vec<_>>().join("; ")
 }
 
-/// Returns the sentence about a mistake in a step without collisions; the subject comes from the row's name.
+/// Returns the sentence about a mistake in a step without collisions. The subject of the sentence depends on the
+/// mistake's key.
 fn look_at_step(key: &str) -> &'static str {
     let has = |words: &[&str]| words.iter().any(|word| key.contains(word));
     match () {

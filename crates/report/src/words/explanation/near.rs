@@ -1,4 +1,4 @@
-//! Sentences about a contest's search for near pairs.
+//! Describes faults in a contest program's search for nearby pairs.
 use crate::number::{count, format_count};
 use fosssim_findings::PairWords;
 use fosssim_mistakes::diagnose::{PairCounts, PairTrait, WrongPairs, pair_traits};
@@ -12,7 +12,7 @@ struct PairFault<'a> {
     traits: Vec<PairTrait>,
 }
 
-/// Returns the faults. Kinds with the same fault and the same traits are reported together.
+/// Returns the faults. Kinds of pairs with the same fault and the same properties are reported together.
 fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     let mut all: Vec<PairFault<'_>> = Vec::new();
     for (times, pairs) in [0, 2].iter().flat_map(|&times| wrong.kinds.iter().map(move |pairs| (times, pairs))) {
@@ -33,11 +33,11 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     all
 }
 
-/// Returns the affected pairs, the fault, and their common traits.
+/// Describes which pairs are affected, what the fault is, and what the pairs have in common.
 pub(super) fn describe(wrong: &WrongPairs) -> String {
     let faults = faults(wrong);
     let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
-    // Velocities of pairs that press on each other may reveal too much, so they are not mentioned.
+    // Velocities of pairs that press on each other are not mentioned, because they may reveal too much.
     if 50 * (once + twice) <= missing {
         return "Not written yet: the search for near pairs. No pair is reported.".to_owned();
     }
@@ -55,7 +55,7 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
     format!("Near pairs: {}.", told.join(". Besides, "))
 }
 
-/// Returns the first pair, the number of pairs, and the exact form of their common traits.
+/// Returns lines about the first affected pair, the number of pairs, and the exact form of their common properties.
 pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
     let first = wrong.first.map(|(pair, step)| format!("The first one is in step {step}: {}.", PairWords(pair)));
     let of_fault = |fault: &PairFault<'_>| {
@@ -76,7 +76,7 @@ const fn happens(times: usize) -> &'static str {
     if times == 0 { "missing" } else { "reported twice" }
 }
 
-/// Returns how many pairs of a kind are reported `times` times, as a word.
+/// Returns a word for how many pairs of a kind are reported `times` times, such as `all`.
 const fn describe_share(pairs: &PairCounts, times: usize) -> &'static str {
     match pairs.times[1] {
         0 => "all",

@@ -1,7 +1,7 @@
-//! Sentences about traces with values that are not finite.
+//! Describes traces with values that are not finite.
 use fosssim_mistakes::diagnose::{NanStage, NotFinite};
 
-/// Describes the first step with such a value, the stage that computes it, and the usual reason.
+/// Describes the first step with a value that is not finite, the stage that computes it, and the usual reason.
 pub(super) fn describe(found: &NotFinite) -> String {
     let what = if found.is_nan { "NaN (not a number)" } else { "an infinite number" };
     let where_from = match (found.step, found.stage) {

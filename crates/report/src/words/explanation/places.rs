@@ -3,7 +3,7 @@ use fosssim_judge::PairWords;
 use fosssim_mistakes::diagnose::{ExamplePlace, StepRecord};
 use fosssim_model::sim::PairKind;
 
-/// Returns the place of an example in its step, and the meaning of its numbers.
+/// Describes where in its step an example is, and what its numbers mean.
 pub(crate) fn describe_place(place: &ExamplePlace) -> String {
     match place {
         ExamplePlace::Given { pair, pass, subject } => {

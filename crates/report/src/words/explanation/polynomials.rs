@@ -1,9 +1,9 @@
-//! Sentences about wrong polynomials.
+//! Describes wrong polynomials.
 use super::{capitalize, letters};
 use fosssim_mistakes::diagnose::{Guess, OfPolynomials, PolynomialDetail, Substitute, Weight};
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_edit, letter};
 
-/// Returns the fault of wrong polynomials.
+/// Describes the fault of wrong polynomials.
 pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
@@ -33,7 +33,7 @@ fn describe_guess(guess: &Guess) -> String {
     }
 }
 
-/// Returns the name of the coefficient of a power.
+/// Names the coefficient of a power of t.
 const fn power_name(power: usize) -> &'static str {
     match power {
         0 => "constant",
@@ -45,7 +45,7 @@ const fn power_name(power: usize) -> &'static str {
     }
 }
 
-/// Returns a line of the exact form.
+/// Renders a line of the exact form.
 pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
     match detail {
         PolynomialDetail::Logged { logged, of } => format!("{logged} of {of} polynomials per detection"),
@@ -82,12 +82,12 @@ pub(super) fn describe_detail(detail: &PolynomialDetail) -> String {
     }
 }
 
-/// Returns the meaning of a letter; `None` if its name explains it.
+/// Returns the meaning of a letter in a formula; `None` if the letter's name explains it.
 fn letter_meaning(reading: Reading, name: &str) -> Option<&'static str> {
     letter(reading, name).map(|Letter { meaning, .. }| *meaning).filter(|meaning| !meaning.is_empty())
 }
 
-/// Returns a letter with its meaning.
+/// Writes a letter of a formula with its meaning.
 fn describe_letter(reading: Reading, name: &str) -> String {
     letter_meaning(reading, name).map_or_else(|| name.to_owned(), |meaning| format!("{name} = {meaning}"))
 }

@@ -1,4 +1,4 @@
-//! Sentences about stages of a step that no known mistake explains.
+//! Describes wrong stages of a step that no known mistake explains.
 use super::capitalize;
 use crate::number::format_g;
 use fosssim_mistakes::diagnose::{
@@ -7,12 +7,13 @@ use fosssim_mistakes::diagnose::{
 };
 use fosssim_model::sim::PairKind;
 
-/// Returns the fault of a stage, beginning with its place.
+/// Describes the fault of a stage. The sentence begins with the place of the fault.
 pub(super) fn describe(fault: &StageFault) -> String {
     format!("{}: {}.", describe_place(fault), capitalize(&describe_fault(fault)))
 }
 
-/// Returns the parts of the assignment that may contain the fault, with the kind of pair if it concerns only one.
+/// Names the parts of the assignment that may contain the fault. If the fault concerns only one kind of pair, the kind
+/// is named.
 fn describe_place(fault: &StageFault) -> String {
     let areas: Vec<String> = fault.areas().iter().map(|area| area.name().to_lowercase()).collect();
     let areas = match areas.split_last() {
@@ -81,7 +82,7 @@ fn describe_fault(fault: &StageFault) -> String {
     fixed.to_owned()
 }
 
-/// Returns the properties of wrong changes of states.
+/// Describes how states change wrongly.
 fn describe_change(wrong: &WrongChange) -> String {
     let (quantity, other) = match wrong.quantity {
         Quantity::Position => ("positions", "velocities are right, but "),
@@ -150,7 +151,7 @@ const fn plural(quantity: Quantity) -> &'static str {
     }
 }
 
-/// Returns a line of the exact form; `None` if the number is not worth a line.
+/// Renders a line of the exact form; `None` if the numbers tell the reader nothing more.
 pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
     Some(match detail {
         StageDetail::Factor(ratio) => {
@@ -208,12 +209,12 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
     })
 }
 
-/// Returns whether a measured ratio equals `value`.
+/// Returns whether a measured ratio equals `value`, up to a tolerance.
 fn is(ratio: f64, value: f64) -> bool {
     (ratio - value).abs() < 1e-9
 }
 
-/// Returns ratios as text: "1.5 times" if they agree, otherwise their range.
+/// Describes ratios: as one number such as "1.5 times" if they agree, otherwise as a range.
 pub(super) fn describe_ratio(ratios: Ratios) -> String {
     let short = |value: f64| {
         if value.abs() >= 1e6 {
