@@ -38,7 +38,7 @@ pub struct Place<'a> {
     pub pass: Option<Pass>,
     /// The number of passes that the reference makes in this step.
     pub passes: usize,
-    /// What the trace logs about the detection call.
+    /// The trace's log of the detection call.
     pub logged: &'a CallLog,
 }
 

@@ -23,7 +23,7 @@ pub struct Diagnosis {
     pub cases: Vec<Case>,
     /// The mistakes that explain several traces, the most frequent first. The list is empty if there is only one trace.
     pub common: Vec<Explanation>,
-    /// What the scenes in which the program crashes or exceeds a limit have in common.
+    /// The common contents of the scenes in which the program crashes or exceeds a limit.
     pub located: Option<LocatedFailure>,
     /// The smallest scene for each cause, if the user requested it.
     pub smallest: Vec<SmallestScene>,
@@ -148,7 +148,7 @@ view! {
         schema: u32 = SCHEMA,
         /// Whether the fair rules accept every trace.
         accepted: bool = diagnosis.is_accepted(),
-        /// What the scenes in which the program crashes or exceeds a limit have in common, as text; null if there are
+        /// The common contents of the scenes in which the program crashes or exceeds a limit, as text; null if there are
         /// no such scenes.
         located: Option<String> = diagnosis.located.as_ref().map(describe_located),
         /// The mistake that explains most of the wrong traces; null if there is only one trace.

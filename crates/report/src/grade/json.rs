@@ -76,7 +76,7 @@ view! {
         unfit: Option<String> = words::describe_unfit(grade).map(|unfit| strip_control_characters(&unfit)),
         /// The result of the build; null if the suite builds nothing.
         build: Option<BuildView> = grade.build.as_ref().map(BuildView::from),
-        /// What the scenes in which the program crashes or exceeds a limit have in common; null if there are no such
+        /// The common contents of the scenes in which the program crashes or exceeds a limit; null if there are no such
         /// scenes.
         located: Option<LocatedView> = grade.located.as_ref().map(LocatedView::from),
         /// The mistake that explains most of the wrong scenes; null if fewer than two scenes have explanations.
@@ -129,7 +129,7 @@ view! {
     /// The scenes in which the program fails, and what they have in common.
     #[schemars(deny_unknown_fields)]
     struct LocatedView from found: LocatedFailure {
-        /// What these scenes have in common, as a sentence.
+        /// The common contents of these scenes, as a sentence.
         text: String = strip_control_characters(&words::describe_located(found)),
         /// The number of scenes in which the program fails.
         failed: usize = found.failed,

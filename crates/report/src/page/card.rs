@@ -17,7 +17,7 @@ pub struct Card {
     html: String,
     /// The motions and the findings for the viewer, as script text; empty if there is no motion.
     data: String,
-    /// The same data with rounded motions, for pages without space for exact ones; empty if rounding saves nothing.
+    /// The data with rounded motions, for pages without space for exact ones; empty if rounding saves nothing.
     #[serde(default)]
     rounded: String,
 }

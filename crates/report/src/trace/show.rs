@@ -34,7 +34,7 @@ pub struct ShownStep<'a> {
     pub steps: u32,
     /// The records of the step.
     pub records: &'a [ShownRecord],
-    /// What the reference's polynomials in this step belong to, in the order of the log.
+    /// The origins of the reference's polynomials in this step, in the order of the log.
     pub labels: &'a [PolynomialLabel],
 }
 
