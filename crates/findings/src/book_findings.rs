@@ -6,16 +6,16 @@ use super::{counts::FindingCounts, finding::Finding};
 pub struct BookFindings {
     /// The number of findings of each kind.
     pub counts: FindingCounts,
-    /// The number of steps with at least one finding; the initial record is not a step.
+    /// The number of steps with at least one finding. The initial record is not a step.
     pub wrong_steps: u64,
-    /// The first finding of each kind that occurred, in the order of [`FindingKind::ALL`](super::FindingKind::ALL).
+    /// The first finding of each kind that occurs, in the order of [`FindingKind::ALL`](super::FindingKind::ALL).
     pub examples: Vec<Finding>,
-    /// The earliest finding of the trace.
+    /// The first finding in the trace, of any kind.
     pub first_divergence: Option<Finding>,
 }
 
 impl BookFindings {
-    /// Keeps a finding if it is the first, or the first of its kind.
+    /// Keeps a finding if it is the first of the trace, or the first of its kind.
     pub fn keep_first(&mut self, first: &Finding) {
         if self.first_divergence.is_none() {
             self.first_divergence = Some(*first);
@@ -25,7 +25,7 @@ impl BookFindings {
         }
     }
 
-    /// Sorts the examples after all of them were added.
+    /// Sorts the examples. This is called after all findings were added.
     pub fn conclude(&mut self) {
         self.examples.sort_by_key(Finding::kind);
     }

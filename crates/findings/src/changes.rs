@@ -21,23 +21,25 @@ impl From<&Grade> for EarlierGrade {
     }
 }
 
-/// The changes of a submission since an earlier grading, in the groups of its grade.
+/// The changes of a submission since an earlier grading. Only groups of its present grade are compared.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Changes<'a> {
-    /// The points of the compared groups in the earlier grading, without extra points; `None` if it had none.
+    /// The points of the compared groups in the earlier grading, without extra points; `None` if that grading gave no
+    /// points.
     pub points: Option<f64>,
     /// The points that the compared groups are worth.
     pub max_points: f64,
-    /// The scenes that became right.
+    /// The scenes that were not accepted before and are now.
     pub right: Vec<&'a SceneGrade>,
-    /// The scenes that are no longer right.
+    /// The scenes that were accepted before and are not now.
     pub broke: Vec<&'a SceneGrade>,
-    /// The scenes that fail with another verdict than before, each with the earlier verdict.
+    /// The scenes that were not accepted before and are not now, but have another verdict. Each has the earlier
+    /// verdict.
     pub others: Vec<(&'a SceneGrade, Verdict)>,
 }
 
 impl Grade {
-    /// Returns the changes since the earlier grading, if there is one. A scene that was not run in either grading
+    /// Returns the changes since the earlier grading, if there is one. A scene that was not run in one of the gradings
     /// counts as unchanged. Groups that are left out of this grade are not compared.
     #[must_use]
     pub fn changes(&self) -> Option<Changes<'_>> {

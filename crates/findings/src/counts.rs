@@ -1,9 +1,9 @@
-//! Counts of findings.
+//! Counts of findings by kind.
 use super::finding::FindingKind;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// The number of findings of each kind.
+/// The number of findings of each kind, in the order of [`FindingKind::ALL`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 #[serde(into = "BTreeMap<FindingKind, u64>", from = "BTreeMap<FindingKind, u64>")]
 pub struct FindingCounts([u64; FindingKind::ALL.len()]);
@@ -20,7 +20,8 @@ impl FindingCounts {
         self.0[kind as usize] += count;
     }
 
-    /// Returns the findings that fail the original's collision verdict: collisions and polynomials.
+    /// Returns the number of findings that make the original's collision verdict fail. They concern collisions and
+    /// polynomials.
     #[must_use]
     pub fn collisions(&self) -> u64 {
         self.total() - self.get(FindingKind::Position) - self.get(FindingKind::Velocity)

@@ -1,21 +1,21 @@
-//! The part of a judged trace that a report may show: findings as values. [`Hints`](super::Hints) limit it to what a
-//! reader may see.
+//! The part of a judged trace that a report may show, as values. [`Hints`](super::Hints) reduce it to what a reader may
+//! see.
 use super::{
     Book, Damage, FindingCounts, Outcome, Residuals, Rules, Ruling,
     finding::{Finding, FindingKind, FindingPlace},
 };
 use serde::{Deserialize, Serialize};
 
-/// The part of a trace that a report may show; the lowest level of hints shows none.
+/// The part of a judged trace that a report may show. At the lowest level of hints, nothing is shown.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Disclosure {
-    /// The rule book whose verdict counts.
+    /// The rule book that gives the verdict.
     pub official: Book,
-    /// The findings of the original's rules.
+    /// The findings by the original's rules.
     pub parity: DisclosedBook,
-    /// The findings of the fair rules, if requested.
+    /// The findings by the fair rules, if they were requested.
     pub fair: Option<DisclosedBook>,
-    /// The residuals (oracle-behavior.md 6.3). Residuals are values, so only full hints show them.
+    /// The residuals (oracle-behavior.md 6.3), which only full hints show, because they are values.
     pub residuals: Option<Residuals>,
     /// The first damage that the reader skipped.
     pub damage: Option<Damage>,
@@ -24,7 +24,7 @@ pub struct Disclosure {
 }
 
 impl Disclosure {
-    /// Creates a disclosure of everything that judging found.
+    /// Creates a disclosure of everything that was found by judging a trace.
     #[must_use]
     pub fn from_outcome(judged: &Outcome, rules: Rules) -> Self {
         let book = |book: Book| {
@@ -47,7 +47,7 @@ impl Disclosure {
         }
     }
 
-    /// Returns the findings of the official rule book, or the original's if the fair rules were not requested.
+    /// Returns the findings by the official rule book, or by the original's rules if the fair rules were not requested.
     #[must_use]
     pub fn official(&self) -> &DisclosedBook {
         match (self.official, &self.fair) {
@@ -57,31 +57,31 @@ impl Disclosure {
     }
 }
 
-/// The findings of one rule book.
+/// The findings by one rule book, as far as a report may show them.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct DisclosedBook {
-    /// The book's verdict.
+    /// The verdict by the rule book.
     pub ruling: Ruling,
     /// The number of steps with at least one finding.
     pub wrong_steps: u64,
     /// The number of findings of each kind.
     pub counts: FindingCounts,
-    /// The earliest finding.
+    /// The first finding in the trace, of any kind.
     pub first_divergence: Option<DisclosedFinding>,
     /// The first finding of each kind.
     pub examples: Vec<DisclosedFinding>,
 }
 
-/// The part of one finding that a report may show.
+/// One finding, as far as a report may show it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum DisclosedFinding {
-    /// The place and the kind of the finding, without values.
+    /// The kind and the place of the finding, without values.
     Place {
         /// The step number, from 1; 0 for the first record.
         step: u32,
-        /// The finding's kind.
+        /// The kind of finding.
         kind: FindingKind,
-        /// The place of the finding in its step.
+        /// The object of the step that the finding is about.
         place: FindingPlace,
     },
     /// The whole finding, with its values.
@@ -89,7 +89,7 @@ pub enum DisclosedFinding {
 }
 
 impl DisclosedFinding {
-    /// Returns the finding's kind.
+    /// Returns the kind of the finding.
     #[must_use]
     pub const fn kind(&self) -> FindingKind {
         match self {

@@ -1,8 +1,8 @@
 //! Reads earlier grades, with which a later one is compared.
 use serde::{Deserialize, Serialize};
 
-/// The parts of an earlier grade that a later one is compared with. They are read from `grade --format json` of any
-/// version.
+/// An earlier grade, with which a later one is compared. It contains what the comparison needs, and is read from `grade
+/// --format json` of any version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EarlierGrade {
     /// The submission's name.
@@ -26,6 +26,6 @@ pub struct EarlierGroup {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct EarlierScene {
     pub(crate) scene: String,
-    /// The verdict's code.
+    /// The code of the scene's verdict, such as `AC`.
     pub(crate) code: String,
 }

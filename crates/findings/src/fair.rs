@@ -1,9 +1,9 @@
-//! The fair rule book's judgement of a trace (numerics.md 2).
+//! The judgement of a trace by the fair rules (numerics.md 2).
 use super::book_findings::BookFindings;
 use fosssim_model::sim::{Pair, Pass};
 use serde::{Deserialize, Serialize};
 
-/// The verdict of the fair rules on a trace.
+/// The verdict on a trace by the fair rules.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairVerdict {
@@ -11,67 +11,67 @@ pub enum FairVerdict {
     Accepted,
     /// The trace breaks a rule.
     Rejected,
-    /// Judging stopped early, and had found no fault.
+    /// Judging stopped early, and no fault was found before.
     #[default]
     None,
 }
 
-/// The reason why a trace is rejected as a whole.
+/// The reason why a trace is rejected as a whole, and not because of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum FairRefusal {
     /// The trace can't be read to its end.
     Stopped,
-    /// The trace can be read only as the original reads damaged files.
+    /// The trace is damaged. The original reads it, because it skips damage.
     Damaged,
     /// Bytes follow the last record.
     TrailingBytes,
-    /// Most decisions of the trace are borderline and differ from the reference's, so the trace cannot be judged.
+    /// The trace cannot be judged, because most of its decisions are borderline and differ from the reference's.
     Undecided,
 }
 
-/// The form of the particle-edge approach polynomial in a trace. Two forms are accepted.
+/// The form of the particle-edge approach polynomial that a trace uses. Both forms are accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Form {
-    /// No finding distinguishes the forms.
+    /// The trace does not show which form it uses.
     #[default]
     Either,
-    /// The course's formula, which has a slip in t^3.
+    /// The course's formula, which has a slip in the coefficient of t^3.
     Course,
-    /// The formula that follows from the definition.
+    /// The formula that follows from the definition of the approach.
     Right,
 }
 
-/// A decision about a pair that round-off may change, and that differs from the reference's.
+/// A decision about a pair that differs from the reference's. Because round-off may explain it, it is not a finding.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Borderline {
-    /// The step, from 1.
+    /// The number of the step, from 1.
     pub step: u32,
-    /// The detection pass.
+    /// The detection pass in which the decision was made.
     pub pass: Pass,
-    /// The pair whose decision is borderline.
+    /// The pair that the decision is about.
     pub pair: Pair,
-    /// Whether the trace reports a collision.
+    /// Whether the trace decides that the pair collides.
     pub collides: bool,
 }
 
-/// The largest differences of right values, as shares of their tolerances from 0 to 1.
+/// The largest differences of values that are still accepted, as shares of their tolerances from 0 to 1.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Shares {
-    /// The share of polynomial coefficients.
+    /// The largest share for the coefficients of polynomials.
     #[serde(rename = "coefficients", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub coefficient: f64,
-    /// The share of contact normals.
+    /// The largest share for contact normals.
     #[serde(rename = "normals", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub normal: f64,
-    /// The share of positions.
+    /// The largest share for positions.
     #[serde(rename = "positions", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub position: f64,
-    /// The share of velocities.
+    /// The largest share for velocities.
     #[serde(rename = "velocities", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub velocity: f64,
@@ -87,29 +87,31 @@ impl Shares {
     }
 }
 
-/// The result of the fair rules for a trace.
+/// The judgement of a trace by the fair rules.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
-    /// The verdict of the fair rules.
+    /// The verdict by the fair rules.
     pub verdict: FairVerdict,
-    /// The reason why the whole trace is rejected, independent of its steps.
+    /// The reason why the trace is rejected as a whole; `None` if it is not.
     pub refusal: Option<FairRefusal>,
     /// The findings by the fair rules.
     pub findings: BookFindings,
-    /// The first step that was not judged, because it would take too much work or the scene has no result there.
+    /// The first step that was not judged, because it would take too much work, or because the scene has no result
+    /// there; `None` if all steps were judged.
     pub given_up: Option<u32>,
-    /// The number of decisions about pairs in the trace, in all steps and passes.
+    /// The number of decisions about pairs in the trace, over all steps and passes.
     pub decisions: u64,
     /// The number of borderline decisions that differ from the reference's.
     pub borderline: u64,
-    /// The first differing borderline decisions.
+    /// The first borderline decisions that differ from the reference's.
     pub borderline_examples: Vec<Borderline>,
-    /// The interval of the common factor of all polynomials; `None` if the factor is 1.
+    /// The interval that contains the factor between the trace's polynomials and the reference's; `None` if the factor
+    /// is 1.
     pub factor: Option<[f64; 2]>,
-    /// The form of the approach polynomial.
+    /// The form of the approach polynomial that the trace uses.
     pub form: Form,
-    /// The number of polynomials without small coefficients that the reference has, or with small ones that it lacks.
+    /// The number of polynomials in which small coefficients are present on one side and dropped on the other.
     pub lost: u64,
-    /// The used shares of the tolerances.
+    /// The shares of the tolerances that accepted values use.
     pub shares: Shares,
 }

@@ -1,4 +1,4 @@
-//! Findings, which are faults of a step with their places.
+//! Findings, which are faults in a step and their places.
 use fosssim_model::{
     sim::{Impulse, Pair, PairKind, Pass, StepError},
     trace::LoggedImpulse,
@@ -11,19 +11,19 @@ fosssim_num::closed_set! {
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
     #[serde(rename_all = "snake_case")]
     pub enum FindingKind {
-        /// A collision of the reference is not in the trace.
+        /// The reference has a collision that is not in the trace.
         MissedCollision = "missed collision",
-        /// A collision of the trace is not in the reference.
+        /// The trace has a collision that the reference does not have.
         SuperfluousCollision = "superfluous collision",
-        /// A collision of both has different contact normals.
+        /// The trace and the reference have the same collision with different contact normals.
         WrongNormal = "wrong contact normal",
-        /// The step logged a wrong number of polynomials, because detection ran too often or not often enough.
+        /// The step logs a wrong number of polynomials, because detection ran too often or not often enough.
         PolynomialCount = "wrong number of polynomials",
         /// A polynomial has a wrong number of coefficients.
         PolynomialDegree = "wrong polynomial degree",
-        /// The reference's coefficients are all tiny, but the trace's are not.
+        /// All coefficients of the reference are tiny, but those of the trace are not.
         VanishingPolynomial = "polynomial should vanish",
-        /// A coefficient differs after rescaling.
+        /// A coefficient differs after the polynomials were rescaled.
         Coefficient = "wrong coefficient",
         /// A particle's position at the end of the step differs.
         Position = "wrong position",
@@ -45,14 +45,14 @@ fosssim_num::closed_set! {
         MixedForms = "mixed forms of the approach",
         /// Fair rules: the penalty force between two bodies was left out or applied twice.
         PairForce = "force of a pair left out or doubled",
-        /// Fair rules: the step's state or its polynomials have no next state.
+        /// Fair rules: the reference's step from the trace's own state has no result.
         NoResult = "no next state",
     }
 }
 
 impl FindingKind {
-    /// Returns the original's message for the kind. `None` for positions and velocities, which only raise residuals,
-    /// and for kinds that the original does not check.
+    /// Returns the original's message for findings of this kind. `None` for positions and velocities, which only
+    /// increase residuals, and for kinds that the original does not check.
     #[must_use]
     pub const fn original_message(self) -> Option<&'static str> {
         match self {
@@ -68,14 +68,14 @@ impl FindingKind {
     }
 }
 
-/// One fault of a step.
+/// A fault in a step of a trace.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct Finding {
-    /// The step number, from 1.
+    /// The number of the step, from 1; 0 is the first record.
     pub step: u32,
-    /// The frame of the trace that was compared, from 0 (the initial record).
+    /// The index of the record that was compared, from 0 for the initial record.
     pub frame: u64,
-    /// The fault and its values.
+    /// The fault, with the values that show it.
     pub detail: FindingDetail,
 }
 
@@ -106,134 +106,135 @@ impl Finding {
     }
 }
 
-/// A fault, with expected (reference) and actual (trace) values.
+/// The fault, with the expected values of the reference and the actual values of the trace.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum FindingDetail {
-    /// A collision of the reference is missing in the trace.
+    /// The reference has a collision that is not in the trace.
     MissedCollision {
-        /// The reference's collision.
+        /// The collision of the reference.
         expected: Impulse,
     },
-    /// A collision of the trace is missing in the reference.
+    /// The trace has a collision that the reference does not have.
     SuperfluousCollision {
-        /// The trace's collision.
+        /// The collision in the trace.
         actual: LoggedImpulse,
     },
-    /// The collision is in both, with different normals.
+    /// The trace and the reference have the same collision, but their normals differ.
     WrongNormal {
-        /// The reference's collision.
+        /// The collision of the reference.
         expected: Impulse,
-        /// The trace's first collision of the same pair.
+        /// The first collision of this pair in the trace.
         actual: LoggedImpulse,
-        /// The Euclidean distance of the normals.
+        /// The Euclidean distance between the two normals.
         #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
     /// The number of polynomials differs.
     PolynomialCount {
-        /// The number of polynomials of the reference.
+        /// The number of polynomials that the reference logs.
         expected: usize,
-        /// The number of polynomials of the trace.
+        /// The number of polynomials that the trace logs.
         actual: usize,
-        /// The number of polynomials in one detection pass over all pairs, with which missing and surplus passes are
-        /// counted.
+        /// The number of polynomials that one detection pass over all pairs logs. With it, missing and surplus passes
+        /// are counted.
         per_pass: usize,
     },
     /// The number of detection passes differs in one part of the step (fair rules).
     PassCount {
         /// The part of the step.
         part: Part,
-        /// The number of passes of the reference.
+        /// The number of passes that the reference makes.
         expected: usize,
-        /// The number of passes of the trace.
+        /// The number of passes that the trace has.
         actual: usize,
     },
     /// The number of coefficients differs.
     PolynomialDegree {
-        /// The place of the polynomial.
+        /// The place of the polynomial in the step.
         place: PolynomialPlace,
-        /// The reference's polynomial.
+        /// The polynomial of the reference.
         expected: Polynomial,
-        /// The trace's number of coefficients.
+        /// The number of coefficients in the trace.
         actual_size: usize,
-        /// The trace's first coefficients (at most six).
+        /// The first coefficients in the trace, at most six.
         actual: Polynomial,
     },
-    /// The reference's polynomial vanishes, but the trace's does not.
+    /// The reference's polynomial is zero up to round-off, but the trace's is not.
     VanishingPolynomial {
-        /// The place of the polynomial.
+        /// The place of the polynomial in the step.
         place: PolynomialPlace,
-        /// The reference's polynomial.
+        /// The polynomial of the reference.
         expected: Polynomial,
-        /// The trace's polynomial.
+        /// The polynomial of the trace.
         actual: Polynomial,
     },
     /// A coefficient differs.
     Coefficient {
-        /// The place of the polynomial.
+        /// The place of the polynomial in the step.
         place: PolynomialPlace,
-        /// The highest power of t whose coefficient differs after division by the factor of most coefficients.
+        /// The highest power of t whose coefficient differs after division by the factor that most coefficients have in
+        /// common.
         power: usize,
         /// The reference's coefficient, multiplied by that factor.
         #[serde(with = "fosssim_num::written")]
         expected: f64,
-        /// The trace's coefficient.
+        /// The coefficient in the trace.
         #[serde(with = "fosssim_num::written")]
         actual: f64,
-        /// The distance between both coefficients.
+        /// The distance between the two coefficients.
         #[serde(with = "fosssim_num::written")]
         residual: f64,
-        /// The values that the original compares; `None` from the fair rules.
+        /// The coefficients in the form in which the original compares them; `None` for the fair rules.
         rescaled: Option<RescaledCoefficient>,
-        /// The reference's whole polynomial, not rescaled.
+        /// The whole polynomial of the reference, without the factor.
         expected_polynomial: Polynomial,
-        /// The trace's whole polynomial.
+        /// The whole polynomial of the trace.
         actual_polynomial: Polynomial,
     },
     /// A position differs by more than the bound of the maximum position residual.
     Position {
-        /// The particle.
+        /// The index of the particle.
         particle: usize,
-        /// The reference's position (x, y).
+        /// The position (x, y) in the reference.
         #[serde(with = "fosssim_num::written")]
         expected: [f64; 2],
-        /// The trace's position (x, y).
+        /// The position (x, y) in the trace.
         #[serde(with = "fosssim_num::written")]
         actual: [f64; 2],
-        /// The Euclidean distance of the positions.
+        /// The Euclidean distance between the two positions.
         #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
     /// A velocity differs by more than the bound of the maximum velocity residual.
     Velocity {
-        /// The particle.
+        /// The index of the particle.
         particle: usize,
-        /// The reference's velocity (x, y).
+        /// The velocity (x, y) in the reference.
         #[serde(with = "fosssim_num::written")]
         expected: [f64; 2],
-        /// The trace's velocity (x, y).
+        /// The velocity (x, y) in the trace.
         #[serde(with = "fosssim_num::written")]
         actual: [f64; 2],
-        /// The Euclidean distance of the velocities.
+        /// The Euclidean distance between the two velocities.
         #[serde(with = "fosssim_num::written")]
         residual: f64,
     },
     /// The time of impact differs from the time at which the polynomials become positive (fair rules).
     ContactTime {
-        /// The reference's collision.
+        /// The collision of the reference.
         expected: Impulse,
-        /// The trace's collision.
+        /// The collision in the trace.
         actual: LoggedImpulse,
     },
-    /// The trace repeats a collision (fair rules).
+    /// The trace logs a collision more than once (fair rules).
     RepeatedCollision {
-        /// The repeated collision.
+        /// The collision that is logged again.
         actual: LoggedImpulse,
     },
-    /// The polynomial of a pair that a response or the failsafe has moved matches the motion neither before nor after
-    /// (fair rules). If the polynomial is right, the particles' positions are wrong.
+    /// The polynomial of a pair that a response or the failsafe has moved matches neither the motion before it nor the
+    /// motion after it (fair rules). If the polynomial is right, the particles' positions are wrong.
     PassPositions {
-        /// The place of the first such polynomial.
+        /// The place of the first such polynomial in the step.
         place: PolynomialPlace,
     },
     /// The mid record and the end record of the step contradict each other (fair rules).
@@ -241,62 +242,62 @@ pub enum FindingDetail {
         /// The part of the record that differs.
         part: RecordPart,
     },
-    /// A polynomial has more coefficients than any detection computes, or small leading ones, which the course's
-    /// library drops (fair rules).
+    /// A polynomial could not have been logged by the course's library: it has more coefficients than any detection
+    /// computes, or small leading ones, which the library drops (fair rules).
     ImpossibleLog,
-    /// The trace's polynomials lack coefficients that the course's library drops after a scaling, and a decision
-    /// depends on them (fair rules).
+    /// A decision of the trace depends on coefficients that are missing in its polynomials, because the course's
+    /// library drops small ones after a scaling (fair rules).
     TrimmedDecision {
-        /// The place of the pair's first polynomial.
+        /// The place of the pair's first polynomial in the step.
         place: PolynomialPlace,
-        /// Whether the pair collides.
+        /// Whether the pair collides if no coefficient is missing.
         collides: bool,
     },
-    /// The trace's polynomials lack coefficients that the course's library drops after a scaling, and a time of impact
-    /// depends on them (fair rules).
+    /// A time of impact in the trace depends on coefficients that are missing in its polynomials, because the course's
+    /// library drops small ones after a scaling (fair rules).
     TrimmedTime {
-        /// The place of the pair's first polynomial.
+        /// The place of the pair's first polynomial in the step.
         place: PolynomialPlace,
-        /// The time of impact with all coefficients.
+        /// The time of impact if no coefficient is missing.
         #[serde(with = "fosssim_num::written")]
         expected: f64,
-        /// The time of impact that the trace's polynomials have.
+        /// The time of impact according to the trace's polynomials.
         #[serde(with = "fosssim_num::written")]
         actual: f64,
     },
     /// A state cannot be judged, because it contains NaN or is far larger than every state that the scene leads to
     /// (fair rules).
     BeyondReach {
-        /// The particle.
+        /// The index of the particle.
         particle: usize,
-        /// The particle's position (x, y).
+        /// The particle's position (x, y) in the trace.
         #[serde(with = "fosssim_num::written")]
         position: [f64; 2],
-        /// The particle's velocity (x, y).
+        /// The particle's velocity (x, y) in the trace.
         #[serde(with = "fosssim_num::written")]
         velocity: [f64; 2],
     },
     /// The trace mixes the two accepted forms of the approach polynomial (fair rules).
     MixedForms {
-        /// The place of the first such polynomial.
+        /// The place of the first polynomial that has the other form.
         place: PolynomialPlace,
     },
-    /// The penalty force between two near bodies was left out or applied twice (fair rules).
+    /// The penalty force between two nearby bodies was left out or applied twice (fair rules).
     PairForce {
-        /// The pair of bodies.
+        /// The pair whose force is wrong.
         pair: Pair,
         /// Whether the force was applied twice; otherwise it was left out.
         is_doubled: bool,
     },
-    /// The trace's own state or its polynomials have no next state (fair rules).
+    /// The reference's step from the trace's own state or polynomials has no result (fair rules).
     NoResult {
-        /// The numerical error that ended the step.
+        /// The reason why the step has no result.
         error: StepError,
     },
 }
 
 impl FindingDetail {
-    /// Returns the finding's place in the step.
+    /// Returns the object of the step that the finding is about.
     #[must_use]
     pub const fn place(&self) -> FindingPlace {
         match self {
@@ -327,7 +328,8 @@ impl FindingDetail {
         }
     }
 
-    /// Returns the pair of the finding; `None` if it has none, or if the trace names objects that do not form a pair.
+    /// Returns the pair that the finding is about; `None` if it is not about a pair, or if the trace names objects that
+    /// do not form one.
     #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         match (self, self.place()) {
@@ -338,7 +340,7 @@ impl FindingDetail {
         }
     }
 
-    /// Returns the detection pass of the finding, if it has one.
+    /// Returns the detection pass that the finding is about, if it is about one.
     #[must_use]
     pub const fn pass(&self) -> Option<Pass> {
         match self.place() {
@@ -348,85 +350,85 @@ impl FindingDetail {
     }
 }
 
-/// The place of a finding in its step.
+/// The object of the step that a finding is about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FindingPlace {
-    /// The whole step.
+    /// The step as a whole.
     Step,
     /// A pair of the scene.
     Pair(Pair),
     /// A polynomial of the step.
     Polynomial(PolynomialPlace),
-    /// A particle, by its index.
+    /// A particle, given by its index.
     Particle(usize),
-    /// Two object numbers in the trace that do not form a pair of the scene.
+    /// Two objects, given by their numbers in the trace, which do not form a pair of the scene.
     Objects(i32, i32),
 }
 
-/// A coefficient as the original compares it: rescaled by the sum of absolute values, so that one wrong coefficient
-/// changes all others.
+/// A coefficient in the form in which the original compares it. Both polynomials are divided by the sums of their
+/// absolute values, so a single wrong coefficient changes all others.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct RescaledCoefficient {
     /// The highest power of t whose coefficient is beyond the original's bound.
     #[serde(rename = "coefficient")]
     pub power: usize,
-    /// The reference's coefficient, rescaled to the trace's magnitude.
+    /// The coefficient of the reference, scaled to the size of the trace's polynomial.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub expected: f64,
-    /// The trace's coefficient.
+    /// The coefficient in the trace.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub actual: f64,
-    /// The distance between both coefficients.
+    /// The distance between the two coefficients.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub residual: f64,
 }
 
-/// A part of a step's collision handling.
+/// A part of the collision handling in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Part {
-    /// The part before the mid record: the single pass, or the impulse rounds.
+    /// The part before the mid record, which is the single pass or the impulse rounds.
     Impulses,
-    /// The impact zones and the rigid failsafe.
+    /// The geometric part: the impact zones and the rigid failsafe.
     Geometric,
 }
 
-/// The part in which two records of a step contradict each other.
+/// The part of a step's two records in which they contradict each other.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RecordPart {
     /// The positions or velocities.
     State,
-    /// The impulse lists.
+    /// The lists of impulses.
     Impulses,
-    /// The polynomial lists.
+    /// The lists of polynomials.
     Polynomials,
 }
 
 /// The place of a polynomial in a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PolynomialPlace {
-    /// The detection pass of the polynomial.
+    /// The detection pass to which the polynomial belongs.
     pub pass: Pass,
-    /// The pair that the polynomial belongs to.
+    /// The pair to which the polynomial belongs.
     pub pair: Pair,
-    /// The role of the polynomial.
+    /// The condition that the polynomial describes.
     pub role: Role,
-    /// The index in the frame's list of polynomials, from 0.
+    /// The index of the polynomial in the record's list, from 0.
     pub index: usize,
 }
 
 fosssim_num::closed_set! {
-    /// The meaning of a detection polynomial if it is positive (collisions.md 2).
+    /// The condition that holds while a detection polynomial is positive (collisions.md 2).
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
     #[serde(rename_all = "snake_case")]
     pub enum Role {
-        /// The objects overlap (the distance is below the sum of radii).
+        /// The objects overlap: their distance is smaller than the sum of their radii.
         Overlap = "overlap",
-        /// The particle is beyond the edge's first endpoint (alpha > 0).
+        /// The closest point is after the edge's first endpoint (alpha > 0).
         AlphaAboveZero = "alpha > 0",
-        /// The particle is before the edge's second endpoint (alpha < 1).
+        /// The closest point is before the edge's second endpoint (alpha < 1).
         AlphaBelowOne = "alpha < 1",
         /// The objects approach each other.
         Approach = "approach",
@@ -434,7 +436,7 @@ fosssim_num::closed_set! {
 }
 
 impl Role {
-    /// Returns the role of polynomial `number` (from 0) of a detection call.
+    /// Returns the role of the polynomial with the index `number` in a detection call.
     #[must_use]
     pub const fn from_number(kind: PairKind, number: usize) -> Self {
         match (kind, number) {

@@ -1,4 +1,4 @@
-//! The grade of one submission, scene by scene.
+//! The grade of one submission, with the results of all scenes.
 use super::{
     Hints, Rules,
     earlier::EarlierGrade,
@@ -13,37 +13,37 @@ use fosssim_model::assignments::Assignment;
 use serde::{Deserialize, Serialize};
 use std::{collections::BTreeMap, ops::Deref, time::Duration};
 
-/// The visibility of a group's results, in Gradescope's terms.
+/// The readers who see the results of a group, and when. The names are Gradescope's.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Visibility {
-    /// The results are visible immediately.
+    /// Students see the results immediately.
     Visible,
-    /// The results are visible only to staff.
+    /// Only staff see the results.
     Hidden,
-    /// The results are visible to students after the due date.
+    /// Students see the results after the due date.
     AfterDueDate,
-    /// The results are visible to students after grades are published.
+    /// Students see the results after the grades are published.
     AfterPublished,
 }
 
-/// A course's note on a mistake or a group; reports show it next to their own text.
+/// A course's note on a mistake or a group. Reports show it after their own text.
 #[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct CourseNote {
     /// The text of the note.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub text: Option<String>,
-    /// The address of a lecture or a section, with `http` or `https`.
+    /// The address of a lecture or a section, which begins with `http` or `https`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub link: Option<String>,
-    /// The points in the course's rubric, which are shown but not counted.
+    /// The points in the course's rubric. They are shown, but not counted.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub points: Option<f64>,
 }
 
 impl CourseNote {
-    /// Writes the note in one line; `text` and `link` format the text and the address.
+    /// Formats the note as one line. `text` and `link` format its text and its address.
     pub fn line(&self, text: impl Fn(&str) -> String, link: impl Fn(&str) -> String) -> String {
         let words = self.text.as_deref().map(|words| text(words.trim_end_matches('.')));
         let points = self.points.map(|points| format!("rubric points: {points}"));
@@ -52,60 +52,60 @@ impl CourseNote {
     }
 }
 
-/// Writes the note in one line, with the unchanged address.
+/// Formats the note as one line, with the address as it is.
 impl std::fmt::Display for CourseNote {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         formatter.write_str(&self.line(str::to_owned, str::to_owned))
     }
 }
 
-/// The maximum number of submissions with the same program that a grade names, so that output for a class does not grow
-/// quadratically.
+/// The maximum number of submissions with the same program that a grade names. Without a limit, the output for a class
+/// would grow quadratically.
 const MAX_NAMED: usize = 20;
 
 /// The grade of one submission on one suite.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Grade {
-    /// The submission's name, which is its file or folder name.
+    /// The name of the submission, which is the name of its file or folder.
     pub submission: String,
-    /// The suite's name.
+    /// The name of the suite.
     pub suite: String,
-    /// The requested rule books; the official one decides verdicts and points.
+    /// The rule books by which traces are judged. The official one gives the verdicts and the points.
     pub rules: Rules,
-    /// The worst verdict of the groups that count.
+    /// The worst verdict of the groups whose points count.
     pub verdict: Verdict,
-    /// The points reached, without extra points; `None` if the grader failed or was stopped before the last scene. A
-    /// failure of the grader never gives zero points.
+    /// The points that the submission gets, without extra points. `None` if the grader failed, or was stopped before
+    /// the last scene; that never gives zero points.
     pub points: Option<f64>,
-    /// The maximum number of points, without extra points.
+    /// The points that the suite is worth, without extra points.
     pub max_points: f64,
     /// The groups, in the suite's order.
     pub groups: Vec<GroupGrade>,
-    /// Whether reports for students show text that the program controls, such as its output. If groups are hidden, they
-    /// do so only if the suite allows it.
+    /// Whether reports for students show text that the program controls, such as its output. If the suite has hidden
+    /// groups, reports show it only if the suite allows it.
     pub shows_output: bool,
-    /// The end of the build, if the suite builds.
+    /// The result of building the submission; `None` if the suite builds nothing.
     pub build: Option<Build>,
-    /// Warnings about missing layers of the sandbox; empty if every required layer was active.
+    /// Warnings about layers of the sandbox that are not available; empty if all required layers were active.
     pub warnings: Vec<String>,
     /// The layers of the sandbox that were active.
     pub layers: Vec<String>,
-    /// The total wall time of all runs, including reused results.
+    /// The wall time of all runs together. It includes the runs whose results were reused.
     pub wall: Duration,
-    /// Keys of mistakes that accepted scenes contradict.
+    /// The keys of mistakes that accepted scenes refute.
     pub refuted: Vec<String>,
-    /// The milestone that the program seems to implement, if it is not the suite's.
+    /// The milestone that the program probably implements, if it is another one than the suite's.
     pub looks_like: Option<Assignment>,
-    /// The common properties of the scenes in which the program crashes or exceeds a limit, if hints allow them.
+    /// The common contents of the scenes in which the program crashes or exceeds a limit, if the hints allow it.
     pub located: Option<LocatedFailure>,
-    /// The digest of the program; `None` if there is no program that can be run.
+    /// The digest of the program; `None` if the submission has no program that can be run.
     pub program: Option<String>,
-    /// Other submissions of the class with an identical program (at most 20), for staff only.
+    /// The names of other submissions in the class with an identical program, at most 20. Only staff see them.
     pub same_program: Vec<String>,
-    /// The earlier grade that this one is compared with.
+    /// The earlier grade with which this grade is compared.
     #[serde(default)]
     pub before: Option<EarlierGrade>,
-    /// The smallest scene for each cause, if requested.
+    /// The smallest scene for each cause, if the user requested it.
     #[serde(default)]
     pub smallest: Vec<SmallestScene>,
     /// The course's notes on mistakes, by the mistakes' keys.
@@ -114,7 +114,8 @@ pub struct Grade {
 }
 
 impl Grade {
-    /// Returns the common verdict, points and maximum points of groups. Extra groups count only if there are no others.
+    /// Returns the common verdict of groups, their points, and the points that they are worth. Extra groups count only
+    /// if there are no other groups.
     #[must_use]
     pub fn totals(groups: &[GroupGrade]) -> (Verdict, Option<f64>, f64) {
         let has_others = groups.iter().any(|group| !group.extra);
@@ -127,7 +128,7 @@ impl Grade {
         )
     }
 
-    /// Returns the extra points reached and their maximum; `None` if the suite gives no extra points.
+    /// Returns the extra points that the submission gets and the maximum; `None` if the suite has no extra points.
     #[must_use]
     pub fn extra(&self) -> Option<(f64, f64)> {
         let extra = || self.groups.iter().filter(|group| group.extra);
@@ -135,7 +136,7 @@ impl Grade {
         extra().next().and(reached).map(|reached| (reached, extra().map(|group| group.max_points).sum()))
     }
 
-    /// Records in each grade of a class which other submissions have the same program.
+    /// Stores in each grade of a class which other submissions have the same program.
     pub fn note_same_programs(grades: &mut [Self]) {
         let mut owners: BTreeMap<String, Vec<String>> = BTreeMap::new();
         for grade in grades.iter() {
@@ -156,7 +157,7 @@ impl Grade {
         self.groups.iter().all(|group| group.visibility == Visibility::Visible)
     }
 
-    /// Returns the grade with its hidden groups published.
+    /// Returns the grade as it is after its hidden groups are published.
     #[must_use]
     pub fn with_hidden_published(&self) -> Self {
         let mut published = self.clone();
@@ -164,7 +165,7 @@ impl Grade {
         published
     }
 
-    /// Returns the course's note on a mistake.
+    /// Returns the course's note on a mistake, if there is one.
     #[must_use]
     pub fn note(&self, mistake: &Explanation) -> Option<&CourseNote> {
         self.notes.get(&mistake.key)
@@ -175,20 +176,21 @@ impl Grade {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
-    /// Returns whether the grader failed on a part of the grade. Students must not get such a grade.
+    /// Returns whether the grader failed on any part of the submission. Students must not get such a grade.
     #[must_use]
     pub fn is_our_fault(&self) -> bool {
         self.verdict == Verdict::JudgeError
     }
 
-    /// Returns whether scenes were not run, so that there are no points.
+    /// Returns whether some scenes were not run. The submission then has no points.
     #[must_use]
     pub fn is_incomplete(&self) -> bool {
         self.count(Verdict::NotRun) > 0
     }
 
-    /// Returns the fault of the whole submission, if there is one: it has no runnable program, it does not build, it
-    /// belongs to a different milestone, or nothing is written yet.
+    /// Returns the reason why the submission as a whole could not be graded as usual. Either it has no program that can
+    /// be run, it could not be built, it belongs to another milestone, or nothing is written in it yet. `None` if there
+    /// is no such reason.
     #[must_use]
     pub fn unfit(&self) -> Option<SubmissionFault<'_>> {
         if let Some(other) = self.looks_like {
@@ -205,13 +207,13 @@ impl Grade {
         })
     }
 
-    /// Returns the build, if it failed to make a program.
+    /// Returns the result of the build if it did not produce a program.
     #[must_use]
     pub fn failed_build(&self) -> Option<&Build> {
         self.build.as_ref().filter(|build| !build.end.is_success())
     }
 
-    /// Returns whether both grades are of the same scenes, in the same groups and for the same points.
+    /// Returns whether both grades have the same scenes, in the same groups and for the same points.
     #[must_use]
     pub fn is_of_the_suite_of(&self, other: &Self) -> bool {
         let alike = |(own, other): (&GroupGrade, &GroupGrade)| {
@@ -224,7 +226,7 @@ impl Grade {
             && self.groups.iter().zip(&other.groups).all(alike)
     }
 
-    /// Returns the number of results that were reused from an earlier run.
+    /// Returns the number of scenes whose results were reused from an earlier grading.
     #[must_use]
     pub fn taken_over(&self) -> usize {
         self.scenes().filter(|scene| scene.cached).count()
@@ -236,57 +238,57 @@ impl Grade {
         self.scenes().filter(|scene| scene.differs.is_some()).count()
     }
 
-    /// Returns the number of scenes with this verdict.
+    /// Returns the number of scenes that have this verdict.
     #[must_use]
     pub fn count(&self, verdict: Verdict) -> usize {
         self.scenes().filter(|scene| scene.verdict == verdict).count()
     }
 }
 
-/// An entry of a class's folder that was skipped because it is not a submission, with the reason.
+/// An entry of a class's folder that was skipped because it is not a submission.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub struct SkippedEntry {
     /// The name that the entry would have as a submission.
     pub name: String,
-    /// The reason, as text.
+    /// The reason why the entry was skipped.
     pub why: String,
 }
 
-/// The end of the build step.
+/// The result of building a submission.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Build {
-    /// The way the build ended.
+    /// The way in which the build ended.
     pub end: BuildEnd,
-    /// The compiler's output, truncated; raw text that a report has to escape.
+    /// The compiler's output, cut if it is long. It is raw text, which reports must escape.
     pub output: String,
 }
 
-/// A fault of a submission itself.
+/// The reason why a submission as a whole could not be graded as usual.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum SubmissionFault<'a> {
-    /// The submission's build failed.
+    /// The submission could not be built.
     Build(&'a BuildEnd),
-    /// The program implements this milestone, but the suite tests a different one.
+    /// The program implements this milestone, but the suite tests another one.
     Milestone(Assignment),
-    /// All scenes have the same fault; the value is the result of the first scene.
+    /// All scenes have the same fault. The value is the result of the first scene.
     Scene(&'a SceneResult),
 }
 
 /// One group of scenes.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct GroupGrade {
-    /// The group's name.
+    /// The name of the group.
     pub name: String,
-    /// The visibility of the group's results.
+    /// The readers who see the results of the group, and when.
     pub visibility: Visibility,
-    /// The hints that students get for the group's scenes.
+    /// The level of detail that students get for the group's scenes.
     pub hints: Hints,
-    /// The points reached, including those for speed; `None` if a scene or the speed has no points.
+    /// The points that the group gets, including points for speed. `None` if a scene or the speed has no points.
     pub points: Option<f64>,
-    /// The maximum number of points.
+    /// The points that the group is worth, including points for speed.
     pub max_points: f64,
-    /// Whether the points are extra: they count in neither the sum nor the maximum of the grade.
+    /// Whether the group's points are extra points. They count in neither the sum nor the maximum of the grade.
     #[serde(default)]
     pub extra: bool,
     /// Whether the group gives points only if all of its scenes are accepted.
@@ -294,42 +296,42 @@ pub struct GroupGrade {
     pub all_or_nothing: bool,
     /// The points for speed, if the suite gives any.
     pub speed: Option<SpeedGrade>,
-    /// The course's note on the group.
+    /// The course's note on the group, if there is one.
     #[serde(default)]
     pub note: Option<CourseNote>,
     /// The worst verdict of the group's scenes.
     pub verdict: Verdict,
-    /// The group's scenes.
+    /// The results of the group's scenes.
     pub scenes: Vec<SceneGrade>,
 }
 
-/// One scene and its points.
+/// The result of a scene, and its points.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneGrade {
     /// The result of the scene.
     pub result: SceneResult,
-    /// The points reached; `None` if the grader failed or did not run the scene. A failure of the grader never gives
-    /// zero points.
+    /// The points that the submission gets for the scene. `None` if the grader failed or did not run the scene; that
+    /// never gives zero points.
     pub points: Option<f64>,
-    /// The maximum number of points.
+    /// The points that the scene is worth.
     pub max_points: f64,
-    /// Whether the result was reused from an earlier run.
+    /// Whether the result was reused from an earlier grading.
     pub cached: bool,
-    /// The likely mistakes in the scene, the likeliest first. They come from all scenes together if these show a common
-    /// mistake, otherwise from this scene alone ([`SceneResult::explanations`]). Reports show these explanations.
+    /// The likely mistakes in the scene that reports show, the likeliest first. If all scenes together show a common
+    /// mistake, it comes from all of them; otherwise from this scene alone ([`SceneResult::explanations`]).
     pub settled: Vec<Explanation>,
-    /// The number of explanations, at the start of [`settled`](Self::settled), that come from all scenes together.
+    /// The number of explanations at the start of [`settled`](Self::settled) that come from all scenes together.
     pub agreed: usize,
 }
 
 impl GroupGrade {
-    /// Returns the sum of the maximum points of the group's scenes.
+    /// Returns the points that all scenes of the group are worth, without points for speed.
     #[must_use]
     pub fn max_points_of_scenes(&self) -> f64 {
         self.max_points - self.speed.as_ref().map_or(0.0, |speed| speed.marking.points)
     }
 
-    /// Removes everything from the group's scenes and speed that students may not see when groups are hidden.
+    /// Removes everything about the group's scenes and its speed that students must not see while groups are hidden.
     pub fn withhold(&mut self) {
         self.scenes.iter_mut().for_each(SceneGrade::withhold);
         if let Some(speed) = &mut self.speed {
@@ -339,7 +341,8 @@ impl GroupGrade {
 }
 
 impl SceneGrade {
-    /// Removes everything from the result that students may not see when groups are hidden ([`SceneResult::withhold`]).
+    /// Removes everything from the result that students must not see while groups are hidden
+    /// ([`SceneResult::withhold`]).
     pub fn withhold(&mut self) {
         self.result.withhold();
         (self.settled, self.agreed) = (Vec::new(), 0);

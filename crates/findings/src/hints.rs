@@ -1,26 +1,27 @@
-//! The level of detail in a report, which limits findings.
+//! The level of detail in reports, which decides how much of a finding they show.
 use super::{
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
     finding::Finding,
 };
 use serde::{Deserialize, Serialize};
 
-/// The level of detail in a report.
+/// The level of detail in reports.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hints {
-    /// Only the verdict.
+    /// Reports show only the verdict.
     None,
-    /// The verdict and the place of the first difference: kind, step, pair and polynomial.
+    /// Reports show the verdict and the place of the first difference: its kind, step, pair and polynomial.
     Where,
-    /// The verdict, the place of the first difference, and the likely mistake as a sentence.
+    /// Reports show the verdict, the place of the first difference, and the likely mistake as a sentence.
     What,
-    /// Everything: expected and actual values, and the mistake in detail. This may reveal a right formula.
+    /// Reports show everything, including expected and actual values, and the exact form of the mistake. This may
+    /// reveal a right formula.
     Full,
 }
 
 impl Hints {
-    /// Returns the level's name in suites, and its meaning in a few words.
+    /// Returns the level's name in suites, and a few words about its meaning.
     #[must_use]
     pub const fn describe(self) -> (&'static str, &'static str) {
         match self {
@@ -31,14 +32,14 @@ impl Hints {
         }
     }
 
-    /// Returns whether likely mistakes are shown at this level.
+    /// Returns whether reports show likely mistakes at this level.
     #[must_use]
     pub const fn explains(self) -> bool {
         matches!(self, Self::What | Self::Full)
     }
 
-    /// Limits the facts about a trace to the level: nothing at [`Hints::None`], only places and kinds of findings at
-    /// the next levels, everything at [`Hints::Full`].
+    /// Reduces what was found in a trace to what this level shows: nothing at [`Hints::None`], only the places and
+    /// kinds of findings at the next two levels, and everything at [`Hints::Full`].
     #[must_use]
     pub fn disclose(self, all: Disclosure) -> Option<Disclosure> {
         match self {
@@ -62,7 +63,7 @@ impl Hints {
         }
     }
 
-    /// Returns the part of a finding that both levels show.
+    /// Reduces a finding to what this level shows. Parts that an earlier level has removed are not restored.
     #[must_use]
     pub const fn cut(self, finding: DisclosedFinding) -> Option<DisclosedFinding> {
         match finding {
@@ -71,7 +72,7 @@ impl Hints {
         }
     }
 
-    /// Returns the part of a finding that the level shows: nothing at [`Hints::None`], and no values below
+    /// Returns the part of a finding that this level shows: nothing at [`Hints::None`], and no values below
     /// [`Hints::Full`].
     #[must_use]
     pub const fn finding(self, finding: &Finding) -> Option<DisclosedFinding> {

@@ -6,9 +6,9 @@
 //! mistakes, formulas, letters) are named by their keys.
 //!
 //! Four types state whether something is accepted, because there are four kinds of results. [`parity::Overall`] has the
-//! original's words for a trace (`passed`), and [`fair::FairVerdict`] has those of the fair rules (`rejected`).
-//! Published reports contain both sets of words, so they stay different. [`Ruling`] has the result of either book in
-//! common words, and distinguishes damage from wrong answers. [`Verdict`] is about a whole run, because a program can
+//! original's words for a trace, such as `passed`. [`fair::FairVerdict`] has the fair rules' words, such as `rejected`.
+//! Published reports contain both, so the words stay different. [`Ruling`] expresses the result of either book in the
+//! same words, and distinguishes damage from wrong answers. [`Verdict`] is about a whole run, because a program can
 //! also crash or exceed a limit.
 //!
 //! A finding in words:

@@ -1,22 +1,23 @@
-//! The common properties of the scenes in which a program crashes or exceeds a limit.
+//! The common contents of the scenes in which a program crashes or exceeds a limit.
 use fosssim_ended::RunEnd;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A kind of event, or a property of such events with a value, by their names.
+/// A content of a scene: a kind of event, or events of a kind that have a certain property. Both are given by their
+/// names.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Content {
     /// The kind of event.
     pub family: Cow<'static, str>,
-    /// The property's name and its value; `None` for all events of the kind.
+    /// The name and the value of the property; `None` for all events of the kind.
     pub value: Option<[Cow<'static, str>; 2]>,
 }
 
 fosssim_num::closed_set! {
-    /// The ways in which programs fail.
+    /// The way in which a program fails.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum FailureKind {
-        /// The program is killed by a signal.
+        /// The program is ended by a signal.
         Crash = "crash",
         /// The program ends with an exit code that means an error.
         Error = "end with an error code",
@@ -26,24 +27,24 @@ fosssim_num::closed_set! {
         Memory = "need more memory than allowed",
         /// The program exceeds an output limit.
         Output = "write more than allowed",
-        /// The program fails in several ways.
+        /// The program fails in more than one of these ways.
         Several = "crash or run into a limit",
     }
 }
 
-/// The contents that the failing scenes have in common.
+/// The common contents of the scenes in which the program fails.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LocatedFailure {
-    /// The way in which the program fails.
+    /// The way in which the program fails in these scenes.
     pub failing: FailureKind,
-    /// The common contents of all failing scenes, the most general first. The scenes cannot show which of these
-    /// contents is the cause.
+    /// The contents that all failing scenes have in common, the most general first. The scenes do not show which of
+    /// them is the cause.
     pub contents: Vec<Content>,
-    /// The number of scenes in which the program fails; all of these scenes have the contents.
+    /// The number of scenes in which the program fails. All of them have these contents.
     pub failed: usize,
-    /// The number of scenes with the contents.
+    /// The number of scenes that have these contents.
     pub with: usize,
-    /// The number of run scenes without the contents; the program fails in none of them.
+    /// The number of scenes that were run and do not have these contents. The program does not fail in any of them.
     pub without: usize,
     /// The first scene in which the program fails.
     pub first: String,
@@ -52,7 +53,8 @@ pub struct LocatedFailure {
 }
 
 impl FailureKind {
-    /// Returns the kind of failure for an end of a program; `None` if it ended well, or if the kind is unknown.
+    /// Returns how a program failed that ended in this way; `None` if it ended well, or if the kind of failure is
+    /// unknown.
     #[must_use]
     pub const fn from_end(ended: &RunEnd) -> Option<Self> {
         match ended {

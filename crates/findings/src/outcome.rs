@@ -6,18 +6,18 @@ use fosssim_model::{
     trace::{Malformation, ReadFailure},
 };
 
-/// The reason why grading stopped before its end.
+/// The reason why judging stopped before the end of the trace.
 #[derive(Debug, Clone)]
 pub enum Stop {
-    /// The trace cannot be read further. The original reports this error and stops.
+    /// The trace cannot be read any further. The original reports this error and stops, too.
     Trace {
-        /// The frame that could not be read, from 0.
+        /// The index of the record that could not be read, from 0.
         frame: u64,
-        /// The step of that frame; 0 for the initial record.
+        /// The step to which the record belongs, from 1; 0 is the initial record.
         step: u32,
-        /// The reason why it could not be read.
+        /// The part of the record that could not be read, or why.
         cause: ReadFailure,
-        /// The byte offset of the damage.
+        /// The position of the damage in the file, in bytes.
         offset: u64,
         /// The kind of damage.
         what: Malformation,
@@ -32,31 +32,31 @@ pub use fosssim_model::trace::TraceError as Damage;
 /// The result of judging one trace.
 #[derive(Debug)]
 pub struct Outcome {
-    /// The judgement by the original's rules.
+    /// The judgement of the trace by the original's rules.
     pub parity: parity::Judgement,
-    /// The judgement by the fair rules, if requested.
+    /// The judgement of the trace by the fair rules, if it was requested.
     pub fair: Option<Box<fair::Judgement>>,
-    /// The number of judged steps.
+    /// The number of steps that were judged.
     pub steps_judged: u32,
     /// The number of steps of the scene.
     pub steps: u32,
-    /// The scene's collision handling.
+    /// The collision handling that the scene uses.
     pub collisions: CollisionType,
-    /// The reason why grading stopped early.
+    /// The reason why judging stopped early; `None` if it did not.
     pub stop: Option<Stop>,
-    /// The first damage that the original's reader skips silently.
+    /// The first damage that the original's reader skips without a message.
     pub damage: Option<Damage>,
-    /// The number of judged steps whose records are damaged, or come after a damaged one. Findings in such steps count
-    /// for the original, but prove nothing about the program. The steps do not count as wrong, and give no examples.
+    /// The number of judged steps whose records are damaged or follow a damaged one. In such steps, findings count for
+    /// the original, but prove nothing about the program. The steps do not count as wrong, and do not provide examples.
     pub damaged_steps: u32,
-    /// Whether bytes follow the last record, which the original does not read.
+    /// Whether bytes follow the last record. The original does not read them.
     pub trailing_bytes: bool,
-    /// The number of root searches of the reference.
+    /// The number of the reference's root searches, by kind.
     pub searches: SearchCounts,
 }
 
 impl Outcome {
-    /// Creates the outcome before the first step is judged.
+    /// Creates the outcome for a trace of which no step is judged yet.
     #[must_use]
     pub fn empty(steps: u32) -> Self {
         Self {

@@ -1,46 +1,47 @@
-//! The original's rule book on a trace: lock-step comparison (oracle-behavior.md 4 to 6).
+//! The judgement of a trace by the original's rules, which compare it step by step with the reference
+//! (oracle-behavior.md 4 to 6).
 use super::book_findings::BookFindings;
 use fosssim_model::sim::StepError;
 use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
 use serde::{Deserialize, Serialize};
 
-/// The original's overall verdict.
+/// The original's verdict on the whole trace.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "snake_case")]
 pub enum Overall {
     /// All five conditions of the original are met.
     Passed,
-    /// A residual is too large, or a message was written.
+    /// A residual is too large, or the original printed a message about a fault.
     Failed,
-    /// Grading stopped early, so there is no verdict.
+    /// Judging stopped early, so there is no verdict.
     #[default]
     None,
 }
 
-/// The four residuals (oracle-behavior.md 6.3), in scene units.
+/// The four residuals (oracle-behavior.md 6.3), in the scene's units of length and velocity.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Residuals {
-    /// The sum of all position residuals.
+    /// The sum of the position residuals of all steps.
     #[serde(rename = "accumulated_position_residual", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub accumulated_position: f64,
-    /// The sum of all velocity residuals.
+    /// The sum of the velocity residuals of all steps.
     #[serde(rename = "accumulated_velocity_residual", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub accumulated_velocity: f64,
-    /// The largest position residual, ignoring NaN.
+    /// The largest position residual of all steps. NaN is ignored.
     #[serde(rename = "maximum_position_residual", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub maximum_position: f64,
-    /// The largest velocity residual, ignoring NaN.
+    /// The largest velocity residual of all steps. NaN is ignored.
     #[serde(rename = "maximum_velocity_residual", with = "fosssim_num::written")]
     #[schemars(with = "fosssim_num::written::Number")]
     pub maximum_velocity: f64,
 }
 
 impl Residuals {
-    /// Returns the residuals with their bounds, in the original's order: accumulated position and velocity, maximum
-    /// position and velocity. A residual passes if it is strictly below its bound; NaN fails.
+    /// Returns each residual and its bound, in the original's order: accumulated position, accumulated velocity,
+    /// maximum position, maximum velocity. A residual passes if it is strictly smaller than its bound, so NaN fails.
     #[must_use]
     pub const fn with_bounds(&self) -> [(f64, f64); 4] {
         [
@@ -52,24 +53,24 @@ impl Residuals {
     }
 }
 
-/// The result of the original's rules for a trace.
+/// The judgement of a trace by the original's rules.
 #[derive(Debug, Clone, Default)]
 pub struct Judgement {
-    /// The original's verdict; `None` if judging stopped early.
+    /// The original's verdict. It is `None` if judging stopped early.
     pub overall: Overall,
-    /// The residuals, which exist even if judging stopped early.
+    /// The residuals. They also exist if judging stopped early.
     pub residuals: Residuals,
-    /// Whether collisions passed, including polynomials; `None` without a verdict.
+    /// Whether the original's verdict on collisions and polynomials is "passed"; `None` without a verdict.
     pub collisions_passed: Option<bool>,
     /// The findings by the original's rules.
     pub findings: BookFindings,
-    /// The first step without a result, because the original does not terminate or gives up; later steps are not
-    /// judged.
+    /// The first step that has no result, because the original does not terminate or gives up; `None` if all steps have
+    /// one. Later steps are not judged.
     pub endless: Option<StepError>,
 }
 
 impl Judgement {
-    /// Sets the verdict, unless judging stopped early (oracle-behavior.md 6).
+    /// Sets the verdict (oracle-behavior.md 6). If judging stopped early, there is none.
     pub fn conclude(&mut self, is_stopped: bool, is_complete: bool) {
         self.findings.conclude();
         if is_stopped || self.endless.is_some() {

@@ -1,4 +1,4 @@
-//! Results of scenes, as values. `report::words` turns them into sentences, and `grading::score` into points.
+//! Results of scenes, as values. `report::words` describes them in sentences, and `grading::score` computes points.
 use super::{
     cause::Cause,
     disclosure::Disclosure,
@@ -16,39 +16,40 @@ use std::{path::PathBuf, time::Duration};
 
 pub use fosssim_ended::{RunEnd, StartProblem};
 
-/// The result of one scene: everything but its points, which follow from the suite. It contains everything that staff
-/// may see; `mistakes::together::told_to_students` makes the reduced version for students.
+/// The result of one scene, without its points, which depend on the suite. It contains everything that staff may see.
+/// The module `mistakes::together` reduces it to what students may see.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SceneResult {
-    /// The scene's name, `Group/name`.
+    /// The name of the scene, as `Group/name`.
     pub scene: String,
     /// The verdict.
     pub verdict: Verdict,
-    /// The reason for the verdict.
+    /// The reason for the verdict, as a value.
     pub reason: Reason,
-    /// The end of the program, if it was run.
+    /// The way in which the program ended, if it was run.
     pub ended: Option<RunEnd>,
-    /// The rule of the original that makes the two rule books disagree about the trace, if they do.
+    /// The reason why the two rule books judge the trace differently; `None` if they agree.
     pub differs: Option<Cause>,
     /// The part of the trace that a report may show.
     pub disclosure: Option<Disclosure>,
     /// Likely mistakes, the likeliest first.
     pub explanations: Vec<Explanation>,
-    /// The number of steps without a finding.
+    /// The number of steps in which there is no finding.
     pub right_steps: u32,
     /// The number of steps of the scene.
     pub steps: u32,
-    /// The measurements, which differ from run to run.
+    /// Times and memory, which differ from run to run.
     pub measured: Measurements,
-    /// The timed runs, if the suite gives points for speed and all scenes of the group are accepted.
+    /// The timed runs, if the suite gives points for speed and all scenes of the group were accepted.
     pub timing: Option<Timing>,
-    /// The program's standard output, truncated; raw text that a report has to escape.
+    /// The program's standard output, cut if it is long. It is raw text, which reports must escape.
     pub stdout: String,
-    /// The program's standard error, truncated; raw text that a report has to escape.
+    /// The program's standard error, cut if it is long. It is raw text, which reports must escape.
     pub stderr: String,
-    /// The name of the card that shows the trace.
+    /// The name of the stored card that shows the trace, if there is one.
     pub card: Option<String>,
-    /// The name of the card for students, if it was requested and hints show students less than staff.
+    /// The name of the stored card for students. It exists only if it was requested, and if hints show students less
+    /// than staff.
     pub card_for_students: Option<String>,
 }
 
@@ -75,9 +76,9 @@ impl SceneResult {
         }
     }
 
-    /// Removes everything except the verdict that the program could have controlled. A program could reveal a hidden
-    /// scene by an exit code, a signal, the first wrong step, a picture, its time or its memory. Values that are the
-    /// same in every scene stay, and so do the names of likely mistakes.
+    /// Removes everything that the program could have controlled, except for the verdict. A program could reveal a
+    /// hidden scene by an exit code, a signal, the first wrong step, a picture, its time or its memory. Values that are
+    /// the same in every scene are kept, and so are the names of likely mistakes.
     pub fn withhold(&mut self) {
         let harmless = match &self.reason {
             Reason::Right | Reason::Wrong(WrongTrace::Nothing) | Reason::NoTrace => true,
@@ -96,16 +97,16 @@ impl SceneResult {
     }
 }
 
-/// The measurements of a run, which vary; all other values of a result depend only on the program and the scene.
+/// Times and memory of a run. They vary; all other values of a result depend only on the program and the scene.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Measurements {
     /// The processor time of the program.
     pub cpu: Duration,
     /// The wall time of the run.
     pub wall: Duration,
-    /// The additional time for judging and explaining.
+    /// The time that judging and explaining took after the run.
     pub judging: Duration,
-    /// The peak memory of the program in bytes, if known.
+    /// The peak memory of the program in bytes; `None` if it is unknown.
     pub memory: Option<u64>,
 }
 
@@ -114,19 +115,19 @@ pub struct Measurements {
 pub enum Reason {
     /// Every step is right.
     Right,
-    /// The trace is complete and wrong.
+    /// The trace is complete, but wrong.
     Wrong(WrongTrace),
     /// The trace can't be read to its end.
     Trace(BadTrace),
     /// The program wrote no trace.
     NoTrace,
-    /// The program failed. The end is in [`SceneResult::ended`]; the value is the program's progress.
+    /// The program failed. How it ended is in [`SceneResult::ended`], and the value is how far it came.
     Program(ProgramProgress),
     /// The scene was skipped, for this reason.
     LeftOut(NotRunReason),
     /// Grading was interrupted.
     Stopped,
-    /// The sources do not build.
+    /// The sources could not be built.
     DoesNotBuild,
     /// The reason is withheld from students ([`SceneResult::withhold`]).
     Withheld,
@@ -136,31 +137,31 @@ pub enum Reason {
     Failed(Failure),
 }
 
-/// The fault of a trace, with the details that hints allow.
+/// The fault of a trace, as far as the hints show it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum WrongTrace {
-    /// Hints hide the fault.
+    /// The hints do not show what is wrong.
     Untold,
     /// The trace logs no polynomials and no collisions.
     Nothing,
-    /// Only the first record is wrong.
+    /// The first record is wrong, and nothing else. The value is the kind of finding.
     FirstRecord(FindingKind),
     /// Some steps are wrong.
     Steps {
-        /// The number of wrong steps.
+        /// The number of steps that are wrong.
         wrong: u64,
         /// The number of the first wrong step.
         first: u32,
         /// The kind of the first fault in that step.
         kind: FindingKind,
     },
-    /// The only fault is that records are damaged.
+    /// Records are damaged, and nothing else is wrong.
     Damaged,
-    /// No step is wrong, but small errors add up beyond the tolerance.
+    /// No single step is wrong, but small errors add up to more than the tolerance.
     SmallErrors,
-    /// A step has no result, because the original does not terminate.
+    /// In a step, the original does not terminate, so the step has no result.
     NoResult(StepError),
-    /// Fair rules: most decisions are borderline and differ from the reference's.
+    /// Fair rules: most decisions are borderline and differ from the reference's, so the trace cannot be judged.
     Borderline,
     /// No difference was found before judging stopped.
     Undecided,
@@ -171,15 +172,15 @@ pub enum WrongTrace {
 pub enum BadTrace {
     /// A record cannot be read.
     Unreadable {
-        /// The index of the frame, from 0.
+        /// The index of the record, from 0.
         frame: u64,
-        /// The step to which it belongs; 0 for the first record.
+        /// The step to which the record belongs, from 1; 0 is the first record.
         step: u32,
-        /// The part of the record that cannot be read, or the reason.
+        /// The part of the record that cannot be read, or why.
         cause: ReadFailure,
-        /// The byte offset of the damage.
+        /// The position of the damage in the file, in bytes.
         offset: u64,
-        /// The damage that the reader reported.
+        /// The damage, as the trace's reader reports it.
         damage: Malformation,
     },
     /// The trace contains the states of all steps, but no collisions.
@@ -193,67 +194,67 @@ pub enum BadTrace {
 /// The progress of a program, and the limit that stopped it, if any.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct ProgramProgress {
-    /// The limit that stopped the program.
+    /// The limit that stopped the program; `None` if it ended by itself.
     pub limit: Option<Limit>,
-    /// The number of steps with complete records.
+    /// The number of steps whose records are complete.
     pub steps: u32,
 }
 
-/// A limit of a run.
+/// A limit on a program's run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Limit {
-    /// The limit of processor time or wall time; the program's end shows which.
+    /// The limit of processor time or wall time. How the program ended shows which one it was.
     Time(Duration),
-    /// The memory limit, in bytes.
+    /// The limit of memory, in bytes.
     Memory(u64),
 }
 
-/// The reason why a scene is not run.
+/// The reason why a scene was not run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NotRunReason {
     /// Several scenes in a row exceeded a limit of time, memory or output.
     Limits {
-        /// The number of scenes in the row.
+        /// The number of consecutive scenes that exceeded a limit.
         scenes: u32,
-        /// The worst verdict of the scenes in the row.
+        /// The worst verdict of these scenes.
         verdict: Verdict,
     },
-    /// The submission has used up its total time, which is the value.
+    /// The submission has used up its time for all scenes together, which is the value.
     Total(Duration),
-    /// An earlier scene is not accepted, and grading stops at the first such scene.
+    /// An earlier scene was not accepted, and the grading was to stop at the first such scene.
     FailFast,
 }
 
-/// The reason why a submission cannot be run, which is its own fault.
+/// The reason why a submission cannot be run. The submission itself is the cause.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum UnusableReason {
     /// The program cannot be started.
     CouldNotStart(StartProblem),
-    /// The folder has no program of the expected name.
+    /// The folder does not contain a program of the expected name.
     NoProgram {
-        /// The expected name of the program.
+        /// The name that the program should have.
         sought: String,
         /// The contents of the folder.
         found: FolderContents,
     },
-    /// The program cannot be read or copied; the value is the error message.
+    /// The program cannot be read or copied. The value is the system's error message.
     Unreadable(String),
 }
 
 /// The contents of a submission's folder that does not contain the program.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum FolderContents {
-    /// The folder cannot be read; the value is the system's error message.
+    /// The folder cannot be read. The value is the system's error message.
     Unreadable(String),
     /// The folder is empty.
     Nothing,
     /// The folder contains other files and folders.
     Others {
-        /// The first names, sorted; names of folders end in a slash.
+        /// The first names in the folder, sorted. A slash follows the names of folders.
         names: Vec<String>,
-        /// The number of names that are not listed.
+        /// The number of further names, which are not listed.
         more: usize,
-        /// The path of a file with the expected name in a subfolder, if there is one.
+        /// The path of a file in a subfolder that has the expected name, if there is one.
         elsewhere: Option<String>,
     },
 }
@@ -261,38 +262,38 @@ pub enum FolderContents {
 /// A failure of the grader.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Failure {
-    /// An error of the machine or of the grader's input, as text.
+    /// The machine or the grader's input has a fault. The value describes it.
     Machine(String),
-    /// A panic of the grader.
+    /// The grader panicked, which is an error in the grader itself.
     Panic {
-        /// The grader's activity when it failed, if known.
+        /// The activity of the grader when it failed, if it is known.
         stage: Option<Activity>,
-        /// The panic message, with its place in the source.
+        /// The panic's message, and its place in the source code.
         fault: String,
-        /// The saved trace on which the grader failed.
+        /// The trace on which the grader failed, if there was one.
         trace: Option<SavedTrace>,
     },
 }
 
 fosssim_num::closed_set! {
-    /// The grader's activities.
+    /// The activities in which the grader can fail.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Activity {
         /// The grader compares the trace with the reference.
         Judging = "judging",
-        /// The grader looks for the likely mistake.
+        /// The grader searches for the likely mistake.
         Explaining = "explaining",
         /// The grader draws the cards for pages.
         Drawing = "drawing",
     }
 }
 
-/// The place of a trace on which the grader failed.
+/// The place of the trace on which the grader failed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum SavedTrace {
-    /// The trace is in this file.
+    /// The trace is stored in this file.
     In(PathBuf),
-    /// The trace could not be kept.
+    /// The trace could not be stored.
     Lost {
         /// The folder in which the trace should have been saved.
         folder: PathBuf,
@@ -301,25 +302,25 @@ pub enum SavedTrace {
     },
 }
 
-/// The way a build ended.
+/// The way in which a build ended.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BuildEnd {
-    /// The build made the program.
+    /// The build produced the program.
     Made,
-    /// The build did not end with exit code 0.
+    /// The build ended with an exit code other than 0, or was stopped.
     Ended(RunEnd),
-    /// The build ended well, but made no program of this name.
+    /// The build ended well, but did not produce a program of this name.
     MadeNo(String),
-    /// The built program cannot be used; the value is the reason.
+    /// The program that was built cannot be used, for the given reason.
     Unusable(String),
-    /// The sources cannot be copied; the value is the reason.
+    /// The sources cannot be copied, for the given reason.
     Sources(String),
-    /// The sources lack the script that builds them; the value is its name.
+    /// The sources do not contain the script that builds them. The value is the script's name.
     NoScript(String),
 }
 
 impl BuildEnd {
-    /// Returns whether the build made a program.
+    /// Returns whether the build produced the program.
     #[must_use]
     pub const fn is_success(&self) -> bool {
         matches!(self, Self::Made)

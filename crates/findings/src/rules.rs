@@ -1,7 +1,7 @@
-//! The rule books, the choice between them, and the result of each in common words.
+//! The two rule books, the choice between them, and verdicts in words that both share.
 //!
-//! The parity book is always computed, because everything else uses its replay; the fair book is computed only if
-//! requested.
+//! The original's rules are always applied, because everything else uses their replay of the trace. The fair rules are
+//! applied only if they are requested.
 use super::{
     book_findings::BookFindings,
     fair,
@@ -10,14 +10,15 @@ use super::{
 };
 use serde::{Deserialize, Serialize};
 
-/// A rule book.
+/// A set of rules by which traces are judged.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Book {
-    /// The original's rules (oracle-behavior.md 4 to 6).
+    /// The original's rules, as its program applies them (oracle-behavior.md 4 to 6).
     #[default]
     Parity,
-    /// The rules that are independent of round-off, scale and the course's slip (numerics.md 2).
+    /// Rules whose verdicts do not depend on round-off, on the scale of the scene, or on the course's slip (numerics.md
+    /// 2).
     Fair,
 }
 
@@ -28,9 +29,9 @@ fosssim_num::closed_set! {
     pub enum Rules {
         /// Only the original's rules.
         Parity = "parity",
-        /// The fair rules, which give the official verdict.
+        /// The fair rules in addition; they give the official verdict.
         Fair = "fair",
-        /// Both books: the original's rules give the official verdict, and the report shows where the fair rules
+        /// Both rule books. The original's rules give the official verdict, and reports show where the fair rules
         /// differ.
         #[default]
         Both = "both",
@@ -38,7 +39,7 @@ fosssim_num::closed_set! {
 }
 
 impl Rules {
-    /// Returns the book whose verdict decides exit codes and points.
+    /// Returns the rule book whose verdict decides exit codes and points.
     #[must_use]
     pub const fn official(self) -> Book {
         match self {
@@ -55,7 +56,7 @@ impl Rules {
 }
 
 fosssim_num::closed_set! {
-    /// The verdict of one rule book, in words that both books share.
+    /// The verdict by one rule book, in words that both books share.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum Ruling {
         /// The trace meets all rules.
@@ -70,7 +71,7 @@ fosssim_num::closed_set! {
 }
 
 impl Outcome {
-    /// Returns the verdict of a book, or the original's if the fair rules did not judge.
+    /// Returns the verdict by a rule book. If the fair rules were not applied, it is that by the original's rules.
     #[must_use]
     pub fn ruling(&self, book: Book) -> Ruling {
         match (book, &self.fair) {
@@ -92,8 +93,9 @@ impl Outcome {
         }
     }
 
-    /// Returns the number of steps that are right by a book. A fault outside the steps, such as a wrong first record or
-    /// small errors that add up, counts as one wrong step. Therefore only an accepted trace has all steps right.
+    /// Returns the number of steps that are right by a rule book. A fault outside the steps counts as one wrong step,
+    /// for example a wrong first record, or small errors that add up. Therefore only accepted traces have all steps
+    /// right.
     #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
         let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);
@@ -104,14 +106,14 @@ impl Outcome {
         right.saturating_sub(self.damaged_steps).min(self.steps.saturating_sub(1))
     }
 
-    /// Returns the reason why judging by a book stopped early, if it did.
+    /// Returns the reason why judging by a rule book stopped early; `None` if it did not.
     #[must_use]
     pub fn stop_of(&self, book: Book) -> Option<Stop> {
         let is_parity = book == Book::Parity || self.fair.is_none();
         self.stop.clone().or(self.parity.endless.filter(|_| is_parity).map(Stop::Step))
     }
 
-    /// Returns the number of steps that a book has judged.
+    /// Returns the number of steps that were judged by a rule book.
     #[must_use]
     pub fn judged_by(&self, book: Book) -> u32 {
         let end = match (book, &self.fair) {
@@ -121,7 +123,7 @@ impl Outcome {
         end.map_or(self.steps_judged, |step| step - 1)
     }
 
-    /// Returns the findings of a book, or the original's if the fair rules did not judge.
+    /// Returns the findings by a rule book. If the fair rules were not applied, they are those by the original's rules.
     #[must_use]
     pub fn findings_by(&self, book: Book) -> &BookFindings {
         match (book, &self.fair) {

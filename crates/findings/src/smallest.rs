@@ -1,48 +1,48 @@
-//! The smallest scene on which a program is still wrong for the same reason, as a value.
+//! The smallest scene that was found on which a program is still wrong for the same reason.
 use super::{Hints, disclosure::DisclosedFinding, explanation::Explanation};
 use serde::{Deserialize, Serialize};
 
-/// The smallest scene for a cause.
+/// The smallest scene that was found on which the program makes a given mistake.
 #[derive(Debug, Clone, Default, PartialEq, Serialize, Deserialize)]
 pub struct SmallestScene {
-    /// The name of the original scene.
+    /// The name of the scene from which this one was made.
     pub origin: String,
     /// The path of the program, as commands use it.
     pub program: String,
-    /// The scene file's content.
+    /// The content of the scene's file.
     pub xml: String,
-    /// The number of bodies.
+    /// The number of bodies in the scene.
     pub bodies: usize,
-    /// The number of steps.
+    /// The number of steps that the scene has.
     pub steps: u32,
-    /// The command that makes the same scene again.
+    /// The command that finds the same scene again.
     pub again: String,
     /// The number of times that the program was run.
     pub runs: u32,
     /// Whether no single change makes the scene smaller; false if the search was stopped early.
     pub is_minimal: bool,
-    /// The end of the program, if it did not end well.
+    /// The way in which the program ended, if it did not end well.
     pub note: Option<String>,
-    /// The first fault, if hints show it.
+    /// The first fault, if the hints show it.
     pub first: Option<DisclosedFinding>,
-    /// The likely mistakes, beginning with the cause.
+    /// The likely mistakes. The first one is the cause for which the scene was made.
     pub explanations: Vec<Explanation>,
-    /// The values that differ, as text; only with full hints.
+    /// The values that differ, as text; `None` without full hints.
     pub differs: Option<String>,
-    /// The reference's computation of the first wrong step; only with full hints.
+    /// The reference's computation of the first wrong step, as text; `None` without full hints.
     pub by_hand: Option<String>,
-    /// The scene's card on a page; with full hints only.
+    /// The name of the stored card that shows the scene; `None` without full hints.
     pub card: Option<String>,
 }
 
 impl SmallestScene {
-    /// Returns the size of the scene, for comparing scenes.
+    /// Returns the size of the scene. Scenes are compared by it.
     #[must_use]
     pub const fn size(&self) -> (u32, usize, usize) {
         (self.steps, self.bodies, self.xml.len())
     }
 
-    /// Returns whether `found` contains no scene with the same content or cause.
+    /// Returns whether the scene has another content and another cause than all scenes in `found`.
     #[must_use]
     pub fn is_new(&self, found: &[Self]) -> bool {
         let cause = |one: &Self| one.explanations.first().filter(|cause| cause.is_vote()).map(Explanation::statement);

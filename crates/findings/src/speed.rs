@@ -1,5 +1,5 @@
-//! Points for speed: the processor time of a submission compared with that of the reference program. Both run
-//! alternately on one machine. Wall time is not used, because it depends on other running programs.
+//! Points for speed. They depend on a submission's processor time compared with the reference program's. Both run
+//! alternately on the same machine. Wall time is not used, because other running programs affect it.
 use super::{
     result::SceneResult,
     timing::{TimedRun, Timing},
@@ -8,74 +8,75 @@ use super::{
 use serde::{Deserialize, Serialize};
 use std::time::Duration;
 
-/// The rules by which a suite marks a group's speed.
+/// The rules by which a suite gives points for the speed of a group.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedMarking {
-    /// The maximum number of points, in addition to those for scenes.
+    /// The points that the speed is worth, in addition to the points for scenes.
     pub points: f64,
-    /// The largest ratio to the reference's time that gives all points.
+    /// The largest ratio of the submission's time to the reference's that gives all points.
     pub full_at: f64,
-    /// The smallest ratio that gives no points; greater than `full_at`. Between the two ratios, points decrease
+    /// The smallest ratio that gives no points. It is greater than `full_at`. Between the two, points decrease
     /// linearly.
     pub none_at: f64,
-    /// The number of timed runs of each scene.
+    /// The number of times that each scene is run for the measurement.
     pub runs: u32,
 }
 
 impl SpeedMarking {
-    /// Returns the points for a ratio.
+    /// Returns the points that a ratio gives.
     #[must_use]
     pub fn points_at(&self, ratio: f64) -> f64 {
         self.points * ((self.none_at - ratio) / (self.none_at - self.full_at)).clamp(0.0, 1.0)
     }
 }
 
-/// The points of a group for speed, and how they were computed.
+/// The points that a group gets for speed, and how they were computed.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct SpeedGrade {
-    /// The rules for marking speed.
+    /// The rules by which the suite gives points for the speed of this group.
     pub marking: SpeedMarking,
-    /// The points reached; `None` if the grader could not measure. A failure of the grader never gives zero points.
+    /// The points that the submission gets for speed. `None` if the grader could not measure it; that never gives zero
+    /// points.
     pub points: Option<f64>,
-    /// The way in which the points were computed.
+    /// The way in which the points were computed, or the reason why there are none.
     pub source: SpeedSource,
 }
 
-/// The way in which points for speed were computed.
+/// The way in which points for speed were computed, or the reason why there are none.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum SpeedSource {
     /// Some scenes of the group are not accepted, so there are no points for speed.
     NotAccepted,
-    /// All scenes were timed.
+    /// All scenes of the group were timed. The value is the result.
     Measured(SpeedRatio),
-    /// A timed run of this scene had a different verdict than the graded run.
+    /// In a timed run of this scene, the verdict was not the same as in the graded run.
     Failed {
         /// The name of the scene.
         scene: String,
-        /// The verdict of the timed run.
+        /// The verdict on the timed run.
         verdict: Verdict,
     },
-    /// Grading was stopped before the measurement, or the grader failed.
+    /// Grading was stopped before the speed was measured, or the grader failed.
     Unmeasured,
-    /// The points are hidden from students, because a program could reveal a hidden scene by its time.
+    /// Students must not see the points, because a program could reveal a hidden scene by its time.
     Withheld,
 }
 
 /// The submission's processor time, divided by the reference program's.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub struct SpeedRatio {
-    /// The ratio of the minimum times of all runs, which other running programs affect least.
+    /// The ratio of the minimum times over all runs. Other running programs affect minimum times least.
     pub ratio: f64,
-    /// The smallest ratio of a round of runs.
+    /// The smallest ratio in a round of runs.
     pub least: f64,
-    /// The largest ratio of a round of runs.
+    /// The largest ratio in a round of runs.
     pub most: f64,
-    /// The number of rounds.
+    /// The number of rounds. In each round, every scene is run once.
     pub runs: u32,
 }
 
 impl SpeedGrade {
-    /// Returns the points for the speed of a group's scenes.
+    /// Returns the points for the speed of a group, from the timings of its scenes.
     #[must_use]
     pub fn from_scenes<'a>(marking: SpeedMarking, scenes: impl IntoIterator<Item = &'a SceneResult>) -> Self {
         let source = source(&scenes.into_iter().collect::<Vec<_>>());
@@ -108,7 +109,8 @@ fn source(scenes: &[&SceneResult]) -> SpeedSource {
     SpeedSource::Measured(ratio(&timed))
 }
 
-/// Returns the ratios of the sums over all scenes: of the minimum times, and of each round.
+/// Returns the ratios of the sums over all scenes: one of the minimum times, and the smallest and the largest of a
+/// round.
 fn ratio(scenes: &[&[TimedRun]]) -> SpeedRatio {
     // The clock has a resolution of a microsecond, so it may measure zero.
     let seconds = |time: Duration| time.as_secs_f64().max(1e-6);

@@ -2,16 +2,17 @@
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The verdicts, from best to worst; of several verdicts, the worst counts.
+    /// The verdict on a scene, a group or a submission. They are ordered from best to worst; of several verdicts, the
+    /// worst counts.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
     pub enum Verdict {
         /// The trace meets all rules.
         Accepted = "accepted", "AC";
-        /// The scene was not run, because the grading was cut short.
+        /// The scene was not run, because the grading ended before it.
         NotRun = "not run", "--";
-        /// The trace is complete and has empty logs: the student has not written the required code.
+        /// The trace is complete, but its logs are empty: the student has not written the required code.
         Unwritten = "nothing written", "NW";
-        /// The trace is complete and wrong.
+        /// The trace is complete, but wrong.
         WrongAnswer = "wrong answer", "WA";
         /// The trace can't be read to its end.
         BadTrace = "bad trace", "BT";
@@ -25,27 +26,27 @@ fosssim_num::closed_set! {
         TimeLimit = "time limit", "TLE";
         /// The program crashed or ended with an error code.
         RuntimeError = "run-time error", "RTE";
-        /// The submission cannot be run: it has no program that this machine can start.
+        /// The submission cannot be run, because it has no program that this machine can start.
         Unusable = "unusable submission", "US";
-        /// The program's sources do not build.
+        /// The program's sources could not be built.
         CompileError = "compile error", "CE";
         /// The program tried something that the sandbox forbids.
         Violation = "sandbox violation", "SV";
         /// The grader failed, which is never the student's fault and never costs points.
         JudgeError = "judge error", "JE";
     }
-    /// Returns the short code, for tables and spreadsheets.
+    /// Returns the code of the verdict, for tables and spreadsheets.
     code
 }
 
 impl Verdict {
-    /// Returns the verdict of a code.
+    /// Returns the verdict with this code.
     #[must_use]
     pub fn from_code(code: &str) -> Option<Self> {
         Self::ALL.into_iter().find(|verdict| verdict.code() == code)
     }
 
-    /// Returns whether the verdict is about a wrong trace, and not about the program's end.
+    /// Returns whether the verdict is about the contents of a trace, and not about how the program ended.
     #[must_use]
     pub const fn is_wrong_trace(self) -> bool {
         matches!(self, Self::Unwritten | Self::WrongAnswer | Self::BadTrace)

@@ -1,4 +1,4 @@
-//! Findings as sentences, each with the place, the expected and the actual value.
+//! Describes findings in sentences. Each sentence contains the place, the expected value and the actual value.
 //!
 //! Vectors are written with as many digits as are needed to distinguish them. Other numbers are written exactly, with
 //! an exponent if they would otherwise be long. Reports that show values side by side use the fields of
@@ -20,12 +20,12 @@ impl Display for Finding {
     }
 }
 
-/// A finding that is written without its step.
+/// A finding, written without its step.
 struct WithoutStep<'a>(&'a Finding);
 
 impl Finding {
-    /// Returns the text of the finding without its step. A value of the first record "starts" there; values of other
-    /// records "end" there.
+    /// Returns the text of the finding without its step. In sentences about the first record, bodies "start" somewhere;
+    /// in those about other records, they "end" there.
     #[must_use]
     pub fn what(&self) -> impl Display + '_ {
         WithoutStep(self)
@@ -33,7 +33,7 @@ impl Finding {
 }
 
 /// The text about a decision that differs because coefficients are missing. The trace's other polynomials show whether
-/// a factor explains the loss.
+/// a factor explains why they are missing.
 const MISSING_COEFFICIENTS: &str = "the trace's polynomials lack the coefficients for it";
 const OTHER_FORM: &str = "the other of the two accepted forms; a program must use one of them throughout";
 const LEFT_OUT: &str = "are near enough for the penalty force, but no force was applied between them";
@@ -122,13 +122,14 @@ impl Display for WithoutStep<'_> {
     }
 }
 
-/// Writes the sentence about a time of impact that follows from lost coefficients, with the expected time first.
+/// Writes the sentence about a time of impact that is wrong because coefficients are missing. The expected time comes
+/// first.
 fn write_trimmed_time(f: &mut Formatter<'_>, place: PolynomialPlace, times: [f64; 2]) -> fmt::Result {
     let (pair, pass, [expected, actual]) = (PairWords(place.pair), PassWords(place.pass), times.map(ExactNumber));
     write!(f, "{pair} ({pass}) collide at time {expected}; {MISSING_COEFFICIENTS}, and have time {actual} ({DROPPING})")
 }
 
-/// Returns the sentence about a part in which a step's two records differ.
+/// Returns the sentence about the part in which the two records of a step differ.
 const fn difference_of_records(part: RecordPart, is_first: bool) -> &'static str {
     match part {
         RecordPart::Impulses if is_first => "the first record holds impulses, before anything has moved",
@@ -139,15 +140,16 @@ const fn difference_of_records(part: RecordPart, is_first: bool) -> &'static str
     }
 }
 
-/// Writes the number of detection passes by which a log is too long (`true`) or too short, if the number is whole.
+/// Writes by how many detection passes a log is too long (`true`) or too short. Nothing is written if the number is not
+/// whole.
 fn write_passes(f: &mut Formatter<'_>, passes: Option<(usize, bool)>) -> fmt::Result {
     let Some((passes, more)) = passes else { return Ok(()) };
     let plural = if passes == 1 { "pass" } else { "passes" };
     write!(f, ": {passes} detection {plural} too {}", if more { "many" } else { "few" })
 }
 
-/// Two vectors and their distance, the wrong vector first, with as many digits as are needed to distinguish the
-/// vectors.
+/// Writes two vectors and their distance, the wrong vector first. The vectors have as many digits as are needed to
+/// distinguish them.
 struct VectorDifference {
     expected: [f64; 2],
     actual: [f64; 2],
@@ -159,7 +161,7 @@ impl Display for VectorDifference {
         let distance = vector::length(Vec2::new(ax - ex, ay - ey));
         let power =
             |number: f64| format!("{number:e}").split_once('e').and_then(|(_, power)| power.parse::<i32>().ok());
-        // Show two digits of the distance, and at least six digits of each vector.
+        // The distance has two digits, and each vector has at least six.
         let short = |vector: [f64; 2]| {
             let size = vector.into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
             let least = power(size).map(|power| 5 - power);
@@ -172,9 +174,9 @@ impl Display for VectorDifference {
     }
 }
 
-/// Returns a value cut to a number of decimal places; a negative number cuts places before the point.
+/// Cuts a value after a number of decimal places. A negative number means places before the decimal point.
 fn cut_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
-    // Seventeen digits determine a double, so more are not needed.
+    // Seventeen digits identify a double, so more are not needed.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
     let text = match (usize::try_from(digits), usize::try_from(places.max(0))) {
         (Ok(digits), _) if places > 15 || value.abs() >= 1e9 => format!("{value:.digits$e}"),
@@ -184,17 +186,17 @@ fn cut_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
     text.parse().unwrap_or(value)
 }
 
-/// A number in its shortest exact form.
+/// Writes a number as the shortest text that reads back as the same number.
 struct ExactNumber(f64);
 
 impl Display for ExactNumber {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        // Write zero without its sign.
+        // Zero is written without its sign.
         if self.0.is_finite() { f.write_str(&format_exact(self.0 + 0.0)) } else { write!(f, "{}", self.0) }
     }
 }
 
-/// A point or a vector, as text.
+/// Writes a point or a vector, such as `(0.5, 1)`.
 struct VectorWords([f64; 2]);
 
 impl Display for VectorWords {
@@ -212,8 +214,8 @@ pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize,
         .then(|| (difference / per_pass, actual > expected))
 }
 
-/// Returns whether a text has only visible ASCII characters and blanks. The function is in this crate because it is
-/// optimized: reports check all their texts with it, and their crate is compiled without optimization.
+/// Returns whether a text has only visible ASCII characters and blanks. Reports check all their texts with it. It is in
+/// this crate because this crate is optimized, and that of reports is not.
 #[must_use]
 pub fn is_visible_ascii(text: &str) -> bool {
     text.bytes().all(|byte| (b' '..=b'~').contains(&byte))
@@ -237,7 +239,7 @@ impl Display for FindingKind {
     }
 }
 
-/// The reason why a step has no result.
+/// Writes the reason why a step has no result.
 #[derive(Debug, Clone, Copy)]
 pub struct WithoutResult(pub StepError);
 
@@ -260,7 +262,7 @@ impl Display for WithoutResult {
     }
 }
 
-/// A pair as text, such as `particle 3 and edge 1`.
+/// Writes a pair, such as `particle 3 and edge 1`.
 #[derive(Debug, Clone, Copy)]
 pub struct PairWords(pub Pair);
 
@@ -278,7 +280,7 @@ fn write_pair(f: &mut Formatter<'_>, kind: PairKind, first: &dyn Display, second
     }
 }
 
-/// A pair as a trace names it, which may not exist.
+/// Writes a pair as a trace names it. The pair may not exist in the scene.
 struct LoggedPair<'a>(&'a LoggedImpulse);
 
 impl Display for LoggedPair<'_> {
@@ -291,7 +293,7 @@ impl Display for LoggedPair<'_> {
     }
 }
 
-/// A detection pass as text, such as `impulse round 2`.
+/// Writes a detection pass, such as `impulse round 2`.
 #[derive(Debug, Clone, Copy)]
 pub struct PassWords(pub Pass);
 
@@ -306,7 +308,7 @@ impl Display for PassWords {
     }
 }
 
-/// A power of t as text: `t^3`, `t` or `constant term`.
+/// Writes a power of t, as `t^3`, `t` or `constant term`.
 #[derive(Debug, Clone, Copy)]
 pub struct Power(pub usize);
 

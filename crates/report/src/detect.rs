@@ -23,7 +23,7 @@ use serde::Serialize;
 /// The version of the JSON document's form.
 pub const DETECT_SCHEMA: u32 = 1;
 
-/// Where in the run of a scene a pair was examined.
+/// The place in a scene's run at which a pair was examined.
 #[derive(Debug, Clone, Copy)]
 pub struct Place<'a> {
     /// The name of the scene, as the user typed it.
@@ -50,7 +50,7 @@ pub(crate) type ShownNumber = fn(f64) -> String;
 pub struct Detect<'a> {
     /// The reference's computation for the pair.
     pub study: &'a Study,
-    /// Where in the run of a scene the pair was examined; `None` if the user typed the numbers.
+    /// The place in a scene's run at which the pair was examined; `None` if the user typed the numbers.
     pub place: Option<Place<'a>>,
 }
 
@@ -349,7 +349,7 @@ pub(crate) struct DetectView<'a> {
     /// The version of this document's form.
     #[schemars(extend("const" = DETECT_SCHEMA))]
     schema: u32,
-    /// Where in the run of a scene the pair was examined; null if the user typed the numbers.
+    /// The place in a scene's run at which the pair was examined; null if the user typed the numbers.
     place: Option<PlaceView<'a>>,
     /// The kind of the pair.
     kind: PairKind,
@@ -370,7 +370,7 @@ pub(crate) struct DetectView<'a> {
 }
 
 view! {
-    /// Where in the run of a scene a pair was examined.
+    /// The place in a scene's run at which a pair was examined.
     #[schemars(deny_unknown_fields)]
     struct PlaceView<'a> from place: Place<'a> {
         /// The name of the scene, as the user typed it.

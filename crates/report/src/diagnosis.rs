@@ -148,7 +148,7 @@ view! {
         schema: u32 = SCHEMA,
         /// Whether the fair rules accept every trace.
         accepted: bool = diagnosis.is_accepted(),
-        /// The common contents of the scenes in which the program crashes or exceeds a limit, as text; null if there are
+        /// The common contents of scenes in which the program crashes or exceeds a limit, as text; null if there are
         /// no such scenes.
         located: Option<String> = diagnosis.located.as_ref().map(describe_located),
         /// The mistake that explains most of the wrong traces; null if there is only one trace.
@@ -173,7 +173,7 @@ view! {
         trace: &'a str = &case.trace,
         /// Whether the fair rules accept the trace.
         accepted: bool = case.accepted,
-        /// How the program ended, if it did not end well; null otherwise.
+        /// The way in which the program ended, if it did not end well; null otherwise.
         note: Option<&'a str> = case.note.as_deref(),
         /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &case.first {

@@ -159,7 +159,7 @@ view! {
         pub text: String = describe(explanation),
         /// The exact form of the mistake, one entry per line.
         pub details: Vec<String> = list_details(explanation),
-        /// How many of the `samples` the mistake reproduces.
+        /// The number of `samples` that the mistake reproduces.
         pub reproduced: u64 = explanation.reproduced,
         /// The number of polynomials or steps that were checked.
         pub samples: u64 = explanation.samples,
@@ -176,7 +176,7 @@ view! {
     pub struct ExampleView from example: Example {
         /// The number of the step, from 1.
         pub step: u32 = example.step,
-        /// Where in the step the example is, as text.
+        /// The place of the example in the step, as text.
         pub place: String = describe_place(&example.place),
         /// The values from which the example is computed.
         pub given: Vec<ExampleValue> = example.given.clone(),

@@ -48,11 +48,11 @@ view! {
         scene: String = small.xml.clone(),
         /// The command that finds this scene again.
         again: String = strip_control_characters(&small.again),
-        /// How often the program was run during the search.
+        /// The number of times that the program was run during the search.
         runs: u32 = small.runs,
         /// Whether no single change makes the scene smaller. It is false if the search was stopped early.
         minimal: bool = small.is_minimal,
-        /// How the program ended, if it did not end well; null otherwise.
+        /// The way in which the program ended, if it did not end well; null otherwise.
         note: Option<String> = small.note.as_deref().map(strip_control_characters),
         /// The first fault; null if there is none, or if hints hide it.
         first_divergence: Option<FindingView> = match &small.first {

@@ -18,7 +18,7 @@ pub(crate) struct LatePolicy {
     pub(crate) time_zone: Option<Tz>,
 }
 
-/// How late a submission is, and what it loses.
+/// The delay of a submission, and the share of the points that it loses.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, ToSchema)]
 pub struct Lateness {
     /// The number of days after the due date. A day that has begun counts in full.

@@ -8,35 +8,35 @@ use super::{
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 
-/// The subject of an explanation.
+/// The subject of an explanation, with the facts that a sentence can state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum About {
-    /// A known mistake; its id is the explanation's key.
+    /// A known mistake, whose id is the explanation's key.
     Mistake,
     /// Stages that are not written yet; their keys are in [`Explanation::same_as`](super::Explanation::same_as).
     Unfinished,
-    /// The trace seems to belong to another scene.
+    /// The trace probably belongs to another scene.
     Scene {
-        /// Whether the trace has the right number of records.
+        /// Whether the trace has as many records as the scene requires.
         has_length: bool,
     },
     /// Wrong polynomials.
     Polynomials {
-        /// The wrong polynomials.
+        /// The polynomials that are wrong.
         subjects: Vec<Subject>,
         /// The facts that are known about these polynomials.
         found: OfPolynomials,
     },
-    /// A stage of a step. Its results are wrong, and all earlier stages are right.
+    /// A stage of a step whose results are wrong, although the results of all earlier stages are right.
     Stage(StageFault),
-    /// Near pairs that a contest's search misses or reports twice; an observation, not a guess.
+    /// Nearby pairs that a contest's search misses or reports twice. This is an observation, not a guess.
     Pairs(WrongPairs),
-    /// Values that are not finite numbers; an observation, listed before all guesses.
+    /// Values that are not finite numbers. This is an observation, and reports show it before all guesses.
     NotFinite(NotFinite),
 }
 
 impl About {
-    /// Returns the kinds of pairs that the wrong polynomials belong to, without repetition.
+    /// Returns the kinds of pairs that the wrong polynomials belong to. Each kind is listed once.
     #[must_use]
     pub fn kinds(&self) -> Vec<PairKind> {
         let Self::Polynomials { subjects, .. } = self else { return Vec::new() };
@@ -47,12 +47,12 @@ impl About {
 /// The facts that are known about wrong polynomials.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum OfPolynomials {
-    /// A guess that reproduces all or some of the polynomials.
+    /// A guess, which reproduces all or some of the polynomials.
     Guess(Guess),
-    /// The program does not hand the polynomials to the root finder.
+    /// The program does not pass the polynomials to the root finder.
     Missing,
-    /// The polynomials are right except for too much round-off.
+    /// The polynomials are right, but have too much round-off.
     NearlyRight,
-    /// Nothing else is known.
+    /// Nothing is known except that they are wrong.
     Nothing,
 }

@@ -1,39 +1,39 @@
-//! The parts of the assignment.
+//! The parts of the assignment that mistakes belong to.
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The part of the assignment that a mistake belongs to. Listings in JSON contain its name.
+    /// The part of the assignment that a mistake belongs to. Its name appears in JSON.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     #[serde(rename_all = "kebab-case")]
     pub enum Area {
         /// The forces that act on particles.
         Forces = "Forces", "Look at what each force adds to the gradient, for each of its particles.";
-        /// Derivatives of forces by positions and velocities, for implicit integrators.
+        /// The derivatives of forces by positions and velocities, which implicit integrators need.
         Jacobians = "Derivatives of forces", "Look at what each force adds to the second derivatives, block by block.";
         /// The update of velocities by forces, and of positions by velocities.
         Integrator = "Integrator",
             "Look at the order in which a step changes velocities and positions, and at the values that it uses.";
-        /// The force between near bodies.
+        /// The repulsive force between bodies that are close to each other.
         Penalty = "Penalty force", "Look at what the penalty force adds to the gradient, for each kind of pair.";
-        /// The selection of the pairs for the force between near bodies.
+        /// The search for the nearby pairs between which the penalty force acts.
         NearPairs = "Search for near pairs", "Look at which pairs the search for near bodies finds, and how often.";
-        /// Polynomials of two particles.
+        /// The polynomials of two particles.
         ParticleParticle = "Particle-particle",
             "Look at the coefficients that the particle-particle detection computes.";
-        /// Polynomials of a particle and an edge.
+        /// The polynomials of a particle and an edge.
         ParticleEdge = "Particle-edge", "Look at the coefficients that the particle-edge detection computes.";
-        /// Polynomials of a particle and a half-plane.
+        /// The polynomials of a particle and a half-plane.
         ParticleHalfPlane = "Particle-half-plane",
             "Look at the coefficients that the particle-half-plane detection computes.";
-        /// The common part of all three detections, which hands polynomials to the root finder.
+        /// The part that all three detections share: it passes polynomials to the root finder.
         Handover = "Hand-over to the root finder",
             "Look at how the coefficients are put into the polynomials for the root finder: order, sign, type.";
         /// The contact vector between the objects at the time of impact.
         ContactVector = "Contact vector", "Look at the vector that the detection returns for the time of impact.";
-        /// The choice of valid times of impact, and of the pairs that are checked.
+        /// The choice of the pairs that are checked, and of valid times of impact.
         Decision = "Detection",
             "Look at which pairs are tested, and at how the time from the root finder is used.";
-        /// The condition for a collision of bodies that overlap at the end of a step, and their contact vector.
+        /// The test whether bodies collide that overlap at the end of a step, and their contact vector.
         SimpleDetection = "Detection",
             "Look at when the detection of this kind of pair finds a collision, and at the vector that it returns.";
         /// The impulse of one contact.
@@ -47,13 +47,13 @@ fosssim_num::closed_set! {
         /// The impact zones and their growth.
         ImpactZones = "Impact zones",
             "Look at how impact zones are made, merged and compared, and when their loop ends.";
-        /// The rigid motion of one zone.
+        /// The rigid motion of one impact zone.
         Failsafe = "Rigid failsafe", "Look at how one zone is moved as a rigid body, and when it stops instead.";
-        /// The output of the trace.
+        /// The part of the program that writes the trace.
         Trace = "Trace", "Look at when the trace is written, and with which values; the simulation may be right.";
-        /// The behavior of the program as a process.
+        /// The start and the end of the program.
         Process = "Program", "Look at how the program starts and ends.";
     }
-    /// Returns a sentence that says where in the program to look, without giving the right formula.
+    /// Returns a sentence about where in the program to look. It does not reveal the right formula.
     advice
 }

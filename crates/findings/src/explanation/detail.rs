@@ -1,154 +1,154 @@
-//! The exact form of a fault, as values. It may reveal a right formula.
+//! The exact form of a fault, as values. The exact form may reveal a right formula.
 use super::{area::Area, fault::ChangedQuantity, reading::Reading, subject::Subject};
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// One line of the exact form.
+/// One line of the exact form of a fault.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Detail {
-    /// The exact form of a known mistake, given by its id.
+    /// The exact form of a known mistake, which is given by its id.
     Term(Cow<'static, str>),
-    /// A hint to check the code of one area of the assignment.
+    /// Advice to look at the code of one area of the assignment.
     Look(Area),
-    /// The meanings of the letters in the preceding lines, for pairs of these kinds. Reports omit the line if there are
-    /// no letters to explain.
+    /// The meanings of the letters in the preceding lines, for pairs of these kinds. If no letter needs an explanation,
+    /// reports leave the line out.
     Letters(Vec<PairKind>),
-    /// A fault of polynomials.
+    /// A line about polynomials.
     Polynomial(PolynomialDetail),
-    /// A fault of a stage.
+    /// A line about a stage of a step.
     Stage(StageDetail),
 }
 
 /// The exact form of a fault in polynomials.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum PolynomialDetail {
-    /// Each detection logs a wrong number of polynomials.
+    /// Each detection logs another number of polynomials than it should.
     Logged {
         /// The number of polynomials that the detection logs.
         logged: usize,
         /// The number of polynomials that a detection should log.
         of: usize,
     },
-    /// The polynomials are right except for an error, given relative to the size of their terms.
+    /// The polynomials are right up to an error. The value is the error, relative to the size of their terms.
     RightUpTo(#[serde(with = "fosssim_num::written")] f64),
     /// A coefficient differs in some samples.
     Differs {
-        /// The polynomial, if the detection has several.
+        /// The polynomial; `None` if the detection has only one.
         subject: Option<Subject>,
         /// The power of t that the coefficient belongs to.
         power: usize,
-        /// The number of samples in which the coefficient differs.
+        /// The number of samples in which the coefficient is wrong.
         count: usize,
-        /// The number of compared samples.
+        /// The number of samples that were compared.
         of: usize,
     },
-    /// The list contains only this number.
+    /// The list of coefficients contains only this number.
     Holds(#[serde(with = "fosssim_num::written")] f64),
     /// Every coefficient is the same number.
     Every(#[serde(with = "fosssim_num::written")] f64),
-    /// Every coefficient is a number of single precision.
+    /// Every coefficient is rounded to single precision.
     SinglePrecision,
-    /// One polynomial is used instead of another.
+    /// One polynomial of the pair is used instead of another.
     InPlaceOf {
-        /// The polynomial that is used, although it is wrong.
+        /// The polynomial that is used by mistake.
         stands: Subject,
-        /// The polynomial that should be used.
+        /// The polynomial that should be used instead.
         belongs: Subject,
     },
     /// The coefficients of two powers of t are exchanged.
     Exchanged {
-        /// The two powers of t.
+        /// The powers of t whose coefficients are exchanged.
         powers: [usize; 2],
     },
-    /// Only the last coefficients are logged; the value is their number.
+    /// Only this number of coefficients is logged, and they are the last ones of the list.
     LastOnly(usize),
-    /// Only the first coefficients are logged; the value is their number.
+    /// Only this number of coefficients is logged, and they are the first ones of the list.
     FirstOnly(usize),
-    /// Every displacement is multiplied by a factor.
+    /// Every displacement is multiplied by this factor.
     Displacements(#[serde(with = "fosssim_num::written")] f64),
-    /// A named change of the formula.
+    /// The formula is changed in a way that has a name.
     Named {
-        /// The key of the change.
+        /// The key of the change in the assignment's data.
         key: Cow<'static, str>,
-        /// Whether all pairs are particle-edge pairs, whose radii have their own names.
+        /// Whether all affected pairs consist of a particle and an edge. Their radii have names of their own.
         of_edges: bool,
     },
-    /// A different quantity is used for a letter of a formula.
+    /// Another quantity is used instead of a letter of the formula.
     StandsFor {
-        /// The formula, in one of its forms.
+        /// The form of the formula that contains the letter.
         reading: Reading,
-        /// The letter whose value is replaced.
+        /// The letter instead of which another quantity is used.
         letter: Cow<'static, str>,
-        /// The quantity that is used instead.
+        /// The quantity that is used by mistake.
         stand: Substitute,
     },
-    /// A coefficient is multiplied by a factor.
+    /// A coefficient has a wrong factor.
     Factor {
         /// The power of t that the coefficient belongs to.
         power: usize,
-        /// The factor of the coefficient.
+        /// The factor by which the right coefficient is multiplied.
         #[serde(with = "fosssim_num::written")]
         factor: f64,
     },
-    /// No simple change explains a coefficient.
+    /// A coefficient is wrong in a way that no simple change explains.
     Unknown {
         /// The power of t that the coefficient belongs to.
         power: usize,
     },
-    /// A product has the wrong weight.
+    /// A product of letters has a wrong weight.
     Weight(Weight),
-    /// Weights that would give the same polynomial as the reported ones.
+    /// Other weights that would give the same polynomial as the reported ones.
     Alternative(Vec<Weight>),
 }
 
-/// The value that is used instead of a letter of a formula.
+/// The quantity that is used instead of a letter of a formula.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Substitute {
-    /// The letter itself, multiplied by a factor.
+    /// The letter itself, multiplied by this factor.
     Scaled(#[serde(with = "fosssim_num::written")] f64),
     /// A different letter of the same formula.
     Letter(Cow<'static, str>),
-    /// A dot product of vectors that the detection uses.
+    /// A dot product of two vectors that the detection uses.
     Dot {
         /// The names of the two vectors.
         vectors: [Cow<'static, str>; 2],
-        /// Whether its sign is wrong.
+        /// Whether the dot product has the opposite sign.
         negated: bool,
     },
     /// The number 1.
     One,
 }
 
-/// A product of letters in a coefficient, with a wrong weight.
+/// A product of letters that is a term of a coefficient, with its right and its wrong weight.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Weight {
-    /// The formula, in a form that may lack some of the letters.
+    /// The form of the formula. Some of its letters may be absent from this term.
     pub reading: Reading,
-    /// The power of t that the coefficient belongs to.
+    /// The power of t whose coefficient contains the product.
     pub power: usize,
     /// The names of the product's letters.
     pub letters: Vec<Cow<'static, str>>,
-    /// The right weight of the product.
+    /// The weight that the product should have.
     #[serde(with = "fosssim_num::written")]
     pub expected: f64,
-    /// The weight in the submission.
+    /// The weight that the product has in the submission.
     #[serde(with = "fosssim_num::written")]
     pub actual: f64,
 }
 
-/// The exact form of a fault of a stage.
+/// The exact form of a fault in a stage of a step.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum StageDetail {
-    /// The pairs are checked in the wrong order.
+    /// The pairs are checked in another order than they should be.
     Order,
-    /// All changes are multiplied by a factor.
+    /// All changes are multiplied by the same factor.
     Factor(#[serde(with = "fosssim_num::written")] f64),
     /// The range of the times of impact, as fractions of the step.
     Impacts {
-        /// Whether the range is that of the right contacts.
+        /// Whether the range is that of contacts whose responses are right.
         right: bool,
-        /// The number of contacts.
+        /// The number of contacts in the range.
         count: usize,
         /// The earliest time of impact.
         #[serde(with = "fosssim_num::written")]
@@ -157,73 +157,73 @@ pub enum StageDetail {
         #[serde(with = "fosssim_num::written")]
         high: f64,
     },
-    /// The ratios of contact vectors to the right ones, measured along the right ones.
+    /// The lengths of contact vectors along the right vectors, divided by the lengths of the right ones.
     Vectors(Ratios),
-    /// The largest error of the contact vectors, relative to their length.
+    /// The largest error of a contact vector, relative to its length.
     VectorsOff(#[serde(with = "fosssim_num::written")] f64),
-    /// The ratios of times of impact to the expected ones.
+    /// The times of impact, divided by the right ones.
     Times(Ratios),
-    /// The largest error of the times of impact, in steps.
+    /// The largest error of a time of impact, as a fraction of the step.
     TimesOff(#[serde(with = "fosssim_num::written")] f64),
-    /// The times of impact are not used correctly.
+    /// The times of impact are right, but are not used as they should be.
     TimesUsed,
-    /// The number of detection passes in the impulse rounds.
+    /// The number of detection passes in the impulse rounds is wrong.
     Passes {
-        /// The expected number of passes.
+        /// The number of passes that the step should have.
         expected: usize,
-        /// The actual number of passes.
+        /// The number of passes that the step has.
         actual: usize,
         /// The number of rounds that the scene allows.
         most: i32,
     },
-    /// The changes that isolated contacts cause.
+    /// The changes of a quantity by isolated contacts.
     Change {
-        /// The quantity that changes, and its owner.
+        /// The quantity that changes, and the body that it belongs to.
         changed: ChangedQuantity,
-        /// The amount of the change.
+        /// The difference between the change and the right one.
         amount: Amount,
-        /// Whether the quantity also changes perpendicular to the contact vector.
+        /// Whether the quantity also changes at a right angle to the contact vector.
         across: bool,
-        /// The number of contacts that change the quantity wrongly.
+        /// The number of contacts that change the quantity by a wrong amount.
         wrong: usize,
-        /// The number of compared contacts.
+        /// The number of contacts that were compared.
         of: usize,
     },
     /// The number of zones that have the fault.
     OfZones {
-        /// The number of zones with the fault.
+        /// The number of zones that have the fault.
         count: usize,
-        /// The number of zones that could be compared.
+        /// The number of zones that were compared.
         of: usize,
     },
-    /// The velocities of zones that must stop, divided by their earlier velocities.
+    /// The velocities of zones that should stop, divided by their velocities before.
     Stopped(Ratios),
-    /// The ratio of the motion of the center of mass to the expected one.
+    /// The motion of the center of mass, divided by the right motion.
     CenterMoves(Ratios),
     /// The center of mass moves in a wrong direction.
     CenterDirection,
-    /// The ratio of the rotation of zones to the expected rotation.
+    /// The rotation of zones, divided by the right rotation.
     Turns(Ratios),
-    /// The velocities of zones, divided by their displacement over the step size.
+    /// The velocities of zones, divided by their displacement per step size.
     Velocities(Ratios),
 }
 
-/// The amount by which a contact changes a quantity.
+/// The change of a quantity by a contact.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Amount {
-    /// The quantity changes although it should not.
+    /// The quantity should not change, but does.
     Unwanted,
     /// The change along the contact vector is right.
     Right,
-    /// The ratio to the expected value, along the contact vector.
+    /// The change along the contact vector, divided by the right change.
     Ratio(Ratios),
 }
 
-/// Ratios of actual to expected values.
+/// Ratios of actual values to right ones.
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Ratios {
-    /// All ratios equal one number.
+    /// All ratios are this number, up to round-off.
     All(#[serde(with = "fosssim_num::written")] f64),
-    /// The ratios are between the first number and the second.
+    /// The ratios are between these two numbers.
     Between(#[serde(with = "fosssim_num::written")] f64, #[serde(with = "fosssim_num::written")] f64),
 }

@@ -1,76 +1,77 @@
-//! A small example of a mistake.
+//! Small examples of mistakes.
 use super::{input::Input, subject::Subject};
 use crate::finding::Role;
 use fosssim_model::sim::{Pair, PairKind};
 use serde::{Deserialize, Serialize};
 
-/// A small instance of a mistake.
+/// A small example of a mistake: the inputs, the expected result, and the actual one.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Example {
     /// The step number, from 1.
     pub step: u32,
-    /// The place in the step.
+    /// The place of the example in the step.
     pub place: ExamplePlace,
-    /// The inputs of the computation, in the assignment's notation.
+    /// The values from which the example is computed, in the assignment's notation.
     pub given: Vec<ExampleValue>,
-    /// The expected result.
+    /// The result that a correct program computes.
     #[serde(with = "fosssim_num::written")]
     pub expected: Vec<f64>,
-    /// The actual result.
+    /// The result that this program computes.
     #[serde(with = "fosssim_num::written")]
     pub actual: Vec<f64>,
 }
 
-/// The place of an example in its step. It determines the meaning of the numbers.
+/// The place of an example in its step. It determines what the numbers mean.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ExamplePlace {
     /// The numbers are the coefficients of a polynomial whose inputs are given.
     Given {
-        /// The pair that the polynomial belongs to.
+        /// The pair whose polynomial it is.
         pair: Pair,
         /// The detection pass within the step, from 0.
         pass: u32,
-        /// The polynomial of the pair.
+        /// The polynomial, by its meaning.
         subject: Subject,
     },
     /// The numbers are the coefficients of a polynomial.
     Polynomial {
-        /// The pair that the polynomial belongs to.
+        /// The pair whose polynomial it is.
         pair: Pair,
         /// The detection pass within the step, from 0.
         pass: u32,
-        /// The role of the polynomial.
+        /// The condition that the polynomial describes.
         role: Role,
     },
-    /// A surplus polynomial of the step's list, given by its index.
+    /// The numbers are the coefficients of a surplus polynomial. The value is its index in the step's list.
     NumberedPolynomial(usize),
-    /// The number is that of the polynomials in the step.
+    /// The number is how many polynomials the step logs.
     PolynomialCount,
-    /// The numbers are the normal and the time of a contact of the trace.
+    /// The numbers are the normal and the time of a contact in the trace.
     Contact {
-        /// The kind of the pair, if the objects form one.
+        /// The kind of pair; `None` if the two objects do not form a pair.
         kind: Option<PairKind>,
-        /// The particle's number in the trace.
+        /// The number of the particle, as the trace names it.
         first: i32,
-        /// The other object's number in the trace.
+        /// The number of the other object, as the trace names it.
         second: i32,
     },
-    /// The number is that of the contacts in the step.
+    /// The number is how many contacts the step logs.
     ContactCount,
     /// The numbers are the position and the velocity of a particle in a record.
     Particle {
-        /// The particle's index.
+        /// The index of the particle.
         particle: usize,
-        /// The record of the step.
+        /// The record of the step in which the particle is.
         record: StepRecord,
     },
-    /// A particle of the mid record, given by its index; only the mid record of the trace is known.
+    /// The numbers are a particle's position and velocity in the mid record, given by its index. The reference does not
+    /// know the right ones.
     MidParticle(usize),
-    /// The polynomial and impulse lists of the mid record.
+    /// The numbers are the lengths of the mid record's lists of polynomials and impulses.
     MidLists,
 }
 
-/// A record of a step.
+/// One of the two records of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StepRecord {
     /// The mid record.
@@ -79,13 +80,13 @@ pub enum StepRecord {
     End,
 }
 
-/// An input of an example.
+/// An input of an example, and its value.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ExampleValue {
-    /// The input that has the value.
+    /// The input to which the value belongs.
     #[serde(rename = "name")]
     pub input: Input,
-    /// The components of the value.
+    /// The components of the value: one for a number, two for a vector.
     #[serde(with = "fosssim_num::written")]
     #[schemars(with = "Vec<fosssim_num::written::Number>")]
     pub value: Vec<f64>,

@@ -1,137 +1,138 @@
-//! Faults of a stage of a step that no known mistake explains. Their measured values are in
+//! Faults in a stage of a step that no known mistake explains. The measured values are in
 //! [`StageDetail`](super::StageDetail).
 use super::area::Area;
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 
-/// The stages of a step that can be distinguished, in the order of a step.
+/// The stages of a step that can be distinguished, in their order.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum StepStage {
-    /// The decisions whether and when pairs collide.
+    /// The stage that decides whether and when pairs collide.
     Detection,
-    /// The vectors between colliding objects.
+    /// The stage that computes the vectors between colliding objects.
     ContactVectors,
-    /// Collision responses and impulse rounds.
+    /// The stage of collision responses and impulse rounds.
     Responses,
-    /// Impact zones and the rigid failsafe.
+    /// The stage of impact zones and the rigid failsafe.
     Zones,
 }
 
-/// The fault of a stage whose inputs are right.
+/// A fault in a stage of a step. The inputs of the stage are right.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum StageFault {
-    /// The pairs are checked in the wrong order.
+    /// The pairs are checked in another order than they should be.
     Order,
-    /// Polynomials are right, but decisions are wrong.
+    /// The polynomials are right, but the decisions that follow from them are wrong.
     Decisions {
-        /// The kind of all affected pairs, if they are of one kind.
+        /// The kind of the affected pairs, if all have the same kind.
         kind: Option<PairKind>,
         /// The way in which the decisions are wrong.
         wrong: WrongDecisions,
     },
-    /// The choice of colliding bodies is wrong among those that overlap at the end of a step.
+    /// Among the bodies that overlap at the end of a step, the wrong ones are treated as colliding.
     Overlaps {
-        /// The kind of all affected pairs, if they are of one kind.
+        /// The kind of the affected pairs, if all have the same kind.
         kind: Option<PairKind>,
         /// The way in which the decisions are wrong.
         wrong: WrongDecisions,
     },
-    /// A state changes wrongly, in a trace that logs only states.
+    /// A state changes wrongly. The trace logs only states.
     Change(WrongChange),
-    /// Times of impact are wrong.
+    /// The times of impact are wrong.
     ContactTimes,
-    /// Contact vectors are wrong.
+    /// The contact vectors are wrong.
     ContactVectors {
-        /// The kind of all affected pairs, if they are of one kind.
+        /// The kind of the affected pairs, if all have the same kind.
         kind: Option<PairKind>,
-        /// The fault of the vectors.
+        /// The fault of the contact vectors.
         wrong: WrongVectors,
     },
-    /// The changes that isolated contacts cause are wrong.
+    /// Contacts that share no body with other contacts change states wrongly.
     Responses {
-        /// The kind of all affected pairs, if they are of one kind and other kinds are right.
+        /// The kind of the affected pairs, if all have the same kind and pairs of other kinds are right.
         kind: Option<PairKind>,
         /// The fault of the changes.
         wrong: WrongResponses,
-        /// Whether the fault occurs only in impulse rounds, which pass the changed values on.
+        /// Whether the fault occurs only in impulse rounds, each of which starts from the states that the round before
+        /// has changed.
         in_rounds: bool,
     },
-    /// The state after several contacts is wrong, although isolated contacts are right.
+    /// After several contacts in one step the state is wrong, although isolated contacts are right.
     ManyContacts,
     /// Contacts of the first impulse round have no effect.
     Unresolved {
-        /// Whether no contact of the first round has an effect; otherwise some have one.
+        /// Whether no contact of the first round has an effect; otherwise some contacts have an effect.
         all: bool,
     },
     /// The number of impulse rounds is wrong.
     Rounds(WrongNumber),
-    /// The impulse rounds are right, but pass on wrong values.
+    /// The impulse rounds are right, but the values after them are wrong.
     HandedOver {
-        /// The wrong quantity: positions or velocities; `None` for both.
+        /// The quantity that is wrong; `None` if both positions and velocities are.
         quantity: Option<Quantity>,
-        /// The way in which the loop ends when the values are wrong; `None` if they are always wrong.
+        /// The way in which the loop ended when the values are wrong; `None` if they are wrong in any case.
         when: Option<LoopEnd>,
         /// Whether wrong responses could also cause the fault.
         or_response: bool,
     },
-    /// The changes that contacts of the first impulse round cause are wrong.
+    /// The contacts of the first impulse round change states wrongly.
     FirstRound,
-    /// The changes that several contacts of the first impulse round cause together are wrong, although isolated
-    /// contacts are right.
+    /// Several contacts of the first impulse round together change states wrongly, although isolated contacts are
+    /// right.
     LaterRounds,
-    /// Rounds after the first one use the predicted positions again for detection.
+    /// In rounds after the first one, detection uses the predicted positions again.
     RoundsOfPrediction,
-    /// The second detection is right, but the rounds after it are wrong.
+    /// The second detection is right, but the rounds after it are not.
     BehindFirstRound,
-    /// The geometric part runs, or does not run, at the wrong time.
+    /// The geometric part runs when it should not, or does not run when it should.
     Geometric(WrongGeometric),
-    /// A detection pass of the geometric part uses wrong positions.
+    /// A detection pass of the geometric part starts from wrong positions.
     ZonePositions(WrongPositions),
     /// The part of the step after the impulse rounds is wrong.
     AfterRounds,
-    /// Zones are wrong in later rounds.
+    /// In rounds after the first one, zones are wrong.
     ZoneRounds(WrongZoneRounds),
-    /// The choice of the zones that are moved or stopped is wrong.
+    /// The wrong zones are moved or stopped.
     Zones(WrongZones),
     /// The motion of zones is wrong.
     Motion {
         /// The faults of the zones' motion.
         wrong: Vec<WrongMotion>,
-        /// Whether wrongly chosen zones could also cause the fault.
+        /// Whether the fault could also be that the wrong zones are moved.
         or_zones: bool,
     },
 }
 
-/// The properties that wrong changes of states have in common.
+/// The common properties of wrong changes of states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongChange {
-    /// The wrong quantity. If positions are wrong, velocities are right. If velocities are wrong, positions agree with
-    /// them.
+    /// The quantity that is wrong. If positions are wrong, velocities are right. If velocities are wrong, positions
+    /// agree with the wrong velocities.
     pub quantity: Quantity,
-    /// The only wrong component: 0 for x or 1 for y; `None` for both.
+    /// The component that is wrong: 0 for x or 1 for y; `None` if both are.
     pub axis: Option<usize>,
-    /// The particles whose state changes wrongly.
+    /// The particles whose states change wrongly.
     pub particles: ChangedParticles,
-    /// The ratio to the expected changes.
+    /// The factor between the actual and the right changes.
     pub ratio: ChangeRatio,
-    /// The code of the student that makes the changes.
+    /// The part of the student's code that makes these changes.
     pub cause: ChangeCause,
 }
 
 /// The part of a student's code that changes states.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum ChangeCause {
-    /// Responses to simple collisions.
+    /// The responses to simple collisions.
     Response,
     /// The penalty force.
     Penalty,
-    /// Forces.
+    /// The forces, without the penalty force.
     Forces,
     /// The integrator.
     Integrator,
-    /// Forces or the integrator.
+    /// The forces or the integrator, which the trace does not distinguish.
     ForcesOrIntegrator,
-    /// The forces' derivatives or the integrator.
+    /// The derivatives of forces or the integrator, which the trace does not distinguish.
     JacobiansOrIntegrator,
 }
 
@@ -139,7 +140,7 @@ fosssim_num::closed_set! {
     /// The particles whose state changes wrongly.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum ChangedParticles {
-        /// Some particles, without a common property.
+        /// Some particles that have nothing in common.
         Any = "",
         /// Only fixed particles.
         Fixed = " of fixed particles only",
@@ -151,16 +152,16 @@ fosssim_num::closed_set! {
 }
 
 fosssim_num::closed_set! {
-    /// The common factor of all wrong changes.
+    /// The factor that all wrong changes have in common.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum ChangeRatio {
-        /// There is no change.
+        /// The quantity does not change.
         Nothing = "stay as they were",
-        /// The change has the opposite direction.
+        /// The quantity changes in the opposite direction.
         Opposite = "change the opposite way",
-        /// The change is multiplied by some other factor.
+        /// All changes are multiplied by the same factor.
         Factor = "change by a wrong factor, which is always the same",
-        /// The changes have no ratio in common.
+        /// The changes do not have a factor in common.
         Other = "change wrongly",
     }
 }
@@ -169,59 +170,59 @@ fosssim_num::closed_set! {
     /// The way in which decisions about contacts are wrong.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongDecisions {
-        /// Contacts are missed.
+        /// Contacts that exist are missed.
         Missed = "contacts that its polynomials show are not counted",
             "collisions of bodies that overlap and approach each other are missed";
-        /// Contacts are found that do not exist.
+        /// Contacts are reported that do not exist.
         Superfluous = "contacts are counted that its polynomials do not show",
             "collisions are found between bodies that do not overlap, or do not approach each other";
-        /// Some contacts are missed, and others do not exist.
+        /// Some contacts are missed, and others are reported that do not exist.
         Both = "the polynomials are right, the decisions are not: contacts are missed, others are superfluous",
             "some collisions are missed, and others are found that do not exist";
     }
-    /// Returns the sentence about bodies that overlap at the end of a step.
+    /// Returns the sentence for bodies that overlap at the end of a step.
     of_overlaps
 }
 
 fosssim_num::closed_set! {
-    /// A fault of contact vectors.
+    /// The fault of contact vectors.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongVectors {
-        /// The vectors are perpendicular to the expected ones.
+        /// The vectors are perpendicular to the right ones.
         Perpendicular = "it is perpendicular to the right vector",
         /// The vectors have the wrong direction.
         Direction = "it has the wrong direction",
-        /// The vectors have length zero.
+        /// The vectors have the length zero.
         Zero = "it has no length",
-        /// The vectors are right except for their last digits.
+        /// The vectors are right, except for their last digits.
         Inexact = "it is right except for its last digits",
         /// The vectors point in the opposite direction.
         Reversed = "it points in the opposite direction",
-        /// The vectors have the right direction and the wrong length.
+        /// The vectors have the right direction, but a wrong length.
         Length = "it has the right direction, but not the right length",
     }
 }
 
-/// A fault of the changes by isolated contacts.
+/// The fault of the changes that isolated contacts cause.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongResponses {
-    /// The responses change nothing.
+    /// The contacts change nothing.
     Nothing,
-    /// The responses do not change some quantities.
+    /// These quantities do not change, although they should.
     Unchanged(Vec<ChangedQuantity>),
-    /// The responses also change some quantities across the contact vector.
+    /// These quantities also change at a right angle to the contact vector.
     Across(Vec<ChangedQuantity>),
-    /// The responses change some quantities along the contact vector by a wrong amount.
+    /// These quantities change along the contact vector by a wrong amount.
     Amount(Vec<ChangedQuantity>),
 }
 
-/// A quantity that a contact changes, and its owner.
+/// A quantity that a contact changes, and the body that it belongs to.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct ChangedQuantity {
-    /// The kind of the contact's pair.
+    /// The kind of pair between which the contact is.
     pub kind: PairKind,
-    /// The body: 0 is the pair's (first) particle; 1 is the second particle, or the edge's first endpoint; 2 is the
-    /// edge's second endpoint.
+    /// The body to which the quantity belongs. 0 is the pair's first particle. 1 is the second particle, or the edge's
+    /// first endpoint. 2 is the edge's second endpoint.
     pub body: usize,
     /// The quantity that changes.
     pub quantity: Quantity,
@@ -230,14 +231,14 @@ pub struct ChangedQuantity {
 /// A quantity of a body's state.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub enum Quantity {
-    /// The position of the body.
+    /// The position of a body.
     Position,
-    /// The velocity of the body.
+    /// The velocity of a body.
     Velocity,
 }
 
 fosssim_num::closed_set! {
-    /// The way in which a number of rounds is wrong.
+    /// The way in which the number of rounds is wrong.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongNumber {
         /// The loop makes too few rounds.
@@ -252,107 +253,107 @@ fosssim_num::closed_set! {
 /// The way in which the geometric part runs at the wrong time.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum WrongGeometric {
-    /// The geometric part makes no pass although the maximum number of rounds was used.
+    /// The geometric part does not run, although the rounds have used up their maximum number.
     Left {
-        /// Whether the geometric part is always missing; otherwise only in some steps.
+        /// Whether it never runs; otherwise it fails to run in some steps.
         always: bool,
     },
-    /// The geometric part makes passes although nothing collides.
+    /// The geometric part runs, although nothing collides.
     Superfluous,
 }
 
 fosssim_num::closed_set! {
-    /// The positions that the geometric part uses by mistake.
+    /// The wrong positions that the geometric part starts from.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongPositions {
-        /// The first round uses the predicted positions of the integrator.
+        /// The first round starts from the positions that the integrator predicted.
         Prediction =
             "the first zones are searched on the predicted positions, not on those after the impulse rounds",
-        /// The first round uses positions other than those after the impulse rounds.
+        /// The first round starts from other positions than those after the impulse rounds.
         First = "the first zones are searched on wrong positions, not on those after the impulse rounds",
-        /// The detection after the failsafe uses the positions before it.
+        /// The detection after the failsafe starts from the positions before the failsafe.
         BeforeFailsafe = "the detection after the failsafe uses the positions before it",
     }
 }
 
-/// The reason why impulse rounds end.
+/// The way in which the impulse rounds end.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum LoopEnd {
-    /// The maximum number of rounds was used.
+    /// The loop has made its maximum number of rounds.
     RanOut,
-    /// No pair collides.
+    /// The loop has ended because no pair collides.
     Settled,
 }
 
 fosssim_num::closed_set! {
-    /// A fault of the rounds in which zones grow.
+    /// The fault of the rounds in which zones grow.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongZoneRounds {
-        /// The zones are wrong.
+        /// The zones are wrong after they have grown.
         Growth = "zones are right in the first round, but not as they grow",
-        /// There are too few rounds.
+        /// The zones grow in too few rounds.
         Fewer = "the zones make fewer rounds than they should",
-        /// There are too many rounds.
+        /// The zones grow in too many rounds.
         More = "the zones make more rounds than they should",
-        /// The zones or the number of rounds are wrong, from a later round on.
+        /// From a later round on, the zones or the number of rounds are wrong.
         Later = "the zones are right in the first round, but later rounds are wrong or too few",
     }
 }
 
 fosssim_num::closed_set! {
-    /// A fault of the choice of zones that are moved or stopped.
+    /// The fault of the choice of zones that are moved or stopped.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongZones {
-        /// Some particles of a zone are not moved with it.
+        /// Some particles of a zone are not moved with the zone.
         Partly = "some of a zone's particles are not moved with it",
-        /// Some particles of a zone that has to stop do not stop.
+        /// Some particles do not stop, although their zone should stop.
         PartlyStopped = "in zones that must stop, some particles do not",
-        /// Zones are not moved.
+        /// Zones that should be moved are not.
         Unmoved = "some zones that should move do not",
-        /// Zones stop that should move.
+        /// Zones that should be moved are stopped.
         Stop = "zones stop although nothing in them is fixed",
-        /// Contacts that share particles are moved one after the other.
+        /// Contacts that share particles are moved one after the other, instead of as one zone.
         NotMerged = "zones that share particles are moved one after the other, not as one",
         /// Zones that share no particle are moved as one zone.
         Joined = "zones that share no particle are moved as one",
-        /// Particles are moved that belong to no zone.
+        /// Particles are moved that do not belong to a zone.
         Others = "zones move particles that do not belong to them",
-        /// Zones that have to stop move on as rigid bodies.
+        /// Zones that should stop are moved as rigid bodies.
         MoveOn = "zones that must stop move on as rigid bodies",
-        /// Zones that have to stop keep their new positions.
+        /// Zones that should stop keep their new positions.
         KeepPositions = "zones that must stop do not go back to their start",
-        /// Zones that have to stop keep some velocity.
+        /// Zones that should stop keep some of their velocity.
         KeepVelocities = "zones that must stop keep their velocities",
     }
 }
 
 fosssim_num::closed_set! {
-    /// A fault of the motion of zones.
+    /// The fault of the motion of zones.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum WrongMotion {
-        /// The motion of the zones' center of mass.
+        /// The center of mass of the zones moves wrongly.
         Center = "the center of mass of a zone does not move as it should",
         /// The distances between particles of a zone change.
         Distances = "the distances between particles of a zone change",
-        /// The zones do not rotate.
+        /// The zones do not rotate, although they should.
         NoTurn = "zones do not rotate",
         /// The zones rotate less than they should.
         LessTurn = "zones rotate too little",
-        /// The zones rotate further than they should.
+        /// The zones rotate more than they should.
         MoreTurn = "zones rotate too much",
         /// The zones rotate in the opposite direction.
         TurnBack = "zones rotate in the opposite direction",
         /// The zones rotate by a wrong angle.
         Turn = "zones rotate by a wrong angle",
-        /// The zones' velocities are wrong.
+        /// The velocities in the zones do not fit their motion.
         Velocities = "velocities in a zone do not match its motion from start to end",
-        /// The speeds in the zones are wrong.
+        /// The velocities in the zones have the right directions, but the wrong speeds.
         Speeds = "velocities in a zone have the direction of its motion from start to end, but the wrong size",
     }
 }
 
 impl StageFault {
-    /// Returns the stage that the fault is in.
+    /// Returns the stage of the step in which the fault is.
     #[must_use]
     pub const fn stage(&self) -> StepStage {
         match self {
@@ -375,7 +376,7 @@ impl StageFault {
         }
     }
 
-    /// Returns the parts of the assignment that may contain the mistake.
+    /// Returns the parts of the assignment in which the mistake may be.
     #[must_use]
     pub const fn areas(&self) -> &'static [Area] {
         match self {
@@ -391,7 +392,7 @@ impl StageFault {
             },
             Self::ContactVectors { .. } => &[Area::ContactVector],
             Self::Responses { in_rounds: false, .. } | Self::ManyContacts => &[Area::Response],
-            // The trace of a hybrid step contains no contact vector.
+            // In a hybrid step, the trace contains no contact vector.
             Self::Responses { wrong: WrongResponses::Across(_), .. } => {
                 &[Area::ContactVector, Area::Response, Area::ImpulseLoop]
             }
@@ -411,7 +412,7 @@ impl StageFault {
             | Self::Zones(WrongZones::Partly | WrongZones::NotMerged | WrongZones::Joined | WrongZones::Others) => {
                 &[Area::ImpactZones]
             }
-            // The wrong effect of a larger zone may also be caused by the code that moves it.
+            // If a larger zone has a wrong effect, the code that moves it may also be the cause.
             Self::AfterRounds
             | Self::ZoneRounds(WrongZoneRounds::Growth | WrongZoneRounds::Later)
             | Self::Motion { or_zones: true, .. }
@@ -423,7 +424,7 @@ impl StageFault {
         }
     }
 
-    /// Returns the kind of pair, if the fault concerns only one.
+    /// Returns the kind of pair; `None` if the fault concerns several kinds.
     #[must_use]
     pub const fn kind(&self) -> Option<PairKind> {
         match self {
@@ -435,7 +436,7 @@ impl StageFault {
         }
     }
 
-    /// Returns the explanation's key.
+    /// Returns the key of an explanation with this fault.
     pub const fn key(&self) -> &'static str {
         match self {
             Self::Order => "stage-order",
@@ -469,36 +470,36 @@ impl StageFault {
     }
 }
 
-/// The first value of a trace that is not finite, and its place.
+/// The first value in a trace that is not finite: where it is, and how it came about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct NotFinite {
-    /// The step, from 1, where 0 is the first record; `None` if the explanation covers several traces.
+    /// The number of the step, from 1; 0 is the first record. `None` if the explanation covers several traces.
     pub step: Option<u32>,
-    /// The stage that computes such a value from finite ones.
+    /// The stage whose inputs are finite but whose result is not.
     pub stage: NanStage,
-    /// Whether the first such value is NaN, and not infinite.
+    /// Whether the value is NaN; otherwise it is infinite.
     pub is_nan: bool,
-    /// Whether all values of a later step are finite again.
+    /// Whether all values are finite again in a later step.
     #[serde(default)]
     pub ends: bool,
 }
 
-/// The first stage of a step that has finite inputs and an output that is not finite.
+/// The first stage of a step whose inputs are finite but whose result is not.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub enum NanStage {
-    /// The first record already contains such a value.
+    /// The first record already contains a value that is not finite.
     FirstRecord,
-    /// The motion of the step, before any contact.
+    /// The motion within the step, before any contact.
     Motion,
-    /// The integrator, when it solves a system of equations.
+    /// The integrator, while it solves a system of equations.
     ImplicitMotion,
-    /// The coefficients of the detection; the value is the kind of pair, if it is known.
+    /// The coefficients that the detection computes. The value is the kind of pair, if it is known.
     Detection(Option<PairKind>),
-    /// Contact vectors and times of impact.
+    /// The contact vectors or the times of impact.
     ContactVectors,
     /// The response to a contact.
     Responses,
-    /// The impulse rounds, whose contacts are not in the trace.
+    /// The impulse rounds. Their contacts are not in the trace.
     ImpulseRounds,
     /// Impact zones and the rigid failsafe.
     Zones,

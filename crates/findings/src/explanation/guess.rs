@@ -1,40 +1,41 @@
-//! Guesses about wrong polynomials, without the values that would reveal a formula
+//! Guesses about wrong polynomials. They do not contain values that would reveal a formula
 //! ([`PolynomialDetail`](super::PolynomialDetail)).
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
-/// A guess about wrong polynomials.
+/// A guess about what is wrong with polynomials.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Guess {
-    /// A guess about the whole list of coefficients.
+    /// A guess that concerns the whole list of coefficients.
     List(ListGuess),
-    /// Other inputs or another formula are used; the value is the key of a change that the assignment describes.
+    /// Other inputs or another formula are used. The value is the key of a change that the assignment's data describe.
     Named(Cow<'static, str>),
-    /// A guess about one quantity of the formula.
+    /// A guess that concerns one quantity in the formula.
     Quantity(QuantityGuess),
-    /// A guess about the coefficients of some powers of t.
+    /// A guess that concerns the coefficients of some powers of t.
     Coefficients {
         /// The powers of these coefficients, the highest first.
         powers: Vec<usize>,
-        /// The guess about the coefficients.
+        /// The fault of these coefficients.
         wrong: CoefficientGuess,
     },
 }
 
 impl Guess {
-    /// Returns the key of the guess as claims contain it: a digest, because the key may name a formula.
+    /// Returns the key of the guess as [`Explanation::claims`](super::Explanation::claims) contain it. It is a digest,
+    /// because the key itself may name a formula.
     #[must_use]
     pub fn word(&self) -> String {
         format!("{:08x}", digest(self.key()) >> 32)
     }
 
-    /// Returns whether the guess can apply to several polynomials as one mistake.
+    /// Returns whether the guess can be the same mistake in several polynomials.
     #[must_use]
     pub const fn is_general(&self) -> bool {
         matches!(self, Self::List(_) | Self::Named(_))
     }
 
-    /// Returns the explanation's key.
+    /// Returns the key of an explanation with this guess.
     #[must_use]
     pub fn key(&self) -> &str {
         match self {
@@ -53,37 +54,37 @@ pub fn digest(text: &str) -> u64 {
 }
 
 fosssim_num::closed_set! {
-    /// A guess about a whole list of coefficients.
+    /// A guess that concerns a whole list of coefficients.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum ListGuess {
-        /// All coefficients are zero or missing.
+        /// All coefficients are zero, or there are no coefficients.
         AllZero = "all-zero", "All coefficients are zero, or none is logged";
-        /// The list consists of one number, the same in every sample.
+        /// The list consists of one number. It is the same number in every sample.
         Constant = "constant", "A constant is used instead of the polynomial";
-        /// All coefficients are the same number in every sample.
+        /// All coefficients are the same number. It is the same number in every sample.
         AllEqual = "all-equal", "All coefficients are the same constant";
         /// The coefficients are rounded to single precision.
         SinglePrecision = "single-precision", "The coefficients have only single precision";
-        /// The coefficients are divided by the leading coefficient, even if it is negative.
+        /// All coefficients are divided by the leading one, even if it is negative.
         Monic = "monic", "The polynomial is divided by its leading coefficient, which loses its sign";
         /// There are too many coefficients.
         TooLong = "too-long", "The polynomial has too high a degree";
-        /// The lowest power comes first.
+        /// The coefficients are in the opposite order, with the lowest power first.
         Reversed = "reversed", "The coefficients are in the wrong order, lowest power first";
         /// All coefficients have the wrong sign.
         Negated = "negated", "The whole polynomial has the wrong sign";
-        /// The lowest power comes first, and all coefficients have the wrong sign.
+        /// The coefficients are in the opposite order, and all have the wrong sign.
         ReversedNegated = "reversed-negated", "The coefficients are in the wrong order and have the wrong sign";
         /// Two coefficients are exchanged.
         TwoExchanged = "two-exchanged", "Two coefficients are exchanged";
-        /// A zero follows the coefficients.
+        /// An additional zero follows the coefficients.
         TrailingZero = "trailing-zero", "A zero is appended, which raises the degree by one";
-        /// The coefficients are those of another polynomial of the pair.
+        /// The coefficients belong to another polynomial of the pair.
         OtherPolynomial = "other-polynomial", "Polynomials of a pair are exchanged";
-        /// The coefficients are those of another polynomial of the pair, with the wrong sign.
+        /// The coefficients belong to another polynomial of the pair, and have the wrong sign.
         OtherPolynomialNegated = "other-polynomial-negated",
             "A polynomial of the pair is used instead of another one, with the wrong sign";
-        /// All coefficients except the constant one are missing.
+        /// Only the constant coefficient is there.
         ConstantOnly = "cut",
             "The polynomial is cut to its constant coefficient, so it is tested only at the start of the step";
         /// The leading coefficients are missing.
@@ -94,12 +95,12 @@ fosssim_num::closed_set! {
         DisplacementScale = "displacement-scale",
             "All displacements have the same factor, as if they were velocities or had another time step";
     }
-    /// Returns the text of the guess.
+    /// Returns the sentence for the guess.
     words
 }
 
 fosssim_num::closed_set! {
-    /// A guess about one quantity of a formula, in all its occurrences.
+    /// A guess that concerns one quantity, wherever it occurs in a formula.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum QuantityGuess {
         /// The sign of the quantity is wrong.
@@ -108,18 +109,18 @@ fosssim_num::closed_set! {
         Zero = "letter-factor", "A quantity of the formula is zero";
         /// The quantity is multiplied by a factor.
         Factor = "letter-factor", "A quantity of the formula has a wrong factor";
-        /// A quantity that is not in the formula is used.
+        /// Instead of the quantity, another one is used that is not in the formula.
         Other = "letter", "Another quantity is used instead of a dot product of the formula";
     }
-    /// Returns the text of the guess.
+    /// Returns the sentence for the guess.
     words
 }
 
 fosssim_num::closed_set! {
-    /// A guess about coefficients.
+    /// A guess that concerns one or several coefficients.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
     pub enum CoefficientGuess {
-        /// Several coefficients are wrong, without a common cause.
+        /// Several coefficients are wrong, and no common cause is known.
         Several = "coefficients", "Several coefficients are wrong ({})";
         /// The coefficient is zero.
         Zero = "coefficient-zero", "The {} coefficient is zero";
@@ -127,17 +128,17 @@ fosssim_num::closed_set! {
         Sign = "coefficient-sign", "The {} coefficient has the wrong sign";
         /// The coefficient is multiplied by a factor.
         Factor = "coefficient-factor", "The {} coefficient has a wrong factor";
-        /// The coefficient has a surplus term.
+        /// The coefficient has a term too many.
         TermForeign = "term-foreign", "The {} coefficient has a term too many";
-        /// The coefficient lacks a term.
+        /// A term of the coefficient is missing.
         TermMissing = "term-missing", "A term of the {} coefficient is missing";
         /// The sign of a term is wrong.
         TermSign = "term-sign", "A term of the {} coefficient has the wrong sign";
         /// The factor of a term is wrong.
         TermFactor = "term-factor", "A term of the {} coefficient has a wrong factor";
-        /// Several terms are wrong.
+        /// Several terms of the coefficient are wrong.
         Terms = "terms", "Several terms of the {} coefficient are wrong";
     }
-    /// Returns the text of the guess, with braces for the names of the powers.
+    /// Returns the sentence for the guess. Braces stand for the names of the powers.
     words
 }

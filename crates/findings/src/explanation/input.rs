@@ -1,36 +1,38 @@
 //! The inputs of a detection, in the assignment's notation.
 use serde::{Deserialize, Serialize};
 
-/// An input of a detection; its name in JSON is its letter.
+/// An input of a detection. In JSON, its name is its letter.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(rename_all = "lowercase")]
 pub enum Input {
-    /// The position of the first body at the start of the step; in a particle-edge pair, the particle's.
+    /// The position of the first body at the start of the step. In a pair of a particle and an edge, this is the
+    /// particle.
     X1,
-    /// The position of the second body; in a particle-edge pair, the edge's first endpoint.
+    /// The position of the second body at the start of the step. In a pair of a particle and an edge, this is the
+    /// edge's first endpoint.
     X2,
-    /// The position of the edge's second endpoint.
+    /// The position of the edge's second endpoint at the start of the step.
     X3,
     /// The displacement of the first body within the step.
     Dx1,
-    /// The displacement of the second body.
+    /// The displacement of the second body within the step.
     Dx2,
-    /// The displacement of the edge's second endpoint.
+    /// The displacement of the edge's second endpoint within the step.
     Dx3,
-    /// The first particle's radius.
+    /// The radius of the first particle.
     R1,
-    /// The second particle's radius.
+    /// The radius of the second particle.
     R2,
-    /// The edge's radius.
+    /// The radius of the edge.
     Re,
-    /// The position of the particle near a half-plane at the start of the step.
+    /// The position of the particle at the start of the step, in a pair with a half-plane.
     X,
-    /// The displacement of the particle within the step.
+    /// The displacement of the particle within the step, in a pair with a half-plane.
     Dx,
-    /// A point on the half-plane's boundary.
+    /// A point on the boundary of the half-plane.
     P,
-    /// The half-plane's normal.
+    /// The normal of the half-plane.
     N,
-    /// The radius of the particle near the half-plane.
+    /// The radius of the particle, in a pair with a half-plane.
     R,
 }

@@ -1,4 +1,4 @@
-//! Explanations, as values; reports turn them into sentences.
+//! Explanations of wrong traces, as values. Reports turn them into sentences.
 pub mod about;
 mod area;
 pub mod detail;
@@ -29,58 +29,61 @@ use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A likely mistake, with the evidence for it.
+/// An explanation of what is wrong with a program: a likely mistake or an observation, with the evidence for it.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Explanation {
-    /// A stable key for machines: the id of a known mistake (such as `pe-square-no-eh`) or of a general finding (such
-    /// as `reversed`).
+    /// The name of the explanation for programs. It is the id of a known mistake (such as `pe-square-no-eh`), or the
+    /// name of a general finding (such as `reversed`).
     pub key: String,
     /// The subject of the explanation, with the facts that a sentence can state without revealing a formula.
     pub about: About,
-    /// The exact form, line by line: the terms of each coefficient and their weights. It may reveal the right formula.
+    /// The lines of the exact form, such as the terms of each coefficient and their weights. They may reveal the right
+    /// formula.
     pub details: Vec<Detail>,
-    /// The number of checked samples that the mistake reproduces to round-off.
+    /// The number of samples that the mistake reproduces up to round-off.
     pub reproduced: u64,
-    /// The number of checked samples, which are polynomials or steps.
+    /// The number of samples that were checked. A sample is a polynomial or a step.
     pub samples: u64,
-    /// One small example.
+    /// A small example, if there is one.
     pub example: Option<Example>,
-    /// Keys of other known mistakes that reproduce the same samples; this trace cannot distinguish them.
+    /// The keys of other known mistakes that reproduce the same samples. The trace cannot distinguish them from this
+    /// one.
     pub same_as: Vec<String>,
-    /// Keys of mistakes that the trace contradicts, because no program with such a mistake could write the trace.
+    /// The keys of mistakes that the trace refutes: no program with such a mistake could write the trace.
     pub denies: Vec<String>,
-    /// All guesses that would produce the polynomials, one word each. A word consists of the polynomial and the known
-    /// mistake, or of the polynomial, a digest of the guess and a digest of its exact form. Digests do not reveal a
-    /// formula. The explanation's own guess comes first. For a polynomial without a guess, the word is only its name.
+    /// All guesses that would produce the polynomials, as one word each. A word consists of the polynomial and the
+    /// known mistake, or of the polynomial, a digest of the guess and a digest of its exact form. Digests do not reveal
+    /// a formula. The explanation's own guess comes first. For a polynomial without a guess, the word is only its name.
     pub claims: Vec<String>,
 }
 
 impl Explanation {
-    /// The key of the explanation that the trace probably belongs to another scene. It is reported alone.
+    /// The key of the explanation that the trace probably belongs to another scene. No other explanation is reported
+    /// with it.
     pub const OTHER_SCENE: &'static str = "other-scene";
 
-    /// The key of unwritten stages, which are reported together.
+    /// The key for stages that are not written. They are reported in one explanation.
     pub const UNFINISHED: &'static str = "unfinished";
 
-    /// The key of pairs that are checked in the wrong order.
+    /// The key for pairs that are checked in the wrong order.
     pub const ORDER: &'static str = StageFault::Order.key();
 
-    /// The key of near pairs that a contest's search misses or reports twice.
+    /// The key for nearby pairs that a contest's search misses or reports twice.
     pub const PAIRS: &'static str = "near-pairs";
 
-    /// The key of values that are not finite numbers.
+    /// The key for values that are not finite numbers.
     pub const NOT_FINITE: &'static str = "not-a-number";
 
-    /// The key of faults without any explanation.
+    /// The key for polynomials that are wrong without an explanation.
     pub const UNEXPLAINED: &'static str = "unexplained";
 
-    /// The key of polynomials that are right except for too much round-off.
+    /// The key for polynomials that are right, but have too much round-off.
     pub const NEARLY_RIGHT: &'static str = "nearly-right";
 
-    /// The key of polynomials that no detection logs.
+    /// The key for polynomials that the program never passes to the root finder.
     pub const MISSING_POLYNOMIALS: &'static str = "missing-polynomials";
 
-    /// Returns whether an explanation that names no mistake of the catalogue may have this key.
+    /// Returns whether a key can belong to an explanation that names no known mistake.
     #[must_use]
     pub fn is_general_key(key: &str) -> bool {
         let constants = [
@@ -99,7 +102,7 @@ impl Explanation {
             || CoefficientGuess::ALL.iter().any(|guess| guess.name() == key)
     }
 
-    /// Creates an explanation without evidence.
+    /// Creates an explanation that has no evidence yet.
     #[must_use]
     pub fn about(key: impl Into<String>, about: About) -> Self {
         Self {
@@ -115,14 +118,14 @@ impl Explanation {
         }
     }
 
-    /// Creates the explanation that a trace probably belongs to another scene. `has_length` is whether the number of
-    /// records is right.
+    /// Creates the explanation that a trace probably belongs to another scene. `has_length` tells whether the trace has
+    /// the right number of records.
     #[must_use]
     pub fn for_other_scene(has_length: bool) -> Self {
         Self::about(Self::OTHER_SCENE, About::Scene { has_length })
     }
 
-    /// Creates an explanation of wrong polynomials without an exact form.
+    /// Creates an explanation of wrong polynomials that has no exact form.
     #[must_use]
     pub fn for_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
         Self::about(Self::UNEXPLAINED, About::Polynomials { subjects, found })
@@ -134,8 +137,8 @@ impl Explanation {
         matches!(self.about, About::Scene { .. })
     }
 
-    /// Returns whether the explanation reports the first value that is not finite; every level of hints except the
-    /// lowest shows it.
+    /// Returns whether the explanation reports the first value that is not finite. All levels of hints show it, except
+    /// for the lowest.
     #[must_use]
     pub const fn is_not_finite(&self) -> bool {
         matches!(self.about, About::NotFinite(_))
@@ -147,25 +150,26 @@ impl Explanation {
         self.about == About::Mistake && self.reproduced > 0 && self.is_complete()
     }
 
-    /// Returns whether the explanation names stages that the student has not written.
+    /// Returns whether the explanation names stages that are not written.
     #[must_use]
     pub fn is_unfinished(&self) -> bool {
         self.about == About::Unfinished
     }
 
-    /// Returns whether the explanation reports wrong polynomials without an exact form.
+    /// Returns whether the explanation only says that polynomials are wrong.
     #[must_use]
     pub fn is_unexplained(&self) -> bool {
         self.key == Self::UNEXPLAINED
     }
 
-    /// Returns whether the explanation reports polynomials that are not handed over.
+    /// Returns whether the explanation reports polynomials that are not passed to the root finder.
     #[must_use]
     pub fn is_of_missing(&self) -> bool {
         matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
     }
 
-    /// Returns a key of the statement: equal for explanations with the same text, different for others.
+    /// Returns a key for the explanation's sentence. Explanations have the same key if and only if they have the same
+    /// sentence.
     #[must_use]
     pub fn statement(&self) -> String {
         match &self.about {
@@ -179,7 +183,7 @@ impl Explanation {
         }
     }
 
-    /// Returns the wrong polynomials, if the explanation is about polynomials.
+    /// Returns the wrong polynomials that the explanation is about; empty if it is about something else.
     #[must_use]
     pub fn subjects(&self) -> Vec<Subject> {
         if let About::Polynomials { subjects, .. } = &self.about {
@@ -190,7 +194,7 @@ impl Explanation {
         all.filter(|subject| claims.contains_key(format!("{subject:?}").as_str())).collect()
     }
 
-    /// Groups the claims by polynomial, each with its guess or known mistake, and the whole word.
+    /// Groups the claims by polynomial. For each claim, the result has its guess or known mistake, and the whole word.
     #[must_use]
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
@@ -208,19 +212,19 @@ impl Explanation {
         all
     }
 
-    /// Returns whether the explanation names a wrong stage of a step, which is an observation and not a guess.
+    /// Returns whether the explanation names a wrong stage of a step. That is an observation, not a guess.
     #[must_use]
     pub fn is_of_stage(&self) -> bool {
         self.stage().is_some()
     }
 
-    /// Returns whether the explanation only states that a stage is wrong.
+    /// Returns whether the explanation only says that a stage is wrong.
     #[must_use]
     pub const fn is_vague(&self) -> bool {
         matches!(self.about, About::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts))
     }
 
-    /// Returns the stage of a step that the explanation reports as wrong.
+    /// Returns the stage of a step that is wrong, if the explanation names one.
     #[must_use]
     pub fn stage(&self) -> Option<StepStage> {
         match &self.about {
@@ -235,7 +239,8 @@ impl Explanation {
         self.reproduced == self.samples && self.samples > 0
     }
 
-    /// Returns whether the explanation is about the program, so that other traces may confirm it.
+    /// Returns whether the explanation is about the program, and not about this trace alone. Other traces may then
+    /// confirm it.
     #[must_use]
     pub fn is_vote(&self) -> bool {
         use OfPolynomials::{NearlyRight, Nothing};
@@ -243,7 +248,7 @@ impl Explanation {
         !is_nothing && !self.is_other_scene() && !self.is_not_finite()
     }
 
-    /// Returns whether the explanation covers all its polynomials or stages.
+    /// Returns whether the explanation covers all of its polynomials or stages.
     #[must_use]
     pub fn is_settled(&self) -> bool {
         self.is_complete() || self.is_of_stage()

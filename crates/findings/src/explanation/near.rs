@@ -1,24 +1,25 @@
-//! Faults of a contest's search for near pairs.
+//! Faults of a contest program's search for nearby pairs.
 use fosssim_model::sim::{Pair, PairKind};
 use serde::{Deserialize, Serialize};
 
-/// The near pairs that a search misses or reports twice, and those that it reports once.
+/// The nearby pairs that a search misses or reports twice, and for comparison those that it reports once.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct WrongPairs {
-    /// The first wrong pair and its step, in one trace.
+    /// The first wrong pair and its step; `None` if the explanation covers several traces.
     pub first: Option<(Pair, u32)>,
-    /// The numbers of pairs, by kind.
+    /// The number of pairs for each kind.
     pub kinds: Vec<PairCounts>,
 }
 
-/// The near pairs of a kind.
+/// The nearby pairs of one kind, counted.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct PairCounts {
     /// The kind of the pairs.
     pub kind: PairKind,
-    /// The numbers of pairs that are reported zero times, once and twice.
+    /// The number of pairs that are reported zero times, once, and twice.
     pub times: [u64; 3],
-    /// The numbers of pairs with each trait, in the order of the table of traits.
+    /// For each trait, the number of pairs that have it, in the order of the table of traits. Each is split as in
+    /// `times`.
     pub traits: Vec<[u64; 3]>,
 }
 

@@ -1,12 +1,12 @@
-//! The forms in which a polynomial can be written, by number.
+//! Polynomials can be written in several forms, which have numbers.
 use super::subject::Subject;
 use serde::{Deserialize, Serialize};
 
-/// One form of a polynomial's formula.
+/// One of the forms in which a polynomial's formula can be written.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Reading {
-    /// The polynomial.
+    /// The polynomial that is written.
     pub subject: Subject,
-    /// The number of the form; 0 is the assignment's.
+    /// The number of the form. 0 is the form in the assignment.
     pub number: usize,
 }

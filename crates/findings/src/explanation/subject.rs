@@ -1,24 +1,24 @@
-//! The polynomials of a detection.
+//! The polynomials that a detection computes.
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The meaning of a polynomial of a detection (collisions.md 2).
+    /// The condition that a detection's polynomial describes (collisions.md 2).
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
     pub enum Subject {
         /// Two particles overlap.
         ParticleOverlap = "particle-particle overlap",
         /// Two particles approach each other.
         ParticleApproach = "particle-particle approach",
-        /// A particle overlaps an edge's line.
+        /// A particle overlaps the line through an edge.
         EdgeOverlap = "particle-edge overlap",
-        /// The closest point is beyond the edge's first end.
+        /// The closest point on the line is after the edge's first endpoint.
         AlphaLow = "particle-edge alpha > 0",
-        /// The closest point is before the edge's second end.
+        /// The closest point on the line is before the edge's second endpoint.
         AlphaHigh = "particle-edge alpha < 1",
         /// A particle and an edge approach each other.
         EdgeApproach = "particle-edge approach",
-        /// A particle overlaps a half-plane's boundary.
+        /// A particle overlaps the boundary of a half-plane.
         HalfPlaneOverlap = "particle-half-plane overlap",
         /// A particle and a half-plane approach each other.
         HalfPlaneApproach = "particle-half-plane approach",

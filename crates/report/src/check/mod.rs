@@ -236,7 +236,7 @@ view! {
         residuals: Residuals = outcome.parity.residuals,
         /// Whether collisions and polynomials are right; null if there is no verdict.
         collisions_passed: Option<bool> = outcome.parity.collisions_passed,
-        /// How often the original would print each of its messages. Messages that it would not print are left out.
+        /// The number of times that the original would print each of its messages. Messages with zero are left out.
         messages: BTreeMap<&'static str, u64> = count_messages(outcome),
     }
 }

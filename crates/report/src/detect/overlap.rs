@@ -128,7 +128,7 @@ const fn negation(is: bool) -> &'static str {
 #[derive(Serialize, schemars::JsonSchema)]
 #[schemars(deny_unknown_fields)]
 pub(super) struct OverlapView {
-    /// Where the nearest point is on the edge, from 0 at its first endpoint to 1 at its second; null if the pair has no
+    /// The place of the nearest point on the edge, from 0 at its first endpoint to 1 at its second; null if there is no
     /// edge.
     alpha: Option<Number>,
     /// The vector from the first object to the nearest point of the second, not normalized.

@@ -150,7 +150,7 @@ view! {
     struct BuildView from build: Build {
         /// Whether the build produced a program.
         succeeded: bool = build.end.is_success(),
-        /// How the build ended, as a sentence.
+        /// The end of the build, as a sentence.
         end: String = strip_control_characters(&words::build(&build.end)),
         /// The output of the build, cut if it is long.
         output: String = clean_output(&build.output),
@@ -231,7 +231,7 @@ view! {
         summary: String = strip_control_characters(&words::summarize(scene)),
         /// The reason why the two rule books judge the scene differently; null if they agree.
         difference: Option<CauseView> = scene.differs.as_ref().map(CauseView::from),
-        /// Where the first difference is, and how many findings of each kind there are, if the hints allow it.
+        /// The place of the first difference, and the number of findings of each kind, if the hints allow it.
         details: Vec<String> = words::list_details(scene).iter().map(|line| strip_control_characters(line)).collect(),
         /// The likely mistakes, the likeliest first, if the hints allow it.
         explanations: Vec<ExplanationView> = scene.settled.iter().map(ExplanationView::from).collect(),

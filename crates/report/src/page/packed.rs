@@ -33,7 +33,7 @@ pub(super) enum Precision {
     Rounded,
 }
 
-/// How the motions are rounded.
+/// The rounding of the motions.
 #[derive(Debug, Clone, PartialEq)]
 pub(super) struct Rounding {
     /// The unit of rounded positions, which is a power of two.

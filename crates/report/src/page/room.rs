@@ -10,7 +10,7 @@ pub(super) const OUTPUT_BUDGET: usize = 200_000;
 /// The part of the size limit that pictures and tables may use before the first motion gets space.
 const PICTURE_BUDGET: usize = PAGE_BUDGET / 3 * 2;
 
-/// How much of a scene's card fits on the page. Each level includes the lower ones.
+/// The part of a scene's card that fits on the page. Each level includes the lower ones.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Room {
     /// Only the text fits.

@@ -9,7 +9,7 @@ use std::{
 };
 use tokio::sync::watch;
 
-/// How a child process ended.
+/// The way in which a child process ended.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum End {
     /// The process exited with this code.

@@ -107,7 +107,7 @@ async fn run_slot<D: JobSource, G: Grader>(source: D, health: Health<G>, stop: C
     }
 }
 
-/// How a job ended, for the report to the source.
+/// The way in which a job ended, for the report to the source.
 enum JobEnding {
     Finished(Box<Outcome>),
     Failed(String),
