@@ -101,6 +101,9 @@ impl Suite {
     }
 }
 
+/// The codes of verdicts without any run: the submission was unusable, or was not built.
+pub const NEVER_RAN: [&str; 2] = ["US", "CE"];
+
 /// The result of a grading. The grader writes it, a worker reports it, and the service shows it.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize, ToSchema)]
 pub struct Outcome {
@@ -145,6 +148,11 @@ pub struct Outcome {
 }
 
 impl Outcome {
+    /// Returns whether a program ran, or traces were compared.
+    pub fn has_run(&self) -> bool {
+        !NEVER_RAN.contains(&self.code.as_str())
+    }
+
     /// Returns the outcome of a job that was tried too often. Because the service is at fault, the outcome has no
     /// points, not zero points. The reason is stored with the job, and only staff see it.
     pub fn judge_error() -> Self {

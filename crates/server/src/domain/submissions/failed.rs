@@ -85,6 +85,7 @@ impl Member {
         let kept = self.kept_results(&results).await?;
         let change = |pair: &[(&Submission, i64)]| {
             let [(later, new), (earlier, old)] = *pair else { return None };
+            later.grade.as_ref().filter(|grade| grade.has_run())?;
             let change = AttemptChange::compare(earlier.number, &kept.get(&old)?.failed, &kept.get(&new)?.failed);
             Some((later.id, change))
         };

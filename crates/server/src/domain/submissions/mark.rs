@@ -34,6 +34,8 @@ pub struct StudentHistory {
 pub struct Request {
     /// The number of the submission on this server.
     pub submission: i64,
+    /// The number of the submission among those of its owner to the assignment.
+    pub number: i64,
     /// The login of the submission's owner.
     pub login: String,
     /// The student's question about the grade.
@@ -58,7 +60,7 @@ pub struct Overview {
 }
 
 from_row! { Overview { students, handed_in, submissions, requests, regrades, slots } }
-from_row! { Request { submission, login, text = "request" } }
+from_row! { Request { submission, number, login, text = "request" } }
 
 fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
     let length = text.chars().count();
@@ -139,7 +141,7 @@ impl Staff {
     /// Fails if there is no such assignment.
     pub async fn requests(&self, slug: &str) -> Result<Vec<Request>, Problem> {
         let (mut transaction, assignment) = self.read_at(slug).await?;
-        let statement = "SELECT mark.submission, mark.request, account.login FROM mark
+        let statement = "SELECT mark.submission, submission.number, mark.request, account.login FROM mark
             JOIN submission ON submission.id = mark.submission JOIN account ON account.id = submission.account
             WHERE submission.assignment = ? AND mark.requested_at > coalesce(mark.marked_at, 0)
             ORDER BY mark.requested_at";

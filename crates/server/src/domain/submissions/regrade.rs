@@ -181,11 +181,12 @@ impl Staff {
         // Later submissions are graded by these settings.
         let before = "SELECT settings FROM assignment WHERE id = ? {for update}";
         let before = transaction.one(before, values![of_regrade.id]).await?.text("settings")?;
-        let settings = Settings::read(&before)?.graded_as(&settings).text();
+        let before = Settings::read(&before)?;
+        let changes = before.grading_changes(&settings).join("; ");
         let statement = "UPDATE assignment SET settings = ?, revision = revision + 1 WHERE id = ?";
-        transaction.execute(statement, values![settings, of_regrade.id]).await?;
+        transaction.execute(statement, values![before.graded_as(&settings).text(), of_regrade.id]).await?;
         campaign::apply(&mut transaction, id, (self.account.id, self.course, of_regrade.id), &reason).await?;
-        self.decide(transaction, of_regrade.id, id, "applied").await?;
+        self.decide(transaction, of_regrade.id, id, "applied", &changes).await?;
         self.show_regrade(slug, id, None).await
     }
 
@@ -199,7 +200,7 @@ impl Staff {
         let mut transaction = self.begin().await?;
         self.lock_open(&mut transaction, &assignment, id).await?;
         campaign::cancel(&mut transaction, id).await?;
-        self.decide(transaction, assignment.id, id, "discarded").await?;
+        self.decide(transaction, assignment.id, id, "discarded", "").await?;
         self.show_regrade(slug, id, None).await
     }
 
@@ -227,10 +228,12 @@ impl Staff {
         assignment: i64,
         id: i64,
         state: &'static str,
+        changes: &str,
     ) -> Result<(), Problem> {
         let statement = "UPDATE campaign SET state = ?, decided_by = ?, decided_at = {now} WHERE id = ?";
         transaction.execute(statement, values![state, self.account.id, id]).await?;
-        self.note(&mut transaction, "regrade", Some(assignment), &format!("regrade {id} {state}")).await?;
+        let text = format!("regrade {id} {state}; {changes}");
+        self.note(&mut transaction, "regrade", Some(assignment), text.trim_end_matches("; ")).await?;
         Ok(self.app.0.notifier.commit(transaction).await?)
     }
 }
@@ -322,6 +325,46 @@ impl FromRow for Change {
     }
 }
 
+/// Collects sentences about values that differ.
+fn differ(found: &mut Vec<String>) -> impl FnMut(&str, String, String) {
+    |what, old, new| {
+        if old != new {
+            found.push(format!("{what}: {old} before, {new} now"));
+        }
+    }
+}
+
+/// Returns the name of rules in settings.
+fn describe_rules(rules: &Option<String>) -> String {
+    match rules.as_deref() {
+        None => "the suite's",
+        Some("parity") => "the original's",
+        Some("both") => "the original's with the fair ones shown",
+        Some(other) => other,
+    }
+    .to_owned()
+}
+
+impl Settings {
+    /// Returns what differs in the way of grading.
+    pub(crate) fn grading_changes(&self, new: &Self) -> Vec<String> {
+        let mut found = Vec::new();
+        let mut differ = differ(&mut found);
+        let suite = |settings: &Self| match settings.suite_archive.as_deref() {
+            Some(digest) => format!("your own ({})", digest.get(..12).unwrap_or(digest)),
+            None => settings.suite.clone(),
+        };
+        let or_suite = |hints: &Option<String>| hints.clone().unwrap_or_else(|| "the suite's".to_owned());
+        differ("suite", suite(self), suite(new));
+        differ("rules", describe_rules(&self.rules), describe_rules(&new.rules));
+        differ("hints", or_suite(&self.hints), or_suite(&new.hints));
+        differ("program", self.program.clone(), new.program.clone());
+        differ("seconds", self.seconds.to_string(), new.seconds.to_string());
+        drop(differ);
+        found
+    }
+}
+
 /// Returns the differences between two gradings of one submission, as sentences.
 fn differences(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
@@ -334,14 +377,9 @@ fn differences(row: &Row) -> Result<Vec<String>, DbError> {
     }
     let read = |text: &str| serde_json::from_str::<Task>(text).ok();
     if let (Some(old), Some(new)) = (read(&old_task), read(&row.text("new_task")?)) {
-        let mut differ = |what: &str, old: String, new: String| {
-            if old != new {
-                why.push(format!("{what} {old} before, {new} now"));
-            }
-        };
-        let or_suite = |value: Option<String>| value.unwrap_or_else(|| "of the suite".to_owned());
+        let mut differ = differ(&mut why);
         differ("suite", old.suite.short(), new.suite.short());
-        differ("rules", or_suite(old.rules), or_suite(new.rules));
+        differ("rules", describe_rules(&old.rules), describe_rules(&new.rules));
         differ("seconds", old.seconds.to_string(), new.seconds.to_string());
         differ("program", old.program, new.program);
     }

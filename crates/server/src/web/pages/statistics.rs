@@ -1,16 +1,13 @@
 //! Statistics of a class's results, and the categories of students.
 use crate::{
     domain::{CountedSubmission, ShortStanding},
-    task::round_points,
+    task::{NEVER_RAN, round_points},
 };
 use std::{cmp::Reverse, collections::BTreeMap};
 
 /// The histogram of points. Reports of `grade` contain the same code.
 #[path = "../../../../report/src/page/histogram.rs"]
 mod histogram;
-
-/// The codes of verdicts for submissions that were never run, because they were unusable or could not be built.
-const NEVER_RAN: [&str; 2] = ["US", "CE"];
 
 /// The categories of students from which staff can choose. Each has its name and its text.
 pub(super) const SECTIONS: [(&str, &str); 6] = [

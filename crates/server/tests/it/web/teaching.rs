@@ -117,6 +117,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     assert!(eve.get(&format!("/c/physics/s/{mended}")).expect(200).text().contains(words));
     assert!(teacher.get("/c/physics/a/m1/students/eve").expect(200).text().contains(words));
     check_beside(&teacher, [eve_handed_in, ids[0], mended]);
+    check_request_and_unusable(&teacher, &eve, mended);
     let page = teacher.get("/c/physics/a/m1/students/ada").expect(200).text();
     assert!(page.contains(">Submission 1<") && page.contains(">Submission 2<") && page.contains("40 of 100"), "{page}");
     teacher.send("PUT", &format!("{}/mark", place(ids[1])), JSON, br#"{"comment": "after all"}"#).expect(200);
@@ -157,6 +158,16 @@ fn check_parts(server: &Server, admin: &Client, teacher: &Client) {
         }
     }
     assert!(teacher.get("/c/physics/a/m1/class?mistake=none").expect(200).text().contains("matches the filter"));
+}
+
+/// A request has the submission's number among those of its owner, and nothing is said of scenes that did not run.
+fn check_request_and_unusable(teacher: &Client, eve: &Client, mended: i64) {
+    eve.post_form(&format!("/c/physics/s/{mended}/request"), "text=Is+it").expect(303);
+    assert!(teacher.get("/c/physics/a/m1/class").expect(200).text().contains("eve, submission 2</a>: Is it"));
+    let unusable = eve.submit("physics", &program("US", 0));
+    eve.wait_for_grade("physics", unusable);
+    let page = eve.get(&format!("/c/physics/s/{unusable}")).expect(200).text();
+    assert!(page.contains("because nothing ran") && !page.contains("o longer right"), "{page}");
 }
 
 /// Two submissions stand beside each other, by number or by login.

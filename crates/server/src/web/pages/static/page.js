@@ -19,8 +19,10 @@ if (state && state.dataset.follow) {
       text = ahead ? `${ahead} submission${ahead === 1 ? "" : "s"} before yours.` : "You are next.";
     if (expected !== undefined) text += ` About ${expected} s.`;
     if (submission.lacks_worker) text += " No worker is connected now, so it has to wait; staff sees this, too.";
-    state.textContent = text;
+    state.querySelector("[role=status]").textContent = text;
+    if (progress) Object.assign(state.querySelector("progress"), { max: progress.all, value: progress.done });
   };
+  look();
   setInterval(look, 2000);
 }
 // Send a form for which a person need not decide anything.
