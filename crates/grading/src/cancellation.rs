@@ -1,11 +1,12 @@
-//! Stopping a grading from outside.
+//! Stops a grading from outside.
 use fosssim_sandbox::Canceller;
 use std::sync::{
     Mutex, MutexGuard, PoisonError,
     atomic::{AtomicBool, AtomicU64, Ordering},
 };
 
-/// A switch that stops a grading from outside, for example on Ctrl-C: no new run begins, and every active run is ended.
+/// A switch that stops a grading from outside, for example when the user presses Ctrl-C. No new run begins then, and
+/// all active runs are ended.
 #[derive(Debug, Default)]
 pub struct Cancellation {
     cancelled: AtomicBool,
@@ -22,13 +23,14 @@ impl Cancellation {
         }
     }
 
-    /// Returns whether grading has been stopped.
+    /// Returns whether the grading has been stopped.
     #[must_use]
     pub fn is_cancelled(&self) -> bool {
         self.cancelled.load(Ordering::SeqCst)
     }
 
-    /// Registers a run until the result is dropped. A run that begins after the stop is ended immediately.
+    /// Registers a run, until the returned value is dropped. If the grading has already been stopped, the run is ended
+    /// immediately.
     pub(super) fn register(&self, canceller: Canceller) -> impl Drop + '_ {
         let number = self.next.fetch_add(1, Ordering::Relaxed);
         self.lock().push((number, canceller.clone()));

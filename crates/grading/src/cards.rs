@@ -1,6 +1,5 @@
-//! Cards: the parts of a report that show a wrong trace in detail. They are drawn while the trace is available, and
-//! stored under the digest of their contents. The journal's result contains their names, so the trace itself need not
-//! be stored.
+//! Cards: the parts of a report that show a wrong trace in detail. A card is drawn while the trace is available, and
+//! stored under the digest of its contents. Its name is stored with the result, so the trace itself need not be stored.
 use super::{config::Hints, result::SceneResult};
 use fosssim_evidence::StepRuling;
 use fosssim_files::Place;
@@ -9,54 +8,54 @@ use fosssim_mistakes::{diagnose::Explanation, together::told::cut};
 use fosssim_model::scene::Scene;
 use std::io;
 
-/// The zstd level of cards. A higher level gains little, because most of a card is packed already.
+/// The compression level of cards for zstd. A higher level gains little, because most of a card is compressed already.
 const COMPRESSION_LEVEL: i32 = 3;
 
-/// The maximum size of a card, in bytes; a larger file is not a card.
+/// The maximum size of a card, in bytes. Larger files are not cards.
 const MAX_CARD_BYTES: u64 = 64 << 20;
 
-/// A judged trace that is still available.
+/// A trace that was judged and is still available, for a card.
 #[derive(Debug, Clone, Copy)]
 pub struct JudgedTrace<'a> {
-    /// The scene.
+    /// The scene that the trace belongs to.
     pub scene: &'a Scene,
-    /// The scene's name, as commands accept it.
+    /// The name of the scene, in the form that commands accept.
     pub name: &'a str,
     /// The likely mistakes that the reader may see.
     pub explanations: &'a [Explanation],
-    /// The outcome of judging, which contains more than the reader may see.
+    /// The outcome of judging. It contains more than the reader may see.
     pub outcome: &'a Outcome,
-    /// The rulings of the rule books on each step.
+    /// The rulings on each step by the rule books.
     pub rulings: &'a [StepRuling],
-    /// The trace or its beginning.
+    /// The whole trace, or its beginning.
     pub trace: &'a [u8],
-    /// Whether `trace` is only the beginning.
+    /// Whether `trace` contains only the beginning of the trace.
     pub is_cut: bool,
-    /// The rule books that judged.
+    /// The rule books by which the trace was judged.
     pub rules: Rules,
-    /// The reader's hints.
+    /// The level of detail that the reader may see.
     pub hints: Hints,
 }
 
-/// A function that draws the card of a trace, or returns `None` if there is nothing to show.
+/// A function that draws the card of a trace; `None` if there is nothing to show.
 pub type Draw<'a> = dyn Fn(&JudgedTrace<'_>) -> Option<String> + Sync + 'a;
 
-/// The folder for cards, and the function that draws them.
+/// The folder in which cards are stored, and the function that draws them.
 #[derive(Clone, Copy)]
 pub struct Cards<'a> {
-    /// The folder, which is created when it is needed.
+    /// The folder in which cards are stored. It is created when it is needed.
     pub folder: &'a Place,
     /// The function that draws a card.
     pub draw: &'a Draw<'a>,
-    /// Whether cards for students are made, too.
+    /// Whether cards for students are drawn as well.
     pub for_students: bool,
 }
 
-/// The names of a trace's cards: for staff, and for students if their hints are lower.
+/// The names of a trace's two cards: the one for staff, and the one for students, if they may see less.
 pub type CardNames = (Option<String>, Option<String>);
 
 impl Cards<'_> {
-    /// Draws the cards of a trace and stores them. `students` are the hints for students.
+    /// Draws the cards of a trace and stores them. `students` is the level of detail for students.
     ///
     /// # Errors
     ///
@@ -77,7 +76,7 @@ impl Cards<'_> {
         (self.draw)(judged).map(|card| store(self.folder, &card)).transpose()
     }
 
-    /// Returns whether a card of an earlier result is missing; `students` are the hints for students.
+    /// Returns whether a card is missing that an earlier result names. `students` is the level of detail for students.
     pub(super) fn lacks_card(&self, result: &SceneResult, students: Hints) -> bool {
         let is_missing = |name: &String| !file(self.folder, name).is_file();
         let shows_students = self.for_students && students > Hints::None;
@@ -87,7 +86,7 @@ impl Cards<'_> {
     }
 }
 
-/// Stores a card in a folder; returns its name.
+/// Stores a card in a folder, and returns the card's name.
 ///
 /// # Errors
 ///
@@ -96,20 +95,20 @@ pub fn store(folder: &Place, card: &str) -> io::Result<String> {
     let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
     let path = file(folder, &name);
     if !path.is_file() {
-        // The file is renamed when it is complete, because another job may write the same card.
+        // The file gets its name after it is complete, because another job may write the same card.
         path.write(&zstd::encode_all(card.as_bytes(), COMPRESSION_LEVEL)?)?;
     }
     Ok(name)
 }
 
-/// Reads a stored card from a folder.
+/// Reads a stored card from a folder; `None` if there is none, or if it was changed.
 #[must_use]
 pub fn read(folder: &Place, name: &str) -> Option<String> {
     let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
     let (packed, _) = is_name.then(|| file(folder, name).open_file(MAX_CARD_BYTES).ok()).flatten()?;
     let mut text = String::new();
     io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, MAX_CARD_BYTES), &mut text).ok()?;
-    // A file whose digest does not match its name was changed, and is ignored.
+    // The digest of a card is its name. If they differ, the file was changed and is ignored.
     (blake3::hash(text.as_bytes()).to_hex()[..32] == *name).then_some(text)
 }
 

@@ -1,4 +1,4 @@
-//! Fake programs for tests, which the sandbox runs instead of real ones. The name of each says what it does.
+//! Fake programs for tests. They run instead of real programs in the sandbox. The name of each says what it does.
 use super::{
     batch,
     cancellation::Cancellation,
@@ -24,7 +24,7 @@ const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"fu
                      scenes = [\"asset:SimpleTests/*\"]\n[[group]]\nname = \"second\"\npoints = 5\ncredit = \"all\"\n\
                      scenes = [\"asset:PenaltyTests/*\"]\n";
 
-/// The limit of trace bytes that correct programs of the small plan do not exceed.
+/// A number of bytes that traces of correct programs do not exceed, for the scenes of the small plan.
 pub(super) const SMALL_TRACE: usize = 1 << 20;
 
 pub(super) fn small_plan() -> Plan {
@@ -37,7 +37,7 @@ fn scene(job: &Job) -> Scene {
     fosssim_model::scene::read("scene.xml", &xml).expect("a sound scene").scene
 }
 
-/// Returns the first steps of a scene's right trace.
+/// Returns the first `steps` steps of the right trace.
 fn trace(scene: &Scene, steps: u32) -> Vec<u8> {
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
@@ -53,7 +53,7 @@ pub(super) fn right_trace(job: &Job) -> Vec<u8> {
     trace(&scene, scene.step_count())
 }
 
-/// Records whether the failsafe moves a zone.
+/// An observer that records whether the failsafe moves a zone.
 struct ZonesMoved(bool);
 
 impl Observer for ZonesMoved {
@@ -62,7 +62,7 @@ impl Observer for ZonesMoved {
     }
 }
 
-/// Runs the fake program that the job's program names.
+/// Runs the fake program that has the name of the job's program.
 fn run_fake(job: &Job) -> FakeRun {
     match job.program.file_name().and_then(|name| name.to_str()) {
         Some("right") => FakeRun::wrote(right_trace(job)),
@@ -80,7 +80,7 @@ fn run_fake(job: &Job) -> FakeRun {
         Some("unwritten") => {
             let (scene, trace) = (scene(job), right_trace(job));
             let layout = Layout::for_scene(&scene);
-            // The lists of the first record are empty.
+            // In the first record, the lists are empty.
             let record = &trace[..layout.state_bytes() + 8];
             FakeRun::wrote(record.repeat(usize::try_from(layout.records()).expect("small")))
         }

@@ -1,7 +1,7 @@
-//! Derives the verdict on one scene from the program's end and the trace.
+//! Decides the verdict on one scene, from the program's end and the trace.
 //!
-//! The functions are pure: they use no processes and no files. The worse of the two counts: a crash is reported even if
-//! the trace is right, and a wrong trace even if the program ended well.
+//! The functions are pure: they use no processes and no files. The worse fault counts. A crash is reported even if the
+//! trace is right, and a wrong trace even if the program ended well.
 use super::{
     config::{Hints, RunLimits},
     disclosure::Disclosure,
@@ -28,7 +28,7 @@ use std::{
 #[cfg(target_os = "linux")]
 const MAX_OUTPUT_BYTES: usize = 4096;
 
-/// The end of a program, its measurements, and its output.
+/// The way in which a program ended, its measurements, and its output.
 #[derive(Debug, Clone)]
 pub struct ProgramRun {
     ended: RunEnd,
@@ -38,7 +38,7 @@ pub struct ProgramRun {
 }
 
 impl ProgramRun {
-    /// Returns the values for a trace without a program, as if a program had written the trace and ended well.
+    /// Returns the values for a trace that no program wrote. They are the same as for a program that ended well.
     #[must_use]
     pub fn not_run() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
@@ -71,23 +71,23 @@ impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
 /// The facts about one run of a program.
 #[derive(Debug, Clone, Copy)]
 pub struct Run<'a> {
-    /// The scene.
+    /// The scene that was run.
     pub task: &'a SceneTask,
-    /// The program's end, measurements and output.
+    /// The way in which the program ended, its measurements, and its output.
     pub program: &'a ProgramRun,
-    /// The judged trace.
+    /// The outcome of judging the trace.
     pub judged: &'a Outcome,
-    /// The number of trace bytes that arrived.
+    /// The number of bytes of the trace that were read.
     pub trace_bytes: u64,
     /// The rule books. The official one decides the verdict, the findings and the number of right steps.
     pub rules: Rules,
-    /// The highest hints of any reader.
+    /// The level of detail for the reader who may see most.
     pub hints: Hints,
-    /// The limits of the run.
+    /// The limits that apply to the run.
     pub limits: &'a RunLimits,
 }
 
-/// Counts the bytes of a trace while they are read, from a program or a packed file.
+/// A reader that counts the bytes of a trace from a program or from a compressed file.
 pub(super) struct CountedReader<'a, R> {
     pub(super) inner: R,
     pub(super) bytes: &'a AtomicU64,
@@ -104,14 +104,14 @@ impl<R: Read> Read for CountedReader<'_, R> {
 /// The depth of the search for explanations.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum SearchDepth {
-    /// Only the first value that is not finite is searched, which is quick.
+    /// Only the first value that is not finite is searched. This is quick.
     NotFinite,
-    /// The first value that is not finite and likely mistakes are searched.
+    /// The first value that is not finite is searched, and then likely mistakes.
     Mistakes,
 }
 
 impl SearchDepth {
-    /// Returns the explanations of a trace.
+    /// Searches for explanations of a trace.
     #[must_use]
     pub fn explain(self, scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
         match self {
@@ -121,14 +121,15 @@ impl SearchDepth {
     }
 }
 
-/// Returns the result of one scene, with everything that any reader may see. `explain` finds the likely mistake. It is
-/// not called if no reader may see it, if the fair rules find no fault, or if the program's end is the worse fault.
+/// Returns the result of one scene, with everything that any reader may see. The function `explain` searches for the
+/// likely mistake. It is not called if no reader may see the mistake, if the fair rules find no fault, or if the way in
+/// which the program ended is the worse fault.
 #[must_use]
 pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanation>) -> SceneResult {
     let Run { program, judged, rules, hints, .. } = *run;
     let of_program = verdict_of_program(&program.ended, judged);
     let (of_trace, trace_says) = verdict_of_trace(run);
-    // A stopped program leaves an incomplete trace. Reporting both would count one fault twice.
+    // If a program was stopped, its trace is incomplete. Reporting both would count the same fault twice.
     let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
     let blames_program = of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace);
     let (verdict, reason) = match blames_program || of_program > of_trace {
@@ -160,8 +161,8 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanat
     result
 }
 
-/// Returns the size that a complete trace of the scene has if all its lists are empty; `None` if the reference's lists
-/// are empty, too.
+/// Returns the size of a complete trace of the scene whose lists are all empty; `None` if the reference's lists are
+/// empty as well.
 fn count_empty_trace_bytes(scene: &Scene) -> Option<u64> {
     let layout = Layout::for_scene(scene);
     let has_pairs = scene.particles.len() > 1 || !(scene.particles.is_empty() || scene.half_planes.is_empty());
@@ -170,8 +171,8 @@ fn count_empty_trace_bytes(scene: &Scene) -> Option<u64> {
     (layout.has_polynomials && layout.steps > 0 && has_pairs).then(|| layout.records() * record)
 }
 
-/// Returns the verdict by the program's end alone. The number of bytes after the last record does not matter: a program
-/// that was stopped because of them counts as ended, because the judge had all records.
+/// Returns the verdict on how the program ended. If a program was stopped because it wrote bytes after the last record,
+/// it counts as ended well, because all records were judged.
 fn verdict_of_program(ended: &RunEnd, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {
@@ -187,7 +188,7 @@ fn verdict_of_program(ended: &RunEnd, judged: &Outcome) -> Verdict {
     }
 }
 
-/// Returns the progress of a program's trace, and the limit that stopped the program.
+/// Returns how far a program's trace reaches, and the limit that stopped the program, if any.
 fn find_progress(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> ProgramProgress {
     let limit = match ended {
         RunEnd::CpuLimit => Some(Limit::Time(limits.cpu)),
@@ -198,10 +199,10 @@ fn find_progress(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> Progra
     ProgramProgress { limit, steps: judged.steps_judged }
 }
 
-/// Returns the verdict by the trace alone, with its reason.
+/// Returns the verdict on the trace, and the reason for it. How the program ended does not matter here.
 fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
     let Run { judged, rules, trace_bytes, .. } = *run;
-    // A step without collision handling may have no next state; the trace is still complete.
+    // A step without collision handling may have no result, but the trace is still complete.
     let is_complete = !matches!(judged.stop, Some(Stop::Trace { .. }));
     let is_empty = is_complete && count_empty_trace_bytes(&run.task.scene) == Some(trace_bytes);
     if is_empty && judged.ruling(rules.official()) != Ruling::Accepted {
@@ -240,7 +241,7 @@ fn find_fault(judged: &Outcome, rules: Rules) -> WrongTrace {
     }
 }
 
-/// Returns the reason why the fair rules reject a trace that the original reads to its end.
+/// Returns the reason why the fair rules reject a trace as a whole, although the original reads it to its end.
 fn fair_refusal(judged: &Outcome) -> BadTrace {
     match judged.fair.as_ref().and_then(|fair| fair.refusal) {
         Some(FairRefusal::TrailingBytes) => BadTrace::TrailingBytes,
@@ -248,7 +249,7 @@ fn fair_refusal(judged: &Outcome) -> BadTrace {
     }
 }
 
-/// Returns the first bytes of the output as text; bytes that are not UTF-8 are replaced.
+/// Returns the first `most` bytes of the output as text. Bytes that are not UTF-8 are replaced.
 #[cfg(target_os = "linux")]
 pub(super) fn truncate(printed: &[u8], most: usize) -> String {
     let mut text = String::from_utf8_lossy(&printed[..printed.len().min(most)]).into_owned();

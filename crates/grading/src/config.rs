@@ -1,7 +1,7 @@
-//! `suite.toml`: the scenes to grade, with limits, points and visibility.
+//! Reads `suite.toml`, which contains the scenes to grade, the limits, the points and the visibility.
 //!
-//! Reading reports all problems together, each with line and column. The file's grammar is documented by the template
-//! that `suite init` writes ([`template`]).
+//! All problems are reported together, each with its line and column. The template that `suite init` writes documents
+//! the keys of the file ([`template`]).
 use super::{
     near::find_closest,
     shape::{self, Problem, RawBuild, RawGroup, RawLimits, RawMistake, RawSpeed, RawSuite},
@@ -23,103 +23,106 @@ pub use super::{
     shape::{Credit, POINTS_RANGE},
 };
 
-/// A validated suite; its scenes are patterns until they are found (see [`Plan`](super::plan::Plan)).
+/// A suite that was read from its file and is valid. Its scenes are patterns until the scenes are found (see
+/// [`Plan`](super::plan::Plan)).
 #[derive(Debug, Clone, PartialEq)]
 pub struct Suite<Scene = Pattern> {
-    /// The suite's name, shown in reports.
+    /// The name of the suite, which reports show.
     pub name: String,
-    /// The milestone whose programs the suite grades, if it names one.
+    /// The milestone whose programs the suite grades, if the file names one.
     pub milestone: Option<Assignment>,
-    /// The command that runs the program; `{program}`, `{scene}` and `{trace}` are replaced.
+    /// The command that runs a program. `{program}`, `{scene}` and `{trace}` in it are replaced.
     pub run: Vec<String>,
-    /// The rule books that judge; the official one gives verdicts and points.
+    /// The rule books by which traces are judged. The official one gives verdicts and points.
     pub rules: Rules,
-    /// The hints for staff; by default all hints.
+    /// The level of detail for staff. By default they see everything.
     pub staff_hints: Hints,
-    /// Whether students see the output of their programs even if some groups are hidden from them.
+    /// Whether students see the output of their programs even if the suite has groups that are hidden from them.
     pub show_output: bool,
-    /// The build step.
+    /// The command that builds submissions; `None` if submissions are programs.
     pub build: Option<BuildStep>,
-    /// Limits of each run.
+    /// The limits that apply to each run.
     pub limits: RunLimits,
-    /// The conditions for skipping the rest of a submission.
+    /// The limits after which the remaining scenes of a submission are skipped.
     pub patience: Patience,
     /// The course's notes on mistakes, by the mistakes' keys.
     pub notes: BTreeMap<String, CourseNote>,
-    /// The groups.
+    /// The groups of scenes, in the order of the file.
     pub groups: Vec<Group<Scene>>,
 }
 
-/// A group of scenes.
+/// A group of scenes, which are graded together.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Group<Scene = Pattern> {
-    /// The group's name.
+    /// The name of the group.
     pub name: String,
-    /// The points, the credit and the visibility of the group.
+    /// The points that the group is worth, the rule for partial success, and the readers of its results.
     pub marking: Marking,
-    /// The course's note on the group.
+    /// The course's note on the group, if there is one.
     pub note: Option<CourseNote>,
-    /// The group's scenes, in the order of the patterns and alphabetically within each pattern.
+    /// The group's scenes, in the order of the patterns. The scenes of one pattern are in alphabetical order.
     pub scenes: Vec<Scene>,
 }
 
-/// A pattern of scenes: `asset:Group/*` for embedded ones, otherwise files relative to the suite's folder.
+/// A pattern that selects scenes: `asset:Group/*` for embedded scenes, or a path of files relative to the suite's
+/// folder.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Pattern {
-    /// The pattern's text.
+    /// The text of the pattern.
     pub text: String,
-    /// The pattern's position in the file, for messages about patterns that match nothing.
+    /// The position of the pattern in the file, for messages about patterns that match nothing.
     pub at: Position,
 }
 
-/// The settings of a group that decide its points.
+/// The settings of a group that concern its points and its visibility.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Marking {
-    /// The points of the whole group, which its scenes share evenly.
+    /// The points that the whole group is worth. They are shared evenly among its scenes.
     pub points: f64,
-    /// The rule for partial success.
+    /// The rule for partial success within the group.
     pub credit: Credit,
-    /// The visibility of the group's results.
+    /// The readers who see the results of the group, and when.
     pub visibility: Visibility,
-    /// The hints for students about the group's scenes.
+    /// The level of detail for students about the group's scenes.
     pub hints: Hints,
-    /// Whether the points are extra: shown next to the others, but not counted in the sum or the maximum.
+    /// Whether the points are extra points. They are shown with the others, but count in neither the sum nor the
+    /// maximum.
     pub extra: bool,
-    /// The points for speed, given if all scenes are accepted.
+    /// The points for speed, which a submission can get only if all scenes of the group are accepted.
     pub speed: Option<SpeedMarking>,
 }
 
-/// The build of the sources.
+/// The build of a submission that consists of sources.
 #[derive(Debug, Clone, PartialEq)]
 pub struct BuildStep {
-    /// The command, run in a copy of the submission's folder.
+    /// The command, which is run in a copy of the submission's folder.
     pub command: Vec<String>,
-    /// The built program's path, relative to the folder.
+    /// The path of the program that the build produces, relative to the folder.
     pub program: String,
-    /// The limit of wall time.
+    /// The limit on the wall time of the build.
     pub wall: Duration,
-    /// The limit of memory, in bytes.
+    /// The limit on the memory of the build, in bytes.
     pub memory: u64,
 }
 
-/// Limits of one run.
+/// The limits that apply to one run of a program.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct RunLimits {
-    /// The limit of processor time.
+    /// The limit on processor time.
     pub cpu: Duration,
-    /// The limit of wall time.
+    /// The limit on wall time.
     pub wall: Duration,
-    /// The limit of address space, in bytes.
+    /// The limit on address space, in bytes.
     pub memory: u64,
-    /// The limit of bytes for standard output and for standard error, each.
+    /// The limit on standard output, and separately on standard error, in bytes.
     pub output: u64,
-    /// The limit of the trace's size, in bytes.
+    /// The limit on the size of the trace, in bytes.
     pub trace: u64,
-    /// The limit of bytes in the working folder.
+    /// The limit on the bytes of all files in the working folder.
     pub folder: u64,
-    /// The limit of files in the working folder.
+    /// The limit on the number of files in the working folder.
     pub files: u64,
-    /// Whether programs that were built with a sanitizer may run. Their address space cannot be limited.
+    /// Whether programs that were built with a sanitizer may run. The address space of such programs cannot be limited.
     pub sanitizers: bool,
 }
 
@@ -138,12 +141,12 @@ impl Default for RunLimits {
     }
 }
 
-/// The limits after which the rest of a submission is skipped.
+/// The limits after which the remaining scenes of a submission are skipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Patience {
-    /// The number of consecutive scenes that may exceed a limit of time, memory or output; 0 for any number.
+    /// The number of consecutive scenes that may exceed a limit of time, memory or output. With 0 there is no limit.
     pub time_outs: u32,
-    /// The wall time of all runs of a submission, including judging.
+    /// The limit on the wall time of all runs of a submission together, which includes judging.
     pub total: Duration,
 }
 
@@ -158,11 +161,12 @@ impl Default for Patience {
 pub struct Position {
     /// The line number, from 1.
     pub line: usize,
-    /// The column number in characters, from 1.
+    /// The number of the character in its line, from 1.
     pub column: usize,
 }
 
-/// Counts lines and columns from the last position, so that many positions of a long line take no longer than one.
+/// Computes lines and columns, counting from the last position. Many positions in a long line then take no longer than
+/// one.
 struct PositionCounter<'a> {
     text: &'a str,
     offset: usize,
@@ -194,25 +198,26 @@ impl std::fmt::Display for Position {
     }
 }
 
-/// The error of a suite file with problems.
+/// The problems of a suite file that cannot be used.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[error("{}", problems.iter().map(|(at, text)| format!("{at}: {text}")).collect::<Vec<_>>().join("\n"))]
 pub struct SuiteError {
-    /// The problems with their positions, in the order of the file.
+    /// Each problem with its position, in the order of the file.
     pub problems: Vec<(Position, String)>,
 }
 
 /// Reads and validates a suite.
 ///
 /// # Errors
-/// Fails with all problems, each with line and column: syntax, unknown keys, values out of range, groups without
-/// scenes.
+/// Fails with all problems and their positions. Problems are wrong syntax, unknown keys, values out of range, and
+/// groups without scenes.
 pub fn read(text: &str) -> Result<Suite, SuiteError> {
     let (suite, problems) = read_all(text);
     if problems.is_empty() { Ok(suite) } else { Err(SuiteError { problems }) }
 }
 
-/// Reads a suite and all of its problems, in order; invalid parts are omitted or get their defaults.
+/// Reads a suite and returns all problems, in the order of the file. Invalid parts are left out or get their default
+/// values.
 pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     let (table, mut problems, is_readable) = shape::check_shape(text);
     let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
@@ -270,7 +275,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     (suite, problems)
 }
 
-/// Returns the command line of the course's protocol.
+/// Returns the command line that the course prescribes for programs.
 pub(super) fn default_run() -> Vec<String> {
     ["{program}", "-s", "{scene}", "-d", "0", "-o", "{trace}"].map(str::to_owned).into()
 }
@@ -340,7 +345,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
     }
 }
 
-/// Reads a group; `hints` apply to a group without its own.
+/// Reads a group. `hints` is the level of detail for a group that does not set its own.
 fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw: RawGroup, hints: Hints) -> Group {
     let name = raw.name.as_ref().map(|name| name.get_ref().clone()).unwrap_or_default();
     if let Some(empty) = raw.name.filter(|name| name.get_ref().trim().is_empty()) {
@@ -363,7 +368,7 @@ fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw
     Group { name, scenes: scenes.map(pattern).collect(), marking, note }
 }
 
-/// Reads the course's note on a mistake of the catalogue, or on an explanation that names no mistake.
+/// Reads the course's note on a mistake of the catalogue, or on a finding that is not in the catalogue.
 fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String, CourseNote)> {
     let key = raw.key?;
     let word = key.get_ref().as_str();
@@ -379,7 +384,7 @@ fn read_mistake(problems: &mut Vec<Problem>, raw: RawMistake) -> Option<(String,
     Some((key.into_inner(), note))
 }
 
-/// Reads a note of the course; `None` if it is empty.
+/// Reads a course's note; `None` if it is empty.
 fn read_note(
     problems: &mut Vec<Problem>,
     text: Option<String>,
@@ -402,7 +407,7 @@ fn read_speed(problems: &mut Vec<Problem>, raw: Spanned<RawSpeed>) -> SpeedMarki
     let raw = raw.into_inner();
     let (full_at, none_at) = match (raw.full_at, raw.none_at, raw.second) {
         (Some(full_at), Some(none_at), None) => (full_at, none_at),
-        // The course gives full points up to one second, and no points from one minute.
+        // In the course, a program gets full points up to one second, and no points from one minute on.
         (None, None, Some(second)) => (second, 60.0 * second),
         _ => {
             let text = "speed needs full_at and none_at, or second alone";

@@ -1,4 +1,4 @@
-//! Runs one program on one scene in the sandbox and judges the trace that it leaves.
+//! Runs a program on a scene in the sandbox, and judges the trace that it writes.
 use super::{
     cancellation::Cancellation,
     cards::{Cards, JudgedTrace},
@@ -34,44 +34,44 @@ use std::{
 const SCENE_FILE: &str = "scene.xml";
 const TRACE_FILE: &str = "trace.bin";
 
-/// The number of attempts before an error of the grader or the machine is reported.
+/// The number of attempts after which an error of the grader or the machine is reported.
 const MAX_ATTEMPTS: u32 = 2;
 
-/// The way in which scenes are run.
+/// Runs programs on scenes, with these settings.
 #[derive(Clone, Copy)]
 pub struct Runner<'a> {
-    /// The sandbox for the runs.
+    /// The sandbox in which programs run.
     pub backend: &'a Backend,
-    /// The command line; `{program}`, `{scene}` and `{trace}` are replaced.
+    /// The command line of programs. `{program}`, `{scene}` and `{trace}` in it are replaced.
     pub run: &'a [String],
-    /// Limits of each run.
+    /// The limits that apply to each run.
     pub limits: &'a RunLimits,
-    /// The rule books for judging.
+    /// The rule books by which traces are judged.
     pub rules: Rules,
-    /// The hints for staff. The result contains only what these hints allow.
+    /// The level of detail for staff. Results contain no more than this.
     pub hints: Hints,
-    /// The hints for students about the scene.
+    /// The level of detail for students about the scene.
     pub student_hints: Hints,
-    /// Whether traces are judged against the recordings instead of the reference simulator.
+    /// Whether traces are compared with recordings instead of a simulation of the reference.
     pub recorded: bool,
-    /// The source of working folders for the runs.
+    /// The source of working folders in which programs run.
     pub folders: &'a Folders,
     /// The switch that stops all runs.
     pub cancellation: &'a Cancellation,
-    /// The folder for traces on which the grader failed; created when it is needed.
+    /// The folder for traces on which the grader failed. It is created when it is needed.
     pub faults: &'a Place,
-    /// The file to which a trace that is not accepted is saved, if requested.
+    /// The file in which a trace is saved if it is not accepted; `None` if this was not requested.
     pub trace: Option<&'a Place>,
-    /// The storage of cards, which are drawn for all traces with findings, if requested.
+    /// The storage of cards, if they were requested. Cards are drawn for all traces with findings.
     pub cards: Option<Cards<'a>>,
-    /// The sums of the runs' processor times, for `--timings`.
+    /// The sums of the processor times of all runs, for `--timings`.
     pub timings: Option<&'a Timings>,
 }
 
 impl Runner<'_> {
     /// Runs `program` on a scene in a new working folder, which is removed afterwards, and judges the trace. After an
-    /// error of the grader or the machine it tries once more; after a second error the verdict is a judge error.
-    /// `on_step` receives the number of every judged step.
+    /// error of the grader or the machine, the program is run once more. If there is a second error, the verdict is a
+    /// judge error. `on_step` receives the number of every judged step.
     #[must_use]
     pub fn grade(&self, program: &StagedProgram, task: &SceneTask, on_step: &mut dyn FnMut(u32)) -> SceneResult {
         let mut attempt = 1;
@@ -105,7 +105,8 @@ impl Runner<'_> {
         }
         watch.end(RunPart::Start);
         let (trace, trace_bytes) = self.open_trace(&left)?;
-        // The trace is kept outside the judging code, so that it can be saved for developers if that code panics.
+        // The trace is kept outside of the code that judges it. If that code panics, the trace can still be saved for
+        // developers.
         let mut kept = KeptTrace::new(MAX_KEPT_BYTES);
         let mut rulings = StepRulings::default();
         let mut told = StepReporter(on_step);
@@ -166,11 +167,12 @@ impl Runner<'_> {
         Ok(result)
     }
 
-    /// Runs `program` on a scene as for grading, and returns at most `keep` bytes of its trace, unjudged.
+    /// Runs `program` on a scene as in a grading, but does not judge its trace. Returns at most `keep` bytes of the
+    /// trace.
     ///
     /// # Errors
     ///
-    /// Fails if the grader or the machine fails, with the reason as text.
+    /// Fails if the grader or the machine fails. The error is the reason, as text.
     pub fn collect(
         &self,
         program: &Path,
@@ -186,8 +188,8 @@ impl Runner<'_> {
         Ok((kept, outcome))
     }
 
-    /// Opens the trace that a program left, and returns its length: a regular file, read up to the limit. Any other
-    /// entry counts as no trace.
+    /// Opens the trace that a program wrote, and returns its length. The trace must be a regular file and is read up to
+    /// the limit. Anything else counts as no trace.
     fn open_trace(&self, left: &LeftFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
         match left.regular_file(TRACE_FILE, u64::MAX) {
             Ok((file, length)) => Ok((Box::new(file.take(self.limits.trace)), length.min(self.limits.trace))),
@@ -198,7 +200,7 @@ impl Runner<'_> {
         }
     }
 
-    /// Starts `program` on a scene, in a new working folder that lives as long as the result.
+    /// Starts `program` on a scene in a new working folder, which exists as long as the returned value.
     fn start(
         &self,
         program: &Path,
@@ -218,7 +220,7 @@ impl Runner<'_> {
         Ok((self.backend.start(&job).map_err(|error| error.to_string())?, folder))
     }
 
-    /// Judges the trace of a program. The rest of the trace is also read, so that the whole trace is kept.
+    /// Judges the trace of a program. The trace is always read to its end, so that all of it is kept.
     fn judge_trace(
         &self,
         program: &StagedProgram,
@@ -231,7 +233,7 @@ impl Runner<'_> {
             fault::inject(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
-        // An error of reading here was already reported by the judge.
+        // The judge has already reported an error of reading here.
         let _ = io::copy(&mut kept.reader(trace), &mut io::sink());
         judged
     }
@@ -282,7 +284,8 @@ impl Runner<'_> {
     }
 }
 
-/// Returns the result of a judged run with its explanations, or the panic that the search caused.
+/// Returns the result of a run that was judged, with its explanations. If the search for explanations panics, returns
+/// the panic.
 fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
     let mut explaining = catch_panic(|| fault::inject(Activity::Explaining, program)).err();
     let explain = |look: SearchDepth| {

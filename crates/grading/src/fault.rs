@@ -1,5 +1,5 @@
-//! Handles scenes on which the grader failed. Each becomes a judge error, and its trace is saved for the developer who
-//! fixes the grader.
+//! Handles scenes on which the grader failed. The verdict is a judge error, and the trace is saved for the developer
+//! who repairs the grader.
 use super::{
     guard::Fault,
     result::{Activity, Failure, SavedTrace, SceneResult},
@@ -20,7 +20,7 @@ pub(super) fn result(task: &SceneTask, folder: &Place, stage: Activity, fault: &
     task.failure_result(Failure::Panic { stage: Some(stage), fault: fault.to_string(), trace: Some(kept) })
 }
 
-/// Writes a trace into the folder, under the scene's name and the trace's digest.
+/// Writes a trace into the folder. The file's name contains the scene's name and the trace's digest.
 fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     let scene: String =
         task.name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
@@ -30,7 +30,7 @@ fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     Ok(path.path())
 }
 
-/// Makes the grader fail in tests: a program with this name causes a panic in this stage.
+/// In tests, makes the grader fail: a program with this name causes a panic in this activity.
 #[cfg(test)]
 pub(super) fn inject(stage: Activity, program: &Path) {
     let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();

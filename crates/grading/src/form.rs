@@ -1,25 +1,26 @@
-//! The serialized form of results, which is used wherever results are stored.
+//! The form in which results are stored.
 //!
 //! [`VERSION`] must be increased if the meaning of any part of a result changes, here or in `fosssim_findings`.
 use super::{key::Key, result::SceneResult};
 use serde::{Deserialize, Serialize};
 
-/// The version of the form.
+/// The version of the form in which results are stored.
 const VERSION: u32 = 6;
 
-/// A stored result. The form's version comes before everything that depends on it.
+/// A stored result. The version of the form comes first in it, because everything else depends on the version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub struct Entry {
     form: u32,
-    /// The key of the result.
+    /// The key under which the result is found.
     pub key: Key,
-    /// The submission's name, which is only for people.
+    /// The name of the submission. It is only for people who read the file.
     pub submission: String,
     /// The result.
     pub result: SceneResult,
 }
 
-/// Returns the line that stores a result under its key, with a line end; the submission's name is only for people.
+/// Returns the line that stores a result under its key, with a line feed at its end. The submission's name is only for
+/// people who read the file.
 #[must_use]
 pub fn format_line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
     let (key, submission, result) = (key.clone(), submission.to_owned(), result.clone());
@@ -28,7 +29,7 @@ pub fn format_line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8>
     line
 }
 
-/// Reads the entry of a line; `None` if the line is damaged or of another version.
+/// Reads the entry in a line; `None` if the line is damaged or has another version.
 #[must_use]
 pub fn read_line(line: &[u8]) -> Option<Entry> {
     serde_json::from_slice(line).ok().filter(|entry: &Entry| entry.form == VERSION)

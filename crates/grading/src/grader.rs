@@ -1,8 +1,8 @@
-//! Grades one submission; every kind of grading uses this module.
+//! Grades one submission. Every kind of grading uses this module.
 //!
-//! A single submission, a class and an autograder all go through a `SubmissionGrading`, scene by scene. A caller with
-//! several jobs distributes the scenes among them ([`batch`](super::batch)). A result is stored before it is reported;
-//! a scene with a result is not run again. A panic in the work on one scene is a judge error of that scene.
+//! A single submission, a class and an autograder all use a `SubmissionGrading`, scene by scene. A caller with several
+//! jobs distributes the scenes among them ([`batch`](super::batch)). A result is stored before it is reported. A scene
+//! that has a result is not run again. If the work on a scene panics, the verdict on that scene is a judge error.
 use super::{
     cancellation::Cancellation,
     cards::Cards,
@@ -38,14 +38,14 @@ use std::{
 /// A submission to grade.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Submission {
-    /// The submission's name in reports.
+    /// The name of the submission in reports.
     pub name: String,
-    /// The path of the program or archive, or of the folder of sources if the plan builds.
+    /// The path of the program or archive. If the plan builds submissions, the path of the folder with the sources.
     pub path: PathBuf,
-    /// The name of the program or archive in the folder `path`, if the folder's contents are not trusted. Links are not
-    /// followed.
+    /// The name of the program or archive in the folder `path`, if the contents of that folder are not trusted. Links
+    /// in it are not followed.
     pub program: Option<String>,
-    /// The identity of the program's file at the time of the search for submissions.
+    /// The identity that the program's file had when submissions were searched.
     pub file: Option<OneFile>,
 }
 
@@ -59,53 +59,53 @@ impl Submission {
 /// The options of a grading.
 #[derive(Debug, Clone, Copy)]
 pub struct Options {
-    /// The maximum number of parallel runs.
+    /// The maximum number of runs at the same time.
     pub jobs: usize,
     /// Whether the first scene that is not accepted ends the grading of a submission.
     pub fail_fast: bool,
-    /// Whether traces are judged against the recordings instead of the reference simulator.
+    /// Whether traces are compared with recordings instead of a simulation of the reference.
     pub recorded: bool,
 }
 
-/// A function that returns the file to which the trace of a submission's scene is saved.
+/// A function that returns the file in which the trace of a submission's scene is saved.
 pub type TraceFile<'a> = dyn Fn(&Submission, &SceneTask) -> Place + Sync + 'a;
 
-/// The parts that all submissions of a grading share.
+/// The data and settings that all submissions of a grading have in common.
 #[derive(Clone, Copy)]
 pub struct Grader<'a> {
-    /// The plan: scenes, limits and rules.
+    /// The plan: the scenes, the limits and the rules.
     pub plan: &'a Plan,
     /// The sandbox in which programs run.
     pub backend: &'a Backend,
-    /// The program's name in archives.
+    /// The name of the program in archives.
     pub program: &'a str,
     /// The options of the grading.
     pub options: Options,
-    /// The folder for traces on which the grader failed; created when it is needed.
+    /// The folder for traces on which the grader failed. It is created when it is needed.
     pub faults: &'a Place,
-    /// The function that names the files for traces that are not accepted, if requested.
+    /// The function that names the files for traces that are not accepted; `None` if these are not saved.
     pub traces: Option<&'a TraceFile<'a>>,
-    /// The storage of cards, which are drawn for all traces with findings, if requested.
+    /// The storage of cards, if they were requested. Cards are drawn for all traces with findings.
     pub cards: Option<Cards<'a>>,
-    /// The function that describes the smallest scenes, if requested.
+    /// The function that describes smallest scenes, if they were requested.
     pub smallest: Option<&'a DescribeSmallest<'a>>,
-    /// A function that the job with a submission's last result calls with the grade.
+    /// A function that receives the grade. The job that completes a submission calls it.
     pub finish: Option<&'a (dyn Fn(&Grade) + Sync + 'a)>,
-    /// The sums of all runs' processor times, for `--timings`.
+    /// The sums of the processor times of all runs, for `--timings`.
     pub timings: Option<&'a Timings>,
-    /// The program with which speed is compared: the original, or a program in its role. Without it, speed is not
-    /// measured.
+    /// The program with whose speed submissions are compared: the original, or a program in its role. With `None`,
+    /// speed is not measured.
     pub reference: Option<&'a Path>,
 }
 
 impl Grader<'_> {
-    /// Returns the rules that are used. With recordings these are the original's, because the fair rules need a
-    /// simulation from the submission's states.
+    /// Returns the rules by which traces are judged. With recordings, only the original's rules can be applied, because
+    /// the fair rules need a simulation from the submission's states.
     pub(super) const fn effective_rules(&self) -> Rules {
         if self.options.recorded { Rules::Parity } else { self.plan.rules }
     }
 
-    /// Returns everything that a result depends on, except for program and scene.
+    /// Returns texts for everything that a result depends on, except for the program and the scene.
     fn conditions(&self) -> Vec<String> {
         let walls = self.backend.layers().iter().filter(|report| report.active);
         vec![
@@ -124,20 +124,20 @@ pub(super) struct SharedGrading<'a> {
     cancellation: &'a Cancellation,
     results: Option<&'a dyn Results>,
     folders: Folders,
-    /// The parts of keys that do not depend on program and scene.
+    /// The texts for everything that a result depends on, except for the program and the scene. They are parts of keys.
     words: Vec<String>,
-    /// The results that this grading has stored.
+    /// The keys of the results that this grading has stored.
     kept: Mutex<BTreeSet<Key>>,
-    /// The results that jobs are making. Equal programs of two submissions are run once: a job waits for the other's
-    /// result.
+    /// The keys of the results that jobs are producing. If two submissions have equal programs, the program is run
+    /// once, and the other job waits for the result.
     claimed: Mutex<BTreeSet<Key>>,
-    /// The signal that a job has released a claim.
+    /// The signal that a job no longer produces the result of a key.
     released: Condvar,
     /// The reason why results can no longer be stored.
     pub(super) full: OnceLock<KeepError>,
-    /// The contents of the plan's scenes, computed when they are needed.
+    /// The contents of the plan's scenes. They are computed when they are first needed.
     contents: OnceLock<Vec<Contents>>,
-    /// The copy of the reference program, made for the first timing.
+    /// The copy of the reference program. It is made when a speed is first measured.
     reference: OnceLock<Arc<Result<StagedProgram, String>>>,
 }
 
@@ -149,26 +149,26 @@ impl<'a> SharedGrading<'a> {
         Self { cancellation, results, folders, words, kept, claimed, released, full, contents, reference }
     }
 
-    /// Returns the contents of the reference's run of each scene; empty for a scene that cannot be simulated to its
-    /// end.
+    /// Returns the contents of each scene, from the reference's run. A scene that cannot be simulated to its end has
+    /// none.
     pub(super) fn contents(&self, plan: &Plan) -> &[Contents] {
         self.contents.get_or_init(|| plan.scenes().map(|task| ContentIndex::for_scene(&task.scene)).collect())
     }
 
-    /// Returns the copy of the reference program.
+    /// Returns the copy of the reference program, or the reason why it cannot be copied.
     pub(super) fn reference(&self, program: &Path) -> Arc<Result<StagedProgram, String>> {
         self.reference.get_or_init(|| Arc::new(staging::reference(program))).clone()
     }
 
     pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> Key {
-        // A program may depend on its own name, so the name is part of the key.
+        // A program may depend on its own name, so the name belongs to the key.
         let own = [scene.name.as_str(), called, students.describe().0];
         let words: Vec<&str> = self.words.iter().map(String::as_str).chain(own).collect();
         Key::from_program(digest, &scene.xml, &words)
     }
 
-    /// Finds a stored result, or the result of an identical program in this grading. A result without requested traces
-    /// or cards does not count.
+    /// Finds a stored result, or the result of an identical program in this grading. A result is not used if a
+    /// requested trace or card is missing.
     fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<FoundResult> {
         let result = self.results?.find(key)?;
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
@@ -177,14 +177,14 @@ impl<'a> SharedGrading<'a> {
         (!lacks_trace && !lacks_card).then_some(FinishedScene { result, cached, claim: None })
     }
 
-    /// Waits until no other job works on a key. Then returns its result, if there is one, or claims the key.
+    /// Waits until no other job works on a key. Then returns the result if there is one, and otherwise claims the key.
     fn claim<'s>(
         &'s self,
         key: Key,
         find: impl Fn(&Key) -> Option<FoundResult>,
     ) -> Result<KeyClaim<'s>, Box<FoundResult>> {
         let mut claimed = lock(&self.claimed);
-        // If results are not stored, there is no result to wait for.
+        // If results are not stored, there is no result for which to wait.
         while self.results.is_some() && claimed.contains(&key) {
             claimed = self.released.wait(claimed).unwrap_or_else(PoisonError::into_inner);
         }
@@ -197,8 +197,8 @@ impl<'a> SharedGrading<'a> {
         }
     }
 
-    /// Stores a result. If that fails, grading is stopped, because further work would be lost. Errors of the grader and
-    /// scenes that were not run are not stored, so they are tried again.
+    /// Stores a result. If storing fails, the grading is stopped, because further work would be lost. Errors of the
+    /// grader, and scenes that were not run, are not stored, so that they are tried again.
     pub(super) fn keep(&self, key: &Key, submission: &Submission, result: &SceneResult) {
         let Some(results) = self.results else { return };
         if self.full.get().is_some() || matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun) {
@@ -213,8 +213,8 @@ impl<'a> SharedGrading<'a> {
     }
 }
 
-/// The exclusive right of a job to make the result of a key. Other jobs that need the result wait until the claim is
-/// dropped.
+/// The exclusive right of a job to produce the result of a key. Other jobs that need this result wait until the claim
+/// is dropped.
 struct KeyClaim<'s> {
     shared: &'s SharedGrading<'s>,
     key: Key,
@@ -227,16 +227,16 @@ impl Drop for KeyClaim<'_> {
     }
 }
 
-/// A scene with its result.
+/// A scene and its result.
 struct FinishedScene<'s> {
     result: SceneResult,
-    /// Whether the result was reused from an earlier run.
+    /// Whether the result was reused from an earlier grading.
     cached: bool,
-    /// The claim for storing the result; `None` for a result that was found, not made.
+    /// The claim under which the result is stored; `None` if the result was found.
     claim: Option<KeyClaim<'s>>,
 }
 
-/// A result that was found, without a claim.
+/// A scene whose result was found, so that there is no claim.
 type FoundResult = FinishedScene<'static>;
 
 impl FinishedScene<'_> {
@@ -245,25 +245,25 @@ impl FinishedScene<'_> {
     }
 }
 
-/// A progress message about a scene.
+/// A message about the progress of a scene.
 pub(super) enum SceneNews {
     /// The run of the scene begins.
     Begins,
-    /// Judging has reached a step; not every step is reported.
+    /// Judging has reached this step. This is not reported for every step.
     Step(u32),
-    /// The scene has its result. The value tells whether the result was reused from an earlier run.
+    /// The scene has its result. The value tells whether it was reused from an earlier grading.
     Done(bool),
-    /// The submission has its grade, after its last scene.
+    /// The last scene is finished, and the submission has this grade.
     Graded(Box<Grade>),
 }
 
-/// A submission while it is graded. Any number of jobs may process its scenes. The first job that needs the program
-/// stages it; the copy is removed when the grade is complete.
+/// A submission while it is graded. Any number of jobs may grade its scenes. The first job that needs the program
+/// copies it. The copy is removed when the grade is complete.
 pub(super) struct SubmissionGrading<'a> {
     pub(super) grader: &'a Grader<'a>,
     pub(super) shared: &'a SharedGrading<'a>,
     pub(super) submission: &'a Submission,
-    /// The digest of the program at its original path; `None` if it has to be built or copied first.
+    /// The digest of the program at its original path; `None` if the program has to be built or copied first.
     digest: OnceLock<Option<blake3::Hash>>,
     pub(super) staged: Mutex<Option<Arc<Result<StagedProgram, String>>>>,
     known: Mutex<SubmissionProgress>,
@@ -271,18 +271,18 @@ pub(super) struct SubmissionGrading<'a> {
 
 /// The results of a submission's scenes so far.
 struct SubmissionProgress {
-    /// The verdict of every finished scene, with the time of its run and its judging.
+    /// For each finished scene, its verdict, and the time that its run and its judging took.
     done: Vec<Option<(Verdict, Duration)>>,
-    /// The first scene that is skipped, with the reason.
+    /// The first scene that is skipped, and the reason; `None` if no scene is skipped so far.
     end: Option<(usize, NotRunReason)>,
-    /// The reported results, each with whether it was reused.
+    /// For each reported scene, its result, and whether the result was reused.
     told: Vec<Option<(SceneResult, bool)>>,
-    /// The number of results that are still missing in `told`.
+    /// The number of scenes whose results are not reported yet.
     missing: usize,
 }
 
 impl<'a> SubmissionGrading<'a> {
-    /// Creates a submission without results.
+    /// Creates the grading of a submission that has no results yet.
     pub(super) fn new(grader: &'a Grader<'a>, shared: &'a SharedGrading<'a>, submission: &'a Submission) -> Self {
         let missing = grader.plan.scenes().count();
         let (done, told) = (vec![None; missing], vec![None; missing]);
@@ -296,8 +296,8 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    /// Finds or makes the result of a scene, by its number in the plan, stores it, and reports it. After the last
-    /// scene, it also reports the grade.
+    /// Finds or produces the result of a scene, stores it, and reports it. `number` is the scene's index in the plan.
+    /// After the last scene, the grade is reported as well.
     pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
         let done = catch_panic(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             FinishedScene::without_claim(scene.failure_result(Failure::Panic {
@@ -375,7 +375,7 @@ impl<'a> SubmissionGrading<'a> {
     ) -> SceneResult {
         let mut told = Instant::now();
         let mut on_step = |step| {
-            // Report at most ten steps per second: more would only fill the channel.
+            // At most ten steps are reported per second, because more would only fill the channel.
             if told.elapsed() > Duration::from_millis(100) {
                 told = Instant::now();
                 tell(SceneNews::Step(step));
@@ -384,7 +384,7 @@ impl<'a> SubmissionGrading<'a> {
         self.runner(scene, trace).grade(staged, scene, &mut on_step)
     }
 
-    /// Returns a runner for a scene, which saves a trace that is not accepted to `trace`.
+    /// Returns a runner for a scene. If the trace is not accepted, the runner saves it in `trace`.
     pub(super) fn runner<'b>(&'b self, scene: &SceneTask, trace: Option<&'b Place>) -> Runner<'b> {
         let grader = self.grader;
         Runner {
@@ -409,7 +409,7 @@ impl<'a> SubmissionGrading<'a> {
         lock(&self.known).end.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
     }
 
-    /// Records a result, and whether it ends the grading.
+    /// Records a result, and decides whether further scenes are skipped because of it.
     fn note(&self, scene: usize, result: &SceneResult) {
         let mut known = lock(&self.known);
         known.done[scene] = Some((result.verdict, result.measured.wall + result.measured.judging));
@@ -419,7 +419,7 @@ impl<'a> SubmissionGrading<'a> {
         }
     }
 
-    /// Returns the digest of a program, if it is known without a build or a copy.
+    /// Returns the digest of the program, if it is known without building or copying the program.
     pub(super) fn digest(&self) -> Option<blake3::Hash> {
         *self.digest.get_or_init(|| match &self.submission.program {
             _ if self.builds() => None,
@@ -428,13 +428,13 @@ impl<'a> SubmissionGrading<'a> {
         })
     }
 
-    /// Returns whether the submission is a folder of sources that must be built.
+    /// Returns whether the submission consists of sources that must be built.
     fn builds(&self) -> bool {
         let Submission { path, program, .. } = self.submission;
         self.grader.plan.build.is_some() && program.is_none() && path.is_dir()
     }
 
-    /// Returns the staged submission; the first job stages it, the others wait.
+    /// Returns the copy of the submission. The first job makes the copy, and other jobs wait.
     pub(super) fn staged_program(&self) -> Arc<Result<StagedProgram, String>> {
         lock(&self.staged).get_or_insert_with(|| Arc::new(self.stage())).clone()
     }

@@ -1,8 +1,8 @@
-//! Catches panics of the grader: a panic while one scene is judged, explained or reported must not end a class's
-//! grading.
+//! Catches panics of the grader. If the grader panics while it judges, explains or reports one scene, the grading of a
+//! class must not end.
 //!
-//! A panic is caught where the work on one scene begins, with its place in the source, and becomes a judge error of
-//! that scene. The data that the failed work changed are dropped.
+//! A panic is caught where the work on a scene begins, and its place in the source code is kept. The verdict on that
+//! scene is a judge error. Data that the failed work has changed are dropped.
 use std::{
     any::Any,
     cell::{Cell, RefCell},
@@ -10,7 +10,7 @@ use std::{
     sync::Once,
 };
 
-/// The text of a panic: the message and its place in the source.
+/// The description of a panic: its message, and its place in the source code.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
 pub struct Fault(String);
@@ -20,7 +20,7 @@ thread_local! {
     static LAST_PANIC: RefCell<Option<String>> = const { RefCell::new(None) };
 }
 
-/// Calls `work`, and returns a panic in it as a fault, which is not printed.
+/// Calls `work`. If it panics, the panic is not printed, but returned as a fault.
 ///
 /// The caller must drop the data that `work` changed, because their state is unknown.
 ///
@@ -35,7 +35,7 @@ pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
     result.map_err(|payload| Fault(LAST_PANIC.take().unwrap_or_else(|| panic_message(&*payload))))
 }
 
-/// Installs a panic hook that captures panics of guarded work, with their place, and forwards all others.
+/// Installs a panic hook. It stores panics in guarded work with their places, and forwards all other panics.
 fn install_hook() {
     static HOOK_INSTALLED: Once = Once::new();
     HOOK_INSTALLED.call_once(|| {
@@ -50,7 +50,7 @@ fn install_hook() {
     });
 }
 
-/// Returns the message of a panic, on one line.
+/// Returns the message of a panic as a single line.
 fn panic_message(payload: &(dyn Any + Send)) -> String {
     let words = payload.downcast_ref::<&str>().map(|text| (*text).to_owned());
     let words = words.or_else(|| payload.downcast_ref::<String>().cloned());

@@ -1,4 +1,4 @@
-//! The key under which a result is found again: a digest of everything that it depends on.
+//! The key under which a result is found again. It is a digest of everything that the result depends on.
 use serde::{Deserialize, Serialize};
 use std::{
     fs::File,
@@ -6,19 +6,20 @@ use std::{
     sync::OnceLock,
 };
 
-/// A digest of everything that a result depends on.
+/// A key: a digest of everything that a result depends on.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 pub struct Key(String);
 
 impl Key {
-    /// Returns the key of a run. It consists of digests of program and scene, and of `words` for everything else that
-    /// matters (rules, limits, the command, the kind of judging). The judging program is always part of it.
+    /// Returns the key of a run. It is computed from the digests of the program and the scene, and from `words`, which
+    /// name everything else that matters, such as the rules, the limits, the command and the kind of judging. The
+    /// grader itself also belongs to the key.
     #[must_use]
     pub fn from_program(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         Self::from_parts(this_build(), program, scene, words)
     }
 
-    /// Returns the key of a run that the build `judge` judges.
+    /// Returns the key of a run that is judged by the build `judge` of the grader.
     fn from_parts(judge: &str, program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
         let mut hasher = blake3::Hasher::new();
         hasher.update(program.as_bytes());
@@ -31,11 +32,11 @@ impl Key {
     }
 }
 
-/// Returns the digest of the running program, because two builds of one version may judge differently; if the program
-/// can't be read, returns its version.
+/// Returns a digest of the running program, because two builds of the same version may judge differently. If the
+/// program's file can't be read, returns the version.
 ///
-/// The GNU build ID, a digest by the linker, is used instead if there is one: reading a program of this size takes as
-/// long as judging ten small scenes.
+/// If the file contains a GNU build ID, which is a digest that the linker computes, the ID is used instead. Reading all
+/// of the file would take as long as judging ten small scenes.
 #[must_use]
 pub fn this_build() -> &'static str {
     static BUILD_ID: OnceLock<String> = OnceLock::new();
@@ -54,8 +55,8 @@ pub fn this_build() -> &'static str {
     })
 }
 
-/// Returns the build ID of a 64-bit ELF file, if its first bytes contain one with the length of a digest, as linkers
-/// write it.
+/// Returns the build ID of a 64-bit ELF file. It must be in the file's first bytes and have the length of a digest, as
+/// linkers write it.
 fn build_id(file: &mut File) -> Option<Vec<u8>> {
     const MAX_NOTES: u32 = 4;
     const BUILD_ID: u32 = 3;
@@ -67,7 +68,7 @@ fn build_id(file: &mut File) -> Option<Vec<u8>> {
     let word = |bytes: &[u8], at: usize| Some(u32::from_le_bytes(bytes.get(at..at + 4)?.try_into().ok()?));
     let long =
         |bytes: &[u8], at: usize| usize::try_from(u64::from_le_bytes(bytes.get(at..at + 8)?.try_into().ok()?)).ok();
-    // Check for a 64-bit, little-endian ELF file.
+    // The file must be a 64-bit, little-endian ELF file.
     if !start.starts_with(b"\x7fELF\x02\x01") {
         return None;
     }

@@ -1,8 +1,8 @@
-//! Suites and grading by them: verdicts, grades, recordings.
+//! Grades submissions with suites: verdicts, grades and recordings.
 //!
-//! This is the only crate that uses both traces and programs. It makes a [`Grade`], but no markup, and it does not use
-//! HTTP or parse arguments. Programs run only on Linux; suites, and grades of existing traces ([`traces`]), work on
-//! every machine.
+//! This is the only crate that uses both traces and programs. It computes a [`Grade`], but does not render it, and it
+//! does not use HTTP or parse arguments. Running programs requires Linux. Reading suites and grading existing traces
+//! ([`traces`]) work on every machine.
 //!
 //! ```
 //! use fosssim_grading::plan;

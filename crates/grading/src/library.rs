@@ -1,7 +1,8 @@
 //! The scenes and recordings that are embedded in the program.
 //!
-//! They are in a folder per assignment. A scene's name is `Group/name`, and is unique; the full form `t2m2/Group/name`
-//! is understood as well. Recordings are zstd files; `steps` are the digests of a recording's steps.
+//! Each assignment has a folder. A scene's name is `Group/name` and is unique. The full form `t2m2/Group/name` is
+//! accepted as well. Recordings are files that are compressed with zstd. Files with the ending `steps` contain the
+//! digests of a recording's steps.
 use super::assignments::{MadeScene, TIMING_SCENES, version};
 use fosssim_model::assignments::Assignment;
 use glob::Pattern;
@@ -9,18 +10,18 @@ use include_dir::{Dir, File, include_dir};
 use std::path::Path;
 
 static ASSETS: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../assets");
-/// The recordings, which only programs that run submissions need.
+/// The recordings. Only builds that run submissions need them.
 #[cfg(target_os = "linux")]
 static REFERENCES: Dir<'static> = include_dir!("$CARGO_MANIFEST_DIR/../../references");
 
-/// The example of a wrong trace: the scene's name, and the trace that the sample writes with the mistake
+/// An example of a wrong trace: the scene's name, and the trace that the sample program writes if it makes the mistake
 /// `pe-linear-one-ab`.
 pub const FLAWED_TRACE: (&str, &[u8]) = (
     "ContinuousTimeTests/spinning-edge-sweeps-balls",
     include_bytes!(concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/traces/flawed.bin")),
 );
 
-/// The assignment of generated scenes.
+/// The assignment to which generated scenes belong.
 const GENERATED_ASSIGNMENT: Assignment = Assignment::T2M3;
 
 /// Returns the names of all embedded scenes, in alphabetical order.
@@ -28,12 +29,13 @@ pub fn names() -> impl Iterator<Item = &'static str> {
     stems(&ASSETS, ".xml")
 }
 
-/// Returns the names of all built-in scenes: embedded ones, and generated ones, which have no recordings.
+/// Returns the names of all built-in scenes. They are embedded, or generated when they are needed; generated scenes
+/// have no recordings.
 pub fn all_names() -> impl Iterator<Item = &'static str> {
     names().chain(TIMING_SCENES.iter().map(|made| made.name))
 }
 
-/// Returns the XML of a scene.
+/// Returns the content of a built-in scene's file; `None` if there is no scene with this name.
 #[must_use]
 pub fn scene(name: &str) -> Option<&'static [u8]> {
     contents(&ASSETS, &format!("{name}.xml")).or_else(|| find_made(name).map(MadeScene::xml))
@@ -45,14 +47,14 @@ fn find_made(name: &str) -> Option<&'static MadeScene> {
     TIMING_SCENES.iter().find(|made| made.name == short)
 }
 
-/// Returns the recording of a scene, compressed with zstd.
+/// Returns the recording of a scene, compressed with zstd; `None` if there is none.
 #[must_use]
 #[cfg(target_os = "linux")]
 pub fn recording(name: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, &format!("{name}.bin.zst"))
 }
 
-/// Returns `None`: a build that cannot run programs has no recordings.
+/// Returns `None`, because builds that cannot run programs contain no recordings.
 #[must_use]
 #[cfg(not(target_os = "linux"))]
 pub const fn recording(_: &str) -> Option<&'static [u8]> {
@@ -65,14 +67,15 @@ pub fn recordings() -> impl Iterator<Item = &'static str> {
     stems(&REFERENCES, ".bin.zst")
 }
 
-/// Returns a file of the folder of recordings: `manifest.txt`, `Group/name.steps` or `Group/name.bin.zst`.
+/// Returns a file from the folder of recordings. Its path is `manifest.txt`, `Group/name.steps` or
+/// `Group/name.bin.zst`.
 #[cfg(target_os = "linux")]
 #[must_use]
 pub fn reference(path: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, path)
 }
 
-/// Returns the assignment whose folder contains a scene.
+/// Returns the assignment in whose folder a scene is.
 #[must_use]
 pub fn assignment(name: &str) -> Option<Assignment> {
     if find_made(name).is_some() {
@@ -82,8 +85,9 @@ pub fn assignment(name: &str) -> Option<Assignment> {
     Assignment::from_key(path.components().next()?.as_os_str().to_str()?)
 }
 
-/// Returns whether a pattern matches a scene's name. A pattern that begins with an assignment's folder, such as
-/// `t2m2/*`, matches scenes of that folder; with a version, such as `t2m2@1/*`, it matches scenes of that version.
+/// Returns whether a pattern matches a scene's name. If the pattern begins with an assignment's folder, as in `t2m2/*`,
+/// it matches only scenes in that folder. If a version follows the folder, as in `t2m2@1/*`, it matches only scenes of
+/// that version.
 #[must_use]
 pub fn matches_pattern(pattern: &Pattern, name: &str) -> bool {
     let Some((folder, rest)) = pattern.as_str().split_once('/') else { return pattern.matches(name) };
@@ -110,14 +114,14 @@ fn contents(root: &'static Dir<'static>, path: &str) -> Option<&'static [u8]> {
     file(root, path).map(File::contents)
 }
 
-/// Returns a file of an assignment, by its path within the assignment's folder or by its whole path.
+/// Returns a file of an assignment. The path is the whole path, or the path within an assignment's folder.
 fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     let of = |assignment: Assignment| find_below(subfolder(root, assignment.key())?, path);
     Assignment::list_default_first().into_iter().find_map(of).or_else(|| find_below(root, path))
 }
 
-/// Returns the file at a path below a folder. [`Dir::get_file`] is slower: it compares the path with that of every
-/// entry.
+/// Returns the file at a path below a folder. [`Dir::get_file`] is slower, because it compares the path with that of
+/// every entry.
 fn find_below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     match path.split_once('/') {
         Some((first, rest)) => find_below(subfolder(folder, first)?, rest),

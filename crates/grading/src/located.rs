@@ -1,44 +1,45 @@
-//! The common properties of scenes in which a program crashes or exceeds a limit, by spectrum-based fault localization.
+//! Finds what the scenes in which a program crashes or exceeds a limit have in common, by spectrum-based fault
+//! localization.
 //!
-//! A scene's spectrum is the contents of the reference's run ([`coverage`](crate::coverage)): kinds of events, and
-//! values of their properties. A value is reported under three conditions. Every failing scene contains it, no other
-//! value is better by Ochiai's measure, and chance is unlikely to explain that by Fisher's exact test, corrected for
-//! the number of values. Values that the scenes can't distinguish are reported together.
+//! The spectrum of a scene consists of the contents of the reference's run ([`coverage`](crate::coverage)), which are
+//! kinds of events and values of their properties. A value is reported under three conditions: every failing scene
+//! contains it; no other value is better by Ochiai's measure; and by Fisher's exact test, corrected for the number of
+//! values, this is unlikely to be chance. Values that the scenes can't distinguish are reported together.
 use super::coverage::{Coverage, FAMILIES};
 pub use fosssim_findings::located::{Content, FailureKind, LocatedFailure};
 use fosssim_model::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// A kind of event, or a value of one of its properties, by index in [`FAMILIES`].
+/// A kind of event, or a value of one of its properties, given by indices in [`FAMILIES`].
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct ContentIndex {
-    /// The kind of event.
+    /// The index of the kind of event.
     pub family: usize,
-    /// The property's index and its value's index; `None` for all events of the kind.
+    /// The index of the property, and the index of its value; `None` for all events of the kind.
     pub value: Option<(usize, usize)>,
 }
 
 /// The contents of a scene, which are its spectrum.
 pub type Contents = BTreeSet<ContentIndex>;
 
-/// A scene that was run, with the failure of its program, if any.
+/// A scene that was run, and how the program failed, if it did.
 #[derive(Debug, Clone, Copy)]
 pub struct TriedScene<'a> {
     /// The scene's name.
     pub scene: &'a str,
-    /// The failure of its program, if it failed.
+    /// The way in which the program failed on the scene; `None` if it did not fail.
     pub failing: Option<FailureKind>,
-    /// The number of steps with complete records.
+    /// The number of steps whose records are complete.
     pub steps: u32,
-    /// The contents of the scene.
+    /// The contents of the reference's run of the scene.
     pub contents: &'a Contents,
 }
 
-/// The maximum probability that chance explains a reported result, over all tried values.
+/// The largest probability of chance, over all values that were tried, at which a result is still reported.
 const MAX_CHANCE: f64 = 0.01;
 
 impl ContentIndex {
-    /// Returns all contents of a scene; empty if it can't be simulated to its end.
+    /// Returns everything that a scene contains; empty if it can't be simulated to its end.
     #[must_use]
     pub fn for_scene(scene: &Scene) -> Contents {
         let coverage = Coverage::for_scene(scene).unwrap_or_default();
@@ -47,7 +48,7 @@ impl ContentIndex {
         values.chain(kinds).collect()
     }
 
-    /// Returns the content by name.
+    /// Returns the content with names instead of indices.
     fn to_content(self) -> Content {
         let family = &FAMILIES[self.family];
         let value = |(axis, value): (usize, usize)| {
@@ -57,8 +58,8 @@ impl ContentIndex {
         Content { family: family.name.into(), value: self.value.map(value) }
     }
 
-    /// Returns the rank of a content, for sorting. Narrower contents come first: those of zones, then of contacts, then
-    /// of whole steps. Absent events come last.
+    /// Returns the rank of a content, by which contents are sorted. Contents of zones come first, then those of
+    /// contacts, then those of whole steps. Values that mean the absence of something come last.
     const fn rank(self) -> (bool, usize) {
         let place = match self.family {
             4 => 0,
@@ -70,7 +71,7 @@ impl ContentIndex {
     }
 }
 
-/// Returns the contents that all failing scenes have in common; `None` if the evidence is weak.
+/// Returns the contents that all failing scenes have in common; `None` if the evidence for them is weak.
 #[must_use]
 pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     let failed: Vec<&TriedScene<'_>> = tried.iter().filter(|one| one.failing.is_some()).collect();
@@ -82,8 +83,8 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         let scenes = tried.iter().filter(|one| one.contents.contains(&content)).count();
         with.entry(scenes).or_default().push(content);
     }
-    // Every failing scene contains the value, so Ochiai's measure is the square root of `failed / with`: the fewer
-    // scenes contain it, the better.
+    // Because every failing scene contains the value, Ochiai's measure is the square root of `failed / with`. A value
+    // is better if fewer scenes contain it.
     let (with, mut contents) = with.into_iter().next()?;
     let looked_at: BTreeSet<Vec<bool>> = tried
         .iter()
@@ -98,7 +99,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         return None;
     }
     contents.sort_by_key(|content| content.rank());
-    // Values that all events of a kind have are left out, because the kind alone describes them.
+    // A value that all events of a kind have is left out, because the kind alone says the same.
     let kinds: Vec<usize> =
         contents.iter().filter(|content| content.value.is_none()).map(|content| content.family).collect();
     contents.retain(|content| content.value.is_none() || !kinds.contains(&content.family));
@@ -117,7 +118,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     })
 }
 
-/// Returns the probability that `failed` scenes, drawn at random from `all`, are all among `with` given ones.
+/// Returns the probability that `failed` scenes, drawn at random from `all`, are all among `with` particular ones.
 fn chance_probability(failed: usize, with: usize, all: usize) -> f64 {
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let share = |one: usize| (with - one) as f64 / (all - one) as f64;

@@ -1,5 +1,5 @@
-//! Infers the milestone of a program from the scenes that it accepts. A starter library exits with an error if it does
-//! not know an integrator or a collision type, no matter what its student wrote.
+//! Infers the milestone for which a program was written, from the scenes that it accepts. A starter library exits with
+//! an error if it does not know an integrator or a collision type, no matter what its student wrote.
 use super::{config::RunLimits, execute::Runner, task::SceneTask};
 use fosssim_model::{
     assignments::{Assignment, Integrator},
@@ -8,14 +8,17 @@ use fosssim_model::{
 use fosssim_sandbox::RunEnd;
 use std::{path::Path, time::Duration};
 
-/// The limits of processor time and wall time for two steps of two bodies, which a program needs some milliseconds for.
+/// The limits of processor time and wall time for a scene with two steps and two bodies. A program needs only some
+/// milliseconds for it.
 const TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
 /// Returns the milestone whose library accepts exactly the scenes that this program accepts; `None` if no milestone
 /// fits, or if the program never writes a trace. The program is run six times, on scenes of two bodies that do not
 /// meet.
 ///
-/// # Errors An error of the grader or the machine, as text.
+/// # Errors
+///
+/// Fails if the grader or the machine fails. The error is the reason, as text.
 pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Assignment>, String> {
     let [cpu, wall] = TIME_LIMITS;
     let limits = RunLimits { cpu: runner.limits.cpu.min(cpu), wall: runner.limits.wall.min(wall), ..*runner.limits };
@@ -24,7 +27,7 @@ pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Ass
     let mut takes = |integrator: Integrator, collision: &str| -> Result<bool, String> {
         let (trace, outcome) = runner.collect(program, &probe_task(integrator, collision)?, 1)?;
         is_traced |= !trace.is_empty();
-        // A crash counts as accepting the scene.
+        // If the program crashes, it has accepted the scene.
         Ok(!matches!(outcome.ended, RunEnd::Exited(1..)))
     };
     let mut integrators = Vec::new();
@@ -43,7 +46,8 @@ pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Ass
     Ok(Assignment::list_default_first().into_iter().find(|assignment| is_traced && fits(assignment)))
 }
 
-/// Returns whether a milestone's library lacks integrators or collision types of another milestone's scenes.
+/// Returns whether the library of the milestone `found` lacks integrators or collision types that scenes of `expected`
+/// use.
 #[must_use]
 pub fn lacks(found: Assignment, expected: Assignment) -> bool {
     let (found, expected) = (&found.definition().library, &expected.definition().library);

@@ -1,26 +1,26 @@
-//! Converts file names to text in which nothing is hidden: different names look different, and no name changes the text
-//! around it.
+//! Converts file names to text that hides nothing. Different names look different, and no name changes the text around
+//! it.
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt};
 use unicode_normalization::UnicodeNormalization;
 use unicode_properties::{GeneralCategory, UnicodeGeneralCategory};
 
-/// The maximum number of combining marks that are kept on one letter. More marks would cover the surrounding text.
+/// The maximum number of combining marks on one letter that are kept. More marks would cover the surrounding text.
 const MAX_MARKS: usize = 4;
 
-/// Returns a file's name as text, in the usual form of letters with marks (NFC). Invisible or ambiguous characters
-/// become escapes: bytes that are not text (`\xff`), control and format characters (`\r`, `\u{200b}`), blanks other
-/// than single ones between letters, and the backslash itself. Names with different bytes therefore look different,
-/// except for letters with marks that are written in two ways ([`exact`]).
+/// Returns a file's name as text. Letters with marks have their usual form (NFC). Escapes replace what is invisible or
+/// ambiguous: bytes that are not text (`\xff`), control and format characters (`\r`, `\u{200b}`), blanks other than
+/// single ones between letters, and the backslash itself. Names with different bytes therefore look different, except
+/// for letters with marks that are written in two ways ([`exact`]).
 #[must_use]
 pub fn printable(name: &OsStr) -> String {
     each_chunk(name, |valid| escape(&valid.nfc().collect::<String>(), |_| false))
 }
 
-/// Returns the name as [`printable`] does, with combining marks as escapes, so that different names have different
-/// texts.
+/// Returns a file's name as [`printable`] does, but with escapes instead of combining marks. Different names then
+/// always have different texts.
 #[must_use]
 pub fn exact(name: &OsStr) -> String {
-    // A letter that normalization changes has another length or another code point.
+    // If normalization changes a letter, its length or its code point changes.
     each_chunk(name, |valid| escape(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))
 }
 
@@ -58,12 +58,12 @@ fn is_mark(c: char) -> bool {
     matches!(c.general_category(), GeneralCategory::NonspacingMark | GeneralCategory::EnclosingMark)
 }
 
-/// Returns whether a letter of Hangul joins the preceding one.
+/// Returns whether a Hangul letter is joined to the letter before it.
 const fn is_part_of_a_syllable(c: char) -> bool {
     matches!(c, '\u{1161}'..='\u{11ff}')
 }
 
-/// Returns whether a character is invisible, or is displayed differently on each machine.
+/// Returns whether a character is invisible, or looks different on each machine.
 fn is_hidden(c: char) -> bool {
     use GeneralCategory::{
         Control, Format, LineSeparator, ParagraphSeparator, PrivateUse, SpaceSeparator, Surrogate, Unassigned,
@@ -73,8 +73,8 @@ fn is_hidden(c: char) -> bool {
         matches!(category, Control | Format | LineSeparator | ParagraphSeparator | PrivateUse | Surrogate | Unassigned);
     is_nothing
         || (category == SpaceSeparator && c != ' ')
-        // Letters, marks and symbols that are practically invisible: fillers, variation selectors, the empty Braille
-        // cell.
+        // Some letters, marks and symbols are practically invisible: fillers, variation selectors, and the empty
+        // Braille cell.
         || matches!(
             c,
             '\u{34f}'

@@ -1,31 +1,31 @@
-//! The search for known words that are similar to a typed word.
+//! Finds known words that are similar to a word that a user typed.
 
 pub use fosssim_model::scene::find_closest;
 use strsim::jaro_winkler;
 
-/// The number of letters and digits that are compared.
+/// The maximum number of letters and digits that are compared.
 const MAX_COMPARED_LETTERS: usize = 60;
 
-/// Returns the end of a message about an unknown word: a known word that was probably meant, if one is similar.
+/// Returns the end of a message about an unknown word. If a known word is similar, the text suggests it.
 #[must_use]
 pub fn suggest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> String {
     find_closest(word, candidates).map(|name| format!("; did you mean {name}?")).unwrap_or_default()
 }
 
-/// Returns the names most similar to a typed word, at most `most`, the most similar first. A name is compared as a
-/// whole and by its last part, because its group may be mistyped or missing.
+/// Returns the names that are most similar to a typed word, the most similar first, and at most `most`. Both the whole
+/// name and its last part are compared, because the group may be mistyped or missing.
 #[must_use]
 pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {
     let last = |name: &str| to_plain(name.rsplit('/').next().unwrap_or_default());
     let (typed, typed_last) = (to_plain(word), last(word));
     let likeness = |name: &str| jaro_winkler(&typed, &to_plain(name)).max(jaro_winkler(&typed_last, &last(name)));
     let mut near: Vec<(f64, &str)> = names.map(|name| (likeness(name), name)).collect();
-    // The sort is stable: equally similar names stay in their order.
+    // The sort is stable, so names that are equally similar keep their order.
     near.sort_by(|(one, _), (other, _)| other.total_cmp(one));
     near.into_iter().take(most).map(|(_, name)| name).collect()
 }
 
-/// Returns the letters and digits of a word in lower case.
+/// Returns the letters and digits of a text, in lower case.
 fn to_plain(text: &str) -> String {
     text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).take(MAX_COMPARED_LETTERS).collect()
 }

@@ -1,36 +1,38 @@
-//! Finds the owner of a file with several names (hard links). Backup and deduplication tools create such files, which
-//! is allowed. A submission is rejected only if its file was found to belong to another submission.
+//! Finds the owner of a file that has several names (hard links). Tools for backups and deduplication create such
+//! files, which is allowed. A submission is rejected only if its file demonstrably belongs to another submission.
 use fosssim_files::Identity;
 use std::{fs::File, io, os::unix::fs::MetadataExt};
 
-/// The identity of a program's file, and whether it is shared with other submissions. A file may have several names
-/// (hard links).
+/// The identity of a program's file, and whether other submissions share the file. A file may have several names (hard
+/// links).
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct OneFile {
-    /// The identity of the file.
+    /// The identity of the file, by which names of the same file are recognized.
     pub identity: Identity,
-    /// Whether another submission has the same file.
+    /// Whether the same file is in another submission.
     pub is_shared: bool,
-    /// Whether the file belongs to another submission: the owner of the other submission's folder owns the file, and
-    /// the owner of this submission's folder does not.
+    /// Whether the file belongs to another submission. This is so if the file's owner also owns that submission's
+    /// folder, but not this submission's folder.
     pub is_anothers: bool,
 }
 
-/// The message if two submissions have the same file and its owner is unknown. It contains no names, because students
-/// read it, too.
+/// The message if two submissions contain the same file, and it is unknown to which it belongs. Students read it as
+/// well, so it contains no names.
 pub(super) const SHARED_FILE: &str =
     "the program is the same file as another submission's (a hard link), and its owner is unknown";
 
-/// The message about a program that is another submission's.
+/// The message if the program's file belongs to another submission.
 pub(super) const FILE_OF_ANOTHER: &str = "it is a hard link to another submission's file";
 
-/// Returns whether an open file is another submission's, by the data from the search for submissions.
+/// Returns whether an open file belongs to another submission, according to what was found when submissions were
+/// searched.
 pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bool> {
     let metadata = file.metadata()?;
     match noted {
         _ if metadata.nlink() == 1 => Ok(false),
         Some(noted) if noted.identity == Identity::from_metadata(&metadata) => Ok(noted.is_anothers),
-        // The owner is unknown, because the machine failed or the file was exchanged. This must not cost points.
+        // It is unknown to which submission the file belongs, because the machine failed or the file was replaced. This
+        // must not cost points.
         _ => Err(io::Error::other("the file was replaced while submissions were graded; grade again")),
     }
 }

@@ -1,8 +1,9 @@
-//! Decides when the rest of a submission is skipped: a class must not wait for one program that never ends.
+//! Decides when the remaining scenes of a submission are skipped, so that a class does not wait for one program that
+//! never ends.
 //!
-//! The functions are pure, and depend only on the results so far, in the suite's order. Further results can only move
-//! the end forward. A decision while scenes still run is therefore final, and the same scenes are skipped with any
-//! number of jobs.
+//! The functions are pure, and depend only on the results so far, in the suite's order. Further results can only make
+//! the end earlier. Therefore scenes that are skipped while others still run remain skipped, and the same scenes are
+//! skipped for any number of jobs.
 use super::{
     config::Patience,
     result::{NotRunReason, Reason, SceneResult},
@@ -11,8 +12,8 @@ use super::{
 };
 use std::time::Duration;
 
-/// Returns the result of a skipped scene. For all reasons but a cancellation the submission is at fault, so the scene
-/// counts like the scenes that caused the end.
+/// Returns the result of a skipped scene. If limits were exceeded, the scene counts like the scenes that exceeded them,
+/// because the submission is at fault.
 pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {
         NotRunReason::Limits { verdict, .. } => verdict,
@@ -22,7 +23,7 @@ pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
     SceneResult::without_run(&task.name, task.scene.step_count(), verdict, Reason::LeftOut(why))
 }
 
-/// Returns the first scene that is skipped, with the reason. `known` has the verdict and the duration of every finished
+/// Returns the first scene that is skipped, and the reason. `known` has the verdict and the duration of each finished
 /// scene.
 pub(super) fn find_end(
     patience: &Patience,
@@ -54,7 +55,7 @@ pub(super) fn find_end(
     None
 }
 
-/// Returns whether a program with this verdict was stopped at a limit. An endless loop reaches one of several limits
+/// Returns whether a verdict means that the program was stopped at a limit. An endless loop reaches one of these limits
 /// first: time, memory, or the size of its output.
 const fn is_limit(verdict: Verdict) -> bool {
     matches!(verdict, Verdict::TimeLimit | Verdict::MemoryLimit | Verdict::OutputLimit)

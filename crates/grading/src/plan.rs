@@ -1,4 +1,4 @@
-//! A suite whose scenes have been found, as a grading runs them.
+//! A suite whose scenes have been found, so that it can be run.
 pub use super::assignments::{default_name, names as built_in_names, suggest};
 use super::{
     assignments,
@@ -17,17 +17,17 @@ pub use on_disk::{FindError, MAX_SCENE_BYTES, MAX_SCENES, MAX_SUITE_BYTES, find,
 /// A suite whose scenes have been found.
 pub type Plan = Suite<SceneTask>;
 
-/// A group with its scenes.
+/// A group of a suite whose scenes have been found.
 pub type PlannedGroup = Group<SceneTask>;
 
 impl Plan {
-    /// Returns all scenes, in the suite's order.
+    /// Returns all scenes, in the order of the suite.
     pub fn scenes(&self) -> impl Iterator<Item = &SceneTask> {
         self.groups.iter().flat_map(|group| &group.scenes)
     }
 
-    /// Returns the part of the plan with the scenes that `takes` selects by name. Each scene keeps its points, empty
-    /// groups are removed, and the plan's name says that it is a part.
+    /// Returns a plan that contains only the scenes whose names `takes` selects. Each scene keeps its points. Empty
+    /// groups are removed, and the plan's name says that it is only a part.
     #[must_use]
     pub fn filter_scenes(mut self, takes: impl Fn(&str) -> bool) -> Self {
         let all = self.scenes().count();
@@ -36,7 +36,7 @@ impl Plan {
             group.scenes.retain(|task| takes(&task.name));
             #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
             if group.scenes.len() < before {
-                // Speed is marked only if all scenes are accepted.
+                // Speed gives points only if all scenes of the group are accepted, so it gives none here.
                 group.marking.speed = None;
                 group.marking.points *= group.scenes.len() as f64 / before as f64;
             }
@@ -49,37 +49,37 @@ impl Plan {
         self
     }
 
-    /// Returns the hints for students about a scene.
+    /// Returns the level of detail for students about a scene.
     #[must_use]
     pub fn student_hints(&self, scene: &str) -> Hints {
         let group = self.groups.iter().find(|group| group.scenes.iter().any(|task| task.name == scene));
         group.map_or(Hints::None, |group| group.marking.hints)
     }
 
-    /// Limits the hints of all readers to a level.
+    /// Limits the level of detail for all readers to `hints`.
     pub fn tell_at_most(&mut self, hints: Hints) {
         self.staff_hints = hints;
         self.tell_students(hints);
     }
 
-    /// Sets the hints for students in every group.
+    /// Sets the level of detail for students in all groups.
     pub fn tell_students(&mut self, hints: Hints) {
         self.groups.iter_mut().for_each(|group| group.marking.hints = hints);
     }
 
-    /// Returns the milestone whose programs the suite grades: the named one, otherwise the first that can run most of
-    /// its scenes.
+    /// Returns the milestone whose programs the suite grades. If the file does not name it, it is the first milestone
+    /// that can run most of the scenes.
     #[must_use]
     pub fn assignment(&self) -> Assignment {
         let can_run = |assignment: &Assignment| {
             self.scenes().filter(|task| task.scene.unknown_features(*assignment).next().is_none()).count()
         };
-        // `max_by_key` returns the last of several maxima.
+        // If several values are equal, `max_by_key` returns the last one.
         let by_scenes = || Assignment::ALL.into_iter().rev().max_by_key(can_run);
         self.milestone.or_else(by_scenes).unwrap_or(Assignment::DEFAULT)
     }
 
-    /// Returns the maximum number of points, without extra points.
+    /// Returns the points that the suite is worth, without extra points.
     #[must_use]
     pub fn max_points(&self) -> f64 {
         let of_speed = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);
@@ -88,17 +88,17 @@ impl Plan {
     }
 }
 
-/// Returns the text of a built-in suite, such as `t2m2@1`, or the newest version of `t2m2`.
+/// Returns the text of a built-in suite. `t2m2@1` means a version, and `t2m2` means the newest one.
 #[must_use]
 pub fn built_in(name: &str) -> Option<&'static str> {
     assignments::version(name).map(|(_, version)| version.suite)
 }
 
-/// The names and the XML of the scenes that a pattern matches.
+/// The name and the file content of each scene that a pattern matches.
 pub type MatchingScenes = Vec<(String, Vec<u8>)>;
 
-/// Finds the scenes of a suite; `files` finds the scenes of patterns that name files. Patterns that match nothing, and
-/// scenes that can't be read or are invalid, are reported at the pattern's position.
+/// Finds the scenes of a suite. `files` finds those for patterns that name files. If a pattern matches nothing, or a
+/// scene can't be read or is invalid, this is reported at the position of the pattern.
 fn resolve(
     suite: Suite,
     files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>,
@@ -137,8 +137,8 @@ fn resolve(
                 }
                 match scene::read(&name, &xml) {
                     Ok(loaded) => {
-                        // A file with the name of an embedded scene uses its recording only if the contents are the
-                        // same.
+                        // If a file has the name of an embedded scene, the recording of that scene is used only if
+                        // their contents are the same.
                         let known = library::scene(&name).is_some_and(|embedded| embedded == xml);
                         let recording = known.then(|| library::recording(&name)).flatten();
                         let beyond = milestone.filter(|_| !known).into_iter();
@@ -160,10 +160,10 @@ fn resolve(
 ///
 /// # Errors
 ///
-/// Fails like [`config::read`], and if a pattern matches nothing, or a scene can't be read or is invalid.
+/// Fails like [`config::read`]. Also fails if a pattern matches nothing, or if a scene can't be read or is invalid.
 pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>) -> Result<Plan, SuiteError> {
     let (suite, mut problems) = config::read_all(text);
-    // Scenes are searched even after other errors, so that all errors are reported together.
+    // Scenes are searched even if there are other errors, so that all errors are reported together.
     let plan = resolve(suite, files, &mut problems);
     if problems.is_empty() {
         return Ok(plan);

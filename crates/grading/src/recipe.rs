@@ -1,5 +1,5 @@
-//! Turns a submission into a program that can be run. The submission is a program, an archive with one, or sources to
-//! build.
+//! Turns a submission into a program that can be run. The submission is a program, an archive that contains one, or
+//! sources.
 use super::{
     cancellation::Cancellation,
     config::BuildStep,
@@ -24,25 +24,25 @@ use std::{
     path::Path,
 };
 
-/// The way in which submissions become programs.
+/// The settings by which submissions become programs.
 #[derive(Clone, Copy)]
 pub struct Recipe<'a> {
-    /// The program's name in folders and archives.
+    /// The name of the program in folders and archives.
     pub program: &'a str,
-    /// The build of sources, if the suite has one.
+    /// The build of sources, if the suite builds them.
     pub build: Option<&'a BuildStep>,
     /// The sandbox in which sources are built.
     pub backend: &'a Backend,
-    /// The switch that stops a build.
+    /// The switch that stops builds.
     pub cancellation: &'a Cancellation,
 }
 
 impl Recipe<'_> {
-    /// Stages a file that a user names: a program, or an archive. A file of a kind that can't be run is rejected with
-    /// the reason.
+    /// Copies the program from a file that a user names. The file is a program, or an archive. If it is of a kind that
+    /// can't be run, the result contains the reason.
     ///
     /// # Errors
-    /// Fails if the file can't be read for a fault of the machine, or the copy can't be written.
+    /// Fails if the machine cannot read the file, or cannot write the copy.
     pub fn stage_file(&self, path: &Path) -> Result<StagedProgram, String> {
         let why = match collect::open_file(path, true) {
             Ok((file, _)) => return self.stage_opened(file, path),
@@ -60,9 +60,9 @@ impl Recipe<'_> {
         Ok(StagedProgram::unusable(path, why))
     }
 
-    /// Stages as [`Recipe::stage_file`] does, for a file at `name` in a folder whose contents are not trusted. A link
-    /// that leads elsewhere is rejected, and so is a file that is `noted` as another's. Without such a file, an archive
-    /// in the folder is the submission.
+    /// Copies the program from the file called `name` in a folder whose contents are not trusted, as
+    /// [`Recipe::stage_file`] does. A link out of the folder is rejected. A file is also rejected if `noted` says that
+    /// it belongs to another submission. If there is no file with this name, the only archive in the folder is used.
     ///
     /// # Errors
     /// Fails like [`Recipe::stage_file`].
@@ -87,9 +87,11 @@ impl Recipe<'_> {
         Ok(StagedProgram::unusable(&path, why))
     }
 
-    /// Stages the build of the sources in a folder, or in the only archive in it.
+    /// Builds the sources in a folder, or in the only archive in it, and copies the resulting program.
     ///
-    /// # Errors An error of the grader or the machine.
+    /// # Errors
+    ///
+    /// Fails if the grader or the machine fails. The error is the reason, as text.
     pub fn stage_folder(&self, path: &Path) -> Result<StagedProgram, String> {
         match (self.build, only_archive(path, true)?) {
             (None, _) => self.stage_file(path),
@@ -98,16 +100,17 @@ impl Recipe<'_> {
         }
     }
 
-    /// Stages an open file: an archive or a program.
+    /// Copies the program from an open file, which is an archive or the program itself.
     fn stage_opened(&self, mut file: File, path: &Path) -> Result<StagedProgram, String> {
         match kind_of(&mut file) {
             Ok(FileKind::Archive(_)) => self.stage_unpacked(file, path),
-            // An error of reading is reported when the file is copied.
+            // An error of reading is reported later, when the file is copied.
             _ => copy_program(file, path, self.backend),
         }
     }
 
-    /// Unpacks an archive, and stages its contents: sources for a build, otherwise the program.
+    /// Unpacks an archive. If the suite builds sources, they are built; otherwise the program is copied from the
+    /// archive.
     fn stage_unpacked(&self, archive: File, path: &Path) -> Result<StagedProgram, String> {
         let folder = TemporaryFolder::make("upload").map_err(describe_error_at(&std::env::temp_dir()))?;
         let inside = folder.path().join("submission");
@@ -130,7 +133,7 @@ impl Recipe<'_> {
     }
 }
 
-/// Returns the kind of an open file by its first bytes, and rewinds the file.
+/// Returns the kind of an open file according to its first bytes. Reading continues at its start.
 fn kind_of(file: &mut File) -> io::Result<FileKind> {
     let mut start = Vec::new();
     file.take(fosssim_intake::START_BYTES as u64).read_to_end(&mut start)?;
@@ -138,10 +141,10 @@ fn kind_of(file: &mut File) -> io::Result<FileKind> {
     Ok(FileKind::from_start(&start))
 }
 
-/// Opens the archive in a folder, if it has exactly one: learning platforms make a folder around each upload. With
-/// `is_alone`, the folder must contain only the archive.
+/// Opens the archive in a folder, if there is exactly one. Learning platforms put each upload into a folder. With
+/// `is_alone`, the folder must contain nothing else.
 fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
-    /// The maximum number of entries of a learning platform's folder.
+    /// The maximum number of entries in a folder of a learning platform.
     const MAX_PLATFORM_ENTRIES: usize = 100;
     let Ok(opened) = OpenFolder::open(folder) else { return Ok(None) };
     let mut names = opened.names().map_err(describe_error_at(folder))?;
@@ -150,7 +153,7 @@ fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
         return Ok(None);
     }
     let archive = |name: &OsString| {
-        // The owner of a file with several names is unknown.
+        // If the file has several names, its owner is unknown.
         let (mut file, _) = opened.regular_file(name.to_str()?, MAX_FOLDER_BYTES).ok()?;
         matches!(kind_of(&mut file), Ok(FileKind::Archive(_))).then_some(file)
     };

@@ -1,8 +1,9 @@
-//! Recordings: the reference traces of scenes, with a manifest and digests per step that diff well.
+//! Recordings are the reference's traces of scenes. A manifest and digests of each step make differences readable.
 //!
-//! The module works without files: it makes bytes from scenes, and compares them with earlier recordings. The folder
-//! `references` has the layout of the folder of scenes, with `<name>.bin.zst` (the trace) and `<name>.steps` (a digest
-//! per step) for `<name>.xml`, and `manifest.txt` (name, steps, bytes, SHA-256).
+//! The module does not read or write files. It computes recordings from scenes, and compares them with earlier ones.
+//! The folder `references` has the same subfolders as the folder of scenes. For `<name>.xml` it contains
+//! `<name>.bin.zst` (the trace) and `<name>.steps` (a digest for each step). The file `manifest.txt` lists the name,
+//! the steps, the bytes and the SHA-256 of each recording.
 use fosssim_model::{
     scene::{self, Problems, Scene},
     sim::{RootSearch, Simulation, StepError},
@@ -11,19 +12,20 @@ use fosssim_model::{
 use similar::TextDiff;
 use std::io::{self, Read};
 
-/// The compression level of zstd. It is high, because recordings are rarely made but part of every release.
+/// The compression level of recordings for zstd. It is high, because recordings are seldom made but belong to every
+/// release.
 const COMPRESSION_LEVEL: i32 = 19;
 
-/// The reference trace of one scene.
+/// The recording of one scene: the reference's trace, and its digests.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Recording {
-    /// The scene's name, `Group/name`.
+    /// The name of the scene, as `Group/name`.
     pub name: String,
     /// The number of steps of the scene.
     pub steps: u32,
-    /// The trace.
+    /// The reference's trace of the scene.
     pub trace: Vec<u8>,
-    /// The text of the `.steps` file: a digest per step, sizes, and the SHA-256 of the whole.
+    /// The text of the `.steps` file: a digest for each step, the sizes, and the SHA-256 of the whole trace.
     pub digests: String,
     sha256: String,
 }
@@ -43,7 +45,7 @@ pub enum RecordError {
 }
 
 impl Recording {
-    /// Simulates a scene given as XML.
+    /// Simulates a scene, and returns its recording. `xml` is the content of the scene's file.
     ///
     /// # Errors
     /// Fails if the scene has errors, or a step has no result.
@@ -60,7 +62,7 @@ impl Recording {
         })
     }
 
-    /// Returns the contents of the recording's `.bin.zst` file.
+    /// Returns the content of the recording's `.bin.zst` file.
     ///
     /// # Errors
     /// Fails if zstd fails.
@@ -68,12 +70,12 @@ impl Recording {
         zstd::encode_all(&self.trace[..], COMPRESSION_LEVEL)
     }
 
-    /// Returns the recording's line of the manifest.
+    /// Returns the line of the manifest for this recording.
     fn line(&self) -> String {
         format!("{} {} steps {} bytes sha256 {}\n", self.name, self.steps, self.trace.len(), self.sha256)
     }
 
-    /// Returns a text that describes the difference from the recorded files; `None` if there is none.
+    /// Describes how this recording differs from the stored files; `None` if it does not differ.
     #[must_use]
     pub fn describe_difference(&self, packed: Option<&[u8]>, steps: Option<&[u8]>) -> Option<String> {
         let Some(packed) = packed else { return Some(format!("{}: there is no recording\n", self.name)) };
@@ -92,14 +94,14 @@ impl Recording {
     }
 }
 
-/// Returns the manifest of recordings, in the given order.
+/// Returns the manifest of these recordings, in the given order.
 #[must_use]
 pub fn render_manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> String {
     recordings.into_iter().map(Recording::line).collect()
 }
 
-/// Returns a unified diff from the recording to the present simulation; empty if they are equal. Line ends are ignored,
-/// because Git may have changed them in the recorded text.
+/// Returns a unified diff from the stored recording to the present simulation; empty if they are equal. Line ends are
+/// ignored, because Git may have changed them in the stored text.
 #[must_use]
 pub fn render_diff(name: &str, recorded: &str, now: &str) -> String {
     let (old, new) = (format!("recorded/{name}"), format!("simulated/{name}"));
@@ -107,7 +109,7 @@ pub fn render_diff(name: &str, recorded: &str, now: &str) -> String {
     TextDiff::from_lines(recorded.as_str(), now).unified_diff().context_radius(1).header(&old, &new).to_string()
 }
 
-/// Returns the trace of a scene.
+/// Simulates a scene, and returns its trace.
 pub(super) fn simulate_trace(scene: &Scene) -> Result<Vec<u8>, RecordError> {
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), Layout::for_scene(scene), simulation.state());
@@ -117,7 +119,8 @@ pub(super) fn simulate_trace(scene: &Scene) -> Result<Vec<u8>, RecordError> {
     Ok(recorder.finish()?.0)
 }
 
-/// Returns the trace of a recording, cut after one byte more than expected, which is enough to show a difference.
+/// Returns the trace in a compressed recording. If it is longer than expected, it is cut one byte after the expected
+/// length, which is enough to show a difference.
 fn unpack(packed: &[u8], expected: usize) -> io::Result<Vec<u8>> {
     let mut trace = Vec::with_capacity(expected);
     zstd::stream::read::Decoder::new(packed)?.take(expected as u64 + 1).read_to_end(&mut trace)?;

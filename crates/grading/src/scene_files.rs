@@ -1,23 +1,24 @@
-//! Folders of scenes, and of their recordings: `<assignment>/<Group>/<name>`, or `<Group>/<name>` without assignments.
+//! Folders that contain scenes or recordings. Paths are `<assignment>/<Group>/<name>`, or `<Group>/<name>` without
+//! assignments.
 use std::{
     fs, io,
     path::{Path, PathBuf},
 };
 
-/// A file in a folder of scenes.
+/// A file in a folder of scenes or recordings.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord)]
 pub struct SceneFile {
-    /// The scene's name, `Group/name`.
+    /// The name of the scene, as `Group/name`.
     pub name: String,
-    /// The scene's path in the folder, without the extension; also the path of its recording in the folder of
+    /// The path of the scene in its folder, without the ending. The recording has the same path in the folder of
     /// recordings.
     pub stem: String,
     /// The path of the file.
     pub path: PathBuf,
 }
 
-/// Returns the files with this extension (`.xml`, say) in the groups of a folder, sorted by the scenes' names. Files in
-/// other places, or with names that are not UTF-8, are left out.
+/// Returns the files with an ending such as `.xml` in the groups of a folder, sorted by the names of the scenes. Files
+/// elsewhere in the folder are left out, and so are files whose names are not UTF-8.
 ///
 /// # Errors
 /// Fails if a folder can't be read.

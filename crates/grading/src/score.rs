@@ -1,5 +1,5 @@
-//! Makes a grade from the results of a submission's scenes: verdicts, points, and the mistakes that several scenes show
-//! together.
+//! Computes a grade from the results of a submission's scenes: the verdicts, the points, and the mistakes that several
+//! scenes show together.
 use super::{
     config::{Credit, Marking, POINTS_RANGE},
     grade::{Grade, GroupGrade, SceneGrade},
@@ -13,13 +13,13 @@ use fosssim_mistakes::diagnose::{self, Explanation};
 use fosssim_model::scene::Scene;
 use std::time::Duration;
 
-/// Shares a group's points evenly among its scenes and adds up the points reached. Each result comes with a flag:
-/// whether it was reused from an earlier run.
+/// Shares a group's points evenly among its scenes, and adds up the points of the scenes. The flag of each result tells
+/// whether it was reused from an earlier grading.
 ///
-/// With [`Credit::Steps`] a scene with a complete trace and a wrong answer gets the share of its steps without a
-/// finding, but never all its points. An accepted scene gets all its points, and every other scene none. With
-/// [`Credit::All`] every scene has to be accepted. Scenes on which the grader failed, or which it did not run, have no
-/// points; neither has their group.
+/// An accepted scene gets all its points. With [`Credit::Steps`], a scene with a complete but wrong trace gets the
+/// share of its steps without a finding, but never all its points. Every other scene gets zero points. With
+/// [`Credit::All`], the group gets points only if every scene is accepted. If the grader failed on a scene or did not
+/// run it, neither the scene nor its group has points.
 #[must_use]
 pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool)>) -> GroupGrade {
     let each = scene_points(marking.points, results.len());
@@ -49,8 +49,8 @@ pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool
     }
 }
 
-/// Returns the grade of the results of all scenes, in the plan's order, without build, sandbox and times. `is_timed`
-/// decides whether speed counts.
+/// Computes the grade from the results of all scenes, in the order of the plan. The build, the sandbox and the times
+/// are still missing in it. `is_timed` tells whether speed counts.
 pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
     let mut results = as_written(results).into_iter();
     let of_group = |planned: &PlannedGroup| {
@@ -67,7 +67,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         verdict,
         points,
         max_points,
-        // Without a run there is no output that could reveal a hidden scene.
+        // If nothing was run, there is no output that could reveal a hidden scene.
         shows_output: true,
         refuted: find_refuted(plan, &groups),
         groups,
@@ -85,8 +85,8 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
     }
 }
 
-/// Returns the results as those of one submission: if any trace has entries, an empty trace counts as wrong, not as
-/// unwritten.
+/// Treats the results as parts of one submission. If the trace of any scene has entries, an empty trace of another
+/// scene counts as wrong, not as unwritten.
 fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
     let shows = |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
     if results.iter().any(shows) {
@@ -97,18 +97,19 @@ fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)>
     results
 }
 
-/// Returns the points of the scenes and of their speed.
+/// Adds the points of the scenes and the points for speed; `None` if one of them is missing.
 fn add_speed_points(scenes: Option<f64>, speed: Option<&SpeedGrade>) -> Option<f64> {
     speed.map_or(scenes, |speed| Some(scenes? + speed.points?))
 }
 
-/// Returns the points of one scene, in a group of `scenes` scenes.
+/// Returns the points that one scene is worth, in a group of `scenes` scenes.
 #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
 fn scene_points(points: f64, scenes: usize) -> f64 {
     if scenes == 0 { 0.0 } else { points / scenes as f64 }
 }
 
-/// Returns the points of a group. The full score is exact, because a sum of rounded shares could be 99.99999 of 100.
+/// Returns the points that a group gets. The full score is exact, because a sum of rounded shares could be 99.99999
+/// instead of 100.
 fn group_points(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Option<f64> {
     match all_accepted && !scenes.is_empty() {
         true => Some(points),
@@ -116,13 +117,13 @@ fn group_points(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Optio
     }
 }
 
-/// Returns the share of a scene's points that its result gets.
+/// Returns the share of a scene's points that its result gives; `None` if the result gives no points.
 fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64> {
     Some(match (credit, result.verdict) {
         (_, Verdict::NotRun | Verdict::JudgeError) => return None,
         (Credit::All, _) => f64::from(u8::from(all_accepted)),
         (_, Verdict::Accepted) => 1.0,
-        // All steps of a wrong trace can be right: the first record may be wrong, or small errors may add up.
+        // All steps of a wrong trace can be right, because the first record may be wrong, or small errors may add up.
         (Credit::Steps, Verdict::WrongAnswer) => {
             let right = result.right_steps.min(result.steps.saturating_sub(1));
             f64::from(right) / f64::from(result.steps.max(1))
@@ -131,8 +132,8 @@ fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64
     })
 }
 
-/// Finds a contradiction in a grade: points or a verdict that do not follow from its scenes. A grade from an untrusted
-/// file is checked before its points are used.
+/// Finds points or a verdict in a grade that do not follow from its scenes. A grade from a file that is not trusted is
+/// checked before its points are used.
 #[must_use]
 pub fn find_contradiction(grade: &Grade) -> Option<&'static str> {
     let (verdict, points, max_points) = Grade::totals(&grade.groups);
@@ -147,7 +148,8 @@ pub fn find_contradiction(grade: &Grade) -> Option<&'static str> {
     }
 }
 
-/// Returns whether a group's points and verdict follow from its scenes' verdicts with some rule for credit.
+/// Returns whether a group's points and verdict follow from the verdicts of its scenes, by any of the rules for partial
+/// credit.
 fn is_consistent(group: &GroupGrade) -> bool {
     let all_accepted = group.scenes.iter().all(|scene| scene.verdict.is_accepted());
     let max_points = group.max_points_of_scenes();
@@ -164,10 +166,10 @@ fn is_consistent(group: &GroupGrade) -> bool {
         && group.verdict == group.scenes.iter().map(|scene| scene.verdict).max().unwrap_or(Verdict::NotRun)
 }
 
-/// The maximum number of accepted scenes that are checked for evidence against a likely mistake.
+/// The maximum number of accepted scenes that are used to refute a likely mistake.
 const MAX_WITNESSES: usize = 12;
 
-/// Returns the likely mistakes that accepted scenes refute. The smallest of these scenes are tried.
+/// Returns the likely mistakes that accepted scenes refute. Only the smallest accepted scenes are tried.
 fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     let graded = || groups.iter().flat_map(|group| &group.scenes).zip(plan.scenes());
     let wrong: Vec<(&Scene, &[Explanation])> = graded()
@@ -183,7 +185,8 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         .collect();
     right.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() * scene.particles.len()) as u64);
     right.truncate(MAX_WITNESSES);
-    // The folder of a built-in scene names its milestone; for other scenes the milestone follows from the contents.
+    // A built-in scene belongs to the milestone that its folder names. For other scenes, the milestone follows from
+    // their contents.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
     let whose = bundled.or_else(|| diagnose::milestone(plan.scenes().map(|task| &task.scene)));
     diagnose::refuted_keys(whose, &wrong, &right)

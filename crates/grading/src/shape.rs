@@ -1,6 +1,6 @@
 //! The shape of a suite file: its keys, and the type of each value.
 //!
-//! The check reports all errors together, and removes wrong parts, so that the rest can still be checked.
+//! All errors are reported together. Wrong parts are removed, so that the rest can still be checked.
 use super::near::find_closest;
 use fosssim_findings::{Hints, Visibility};
 use fosssim_judge::Rules;
@@ -12,31 +12,31 @@ use toml::{
     de::{DeTable, DeValue},
 };
 
-/// A problem and its byte range in the file.
+/// A problem, and the range of bytes in the file that it is about.
 pub(super) type Problem = (Range<usize>, String);
 
-/// The range of a group's points.
+/// The range in which a group's points must be.
 pub const POINTS_RANGE: Range<f64> = 0.0..1e6;
 
-/// The rule for partial credit.
+/// The rule for partial success within a group.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Credit {
-    /// The group's points are multiplied by the share of accepted scenes.
+    /// The group gets the share of its points that corresponds to the share of accepted scenes.
     Scenes,
-    /// Each scene counts by its share of steps without a finding.
+    /// A scene that is not accepted still gets the share of its points that corresponds to its steps without a finding.
     Steps,
-    /// All scenes have to be accepted.
+    /// The group gets points only if all scenes are accepted.
     All,
 }
 
-/// The type of a key's value.
+/// The type that the value of a key must have.
 enum ValueKind {
     Text,
     Texts,
-    /// A number in a range; the text is the table's name, for messages about a number out of range.
+    /// A number in a range. The text is the name of the table, for messages about numbers out of range.
     Number(&'static str, Range<f64>),
-    /// A whole number of at least 0.
+    /// A whole number that is at least 0.
     Whole,
     Flag,
     /// One of several words.
@@ -45,7 +45,7 @@ enum ValueKind {
     Tables(&'static [Key]),
 }
 
-/// A key: its name, its kind of value, and whether it is required.
+/// A key: its name, the type of its value, and whether the key is required.
 struct Key(&'static str, ValueKind, bool);
 
 const HINT_NAMES: &[&str] = &["none", "where", "what", "full"];
@@ -61,7 +61,8 @@ const MILESTONE_NAMES: [&str; Assignment::ALL.len()] = {
     keys
 };
 
-/// Declares the tables of the file: the keys of each, and the struct that is read after the shape has been checked.
+/// Declares the tables of the file. Each has its keys, and a struct into which the table is read after its form has
+/// been checked.
 macro_rules! tables {
     ($($raw:ident $keys:ident { $($key:ident: $value:ty = $kind:expr, $is_required:literal;)+ })+) => {
         $(
@@ -132,7 +133,7 @@ tables! {
     }
 }
 
-/// The tables in which a misplaced key may belong.
+/// The tables to which a key in a wrong table may belong.
 const TABLE_KEYS: [(&str, &[Key]); 6] = [
     ("[limits]", LIMITS),
     ("[build]", BUILD),
@@ -142,7 +143,7 @@ const TABLE_KEYS: [(&str, &[Key]); 6] = [
     ("the top of the file", SUITE),
 ];
 
-/// Returns the table without its faulty parts, all problems, and whether every line could be parsed.
+/// Returns the table without its wrong parts, all problems, and whether every line could be parsed.
 pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bool) {
     let (mut table, errors) = DeTable::parse_recoverable(text);
     let mut problems: Vec<Problem> =
@@ -151,16 +152,16 @@ pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bo
     if is_readable {
         remove_unknown(table.get_mut(), SUITE, "the suite", 0..0, &mut problems);
     } else {
-        // A line that cannot be parsed may contain any key, so nothing is checked.
+        // If a line cannot be parsed, it may contain any key, so nothing else is checked.
         table.get_mut().clear();
     }
     (table, problems, is_readable)
 }
 
-/// Removes unknown keys and values of the wrong type from a table, and reports them.
+/// Removes unknown keys and values of wrong types from a table, and reports them.
 fn remove_unknown(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
     for Key(name, _, required) in keys {
-        // A missing key may be misspelled, which is already reported.
+        // A missing key may be a misspelled one, which has already been reported.
         let meant = |key: &Spanned<Cow<'_, str>>| {
             key.get_ref() == name || find_closest(key.get_ref(), keys.iter().map(|Key(name, ..)| *name)) == Some(name)
         };
@@ -239,7 +240,8 @@ fn has_type(name: &str, kind: &ValueKind, value: &mut Spanned<DeValue<'_>>, prob
     }
 }
 
-/// Returns a number's value, rounded if it is long; `None` for a hexadecimal number, which no reader accepts.
+/// Returns the value of a number, rounded if it has many digits; `None` for a hexadecimal number, which no reader
+/// accepts.
 fn read_number(value: &DeValue<'_>) -> Option<f64> {
     match value {
         DeValue::Float(number) => number.as_str().parse().ok(),
@@ -250,18 +252,18 @@ fn read_number(value: &DeValue<'_>) -> Option<f64> {
     }
 }
 
-/// Returns the type with its article, such as `an integer`.
+/// Returns the name of a type with its article, such as `an integer`.
 fn with_article(kind: &str) -> String {
     format!("{} {kind}", if kind.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" })
 }
 
-/// Returns the message for a word that is not in a list.
+/// Returns the message about a word that is not one of the allowed words.
 fn describe_choices(name: &str, word: &str, words: &[&str]) -> String {
     let hint = find_closest(word, words.iter().copied()).map(|word| format!("; did you mean \"{word}\"?"));
     format!("{name} \"{word}\" is unknown; choose {}{}", list_words(words, "or"), hint.unwrap_or_default())
 }
 
-/// Returns a list as text, such as `"a", "b" and "c"`.
+/// Joins words into a list, such as `"a", "b" and "c"`. `last` is the word before the last entry.
 fn list_words(words: &[&str], last: &str) -> String {
     let quoted: Vec<String> = words.iter().map(|word| format!("\"{word}\"")).collect();
     match &quoted[..] {
@@ -270,7 +272,7 @@ fn list_words(words: &[&str], last: &str) -> String {
     }
 }
 
-/// Returns the message for an unknown key in a table.
+/// Returns the message about an unknown key in a table.
 fn describe_unknown(key: &str, keys: &[Key], place: &str) -> String {
     let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
     let here = keys.iter().map(|Key(name, ..)| *name);

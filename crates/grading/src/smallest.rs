@@ -1,5 +1,5 @@
-//! Finds the smallest scene for each cause of wrong results, by running the program in the sandbox on smaller and
-//! smaller scenes.
+//! Finds the smallest scene for each cause of wrong results. The program is run in the sandbox on smaller and smaller
+//! scenes.
 use super::{config::RunLimits, execute::Runner, located::FailureKind, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
 pub use fosssim_findings::smallest::SmallestScene;
@@ -13,70 +13,73 @@ use fosssim_sandbox::{ProcessorTimeScope, RunEnd, processor_time};
 use fosssim_shrink::{Observation, SmallScene, WrongReason, reduce, step_starts};
 use std::{path::Path, time::Duration};
 
-/// The maximum number of scenes that are tried for one cause, the smallest first.
+/// The maximum number of scenes that are tried for one cause. The smallest ones are tried first.
 const MAX_SCENES: usize = 4;
-/// The maximum number of bodies of a scene that is reduced; traces of larger scenes are too long to be kept whole.
+/// The maximum number of bodies in a scene that is made smaller. Traces of larger scenes are too long to be kept as a
+/// whole.
 pub const MAX_BODIES: usize = 400;
-/// The maximum number of causes without a name for which a scene is made.
+/// The maximum number of causes without a name for which a smallest scene is searched.
 const MAX_UNNAMED_CAUSES: usize = 2;
 
-/// The limits for smallest scenes that are only one part of a report.
+/// The limits on the search if smallest scenes are only one part of a report.
 pub const QUICK_LIMITS: ShrinkLimits = ShrinkLimits { runs: 300, time: Duration::from_secs(2), step: None };
 
-/// The limits of processor time and wall time of a run.
+/// The limits of processor time and wall time for one run.
 const RUN_TIME_LIMITS: [Duration; 2] = [Duration::from_millis(500), Duration::from_secs(2)];
 
-/// Returns limits that allow only as much time as a program needs on a small scene. A trace that is complete at the
-/// time limit is still read.
+/// Returns limits that allow only as much time as a program needs for a small scene. If the trace is complete when time
+/// runs out, it is still read.
 #[must_use]
 pub fn shorten_limits(limits: &RunLimits) -> RunLimits {
     RunLimits { cpu: limits.cpu.min(RUN_TIME_LIMITS[0]), wall: limits.wall.min(RUN_TIME_LIMITS[1]), ..*limits }
 }
 
-/// Describes a smallest scene for staff.
+/// A function that describes a smallest scene for staff.
 pub type DescribeSmallest<'a> = dyn Fn(&ShrunkScene) -> SmallestScene + Sync + 'a;
 
-/// The limits of the work for one cause, and the step at which the search begins.
+/// The limits on the search for one cause, and the step at which the search begins.
 #[derive(Debug, Clone, Copy)]
 pub struct ShrinkLimits {
-    /// The maximum number of runs of the program.
+    /// The maximum number of times that the program is run.
     pub runs: u32,
-    /// The maximum processor time of these runs and of this thread.
+    /// The maximum processor time of these runs and of the searching thread.
     pub time: Duration,
-    /// The wrong step with which the search begins; by default the first ones.
+    /// The wrong step at which the search begins. With `None`, the first wrong steps are tried.
     pub step: Option<u32>,
 }
 
-/// A cause (`None` if it is known only after a run) and the scenes on which the program is wrong because of it.
+/// A cause, and the scenes on which the program is wrong because of it. The cause is `None` if it is known only after a
+/// run.
 pub type Cause<'a> = (Option<WrongReason>, Vec<&'a SceneTask>);
 
-/// The smallest scene for a cause.
+/// The smallest scene that was found for a cause.
 #[derive(Debug, Clone)]
 pub struct ShrunkScene {
-    /// The cause of the wrong result.
+    /// The reason why the program is wrong on the scene.
     pub reason: WrongReason,
-    /// The name of the original scene.
+    /// The name of the scene from which it was made.
     pub origin: String,
     /// The reduced scene.
     pub small: SmallScene,
-    /// The program's run on the scene.
+    /// The program's behavior on the smallest scene.
     pub seen: Observation,
-    /// The number of runs of the program.
+    /// The number of times that the program was run.
     pub runs: u32,
 }
 
-/// A program's run on a scene on which it is wrong.
+/// A scene on which the program is wrong, and what is known about it.
 #[derive(Debug, Clone, Copy)]
 pub struct WrongScene<'a> {
-    /// The scene.
+    /// The scene that was run.
     pub task: &'a SceneTask,
-    /// The explanations of the program's trace.
+    /// The explanations of the trace that the program wrote.
     pub explanations: &'a [Explanation],
-    /// The end of the program.
+    /// The way in which the program ended.
     pub ended: &'a RunEnd,
 }
 
-/// Returns the causes of wrong scenes: the likely mistakes, the kinds of failing ends, and a few unexplained scenes.
+/// Returns the causes of the wrong scenes: the likely mistakes, the ways in which the program failed, and for a few
+/// scenes an unknown cause.
 #[must_use]
 pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
     let likely =
@@ -101,28 +104,28 @@ pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec
     all
 }
 
-/// Runs a program on smaller and smaller scenes.
+/// Searches for smallest scenes, by running a program on smaller and smaller ones.
 pub struct Shrinker<'a> {
-    /// The runner of the program.
+    /// The runner that runs the program.
     pub runner: Runner<'a>,
     /// The path of the program.
     pub program: &'a Path,
-    /// The milestone that decides the form of the scenes.
+    /// The milestone that determines the form of the scenes.
     pub assignment: Assignment,
-    /// The limits of the work for one cause.
+    /// The limits on the search for one cause.
     pub limits: ShrinkLimits,
 }
 
 impl Shrinker<'_> {
-    /// Returns the smallest scene for a cause; `None` if no part of a scene reproduces it.
+    /// Returns the smallest scene for a cause; `None` if no smaller scene shows it.
     ///
     /// # Errors
-    /// Fails if the grader or the machine fails, with the reason as text.
+    /// Fails if the grader or the machine fails. The error is the reason, as text.
     pub fn shrink_cause(&self, (reason, mut tasks): Cause<'_>) -> Result<Option<ShrunkScene>, String> {
         tasks.retain(|task| task.scene.particles.len() <= MAX_BODIES);
         tasks.sort_by_key(|task| (task.scene.particles.len(), task.scene.step_count()));
         let mut spent = Duration::ZERO;
-        // Only the time of this thread counts, because other threads may be grading.
+        // Only the processor time of this thread counts, because other threads may be grading.
         let begun = processor_time(ProcessorTimeScope::Thread);
         let is_over = |spent: Duration| {
             let own = processor_time(ProcessorTimeScope::Thread).saturating_sub(begun);
@@ -155,7 +158,7 @@ impl Shrinker<'_> {
         Ok(None)
     }
 
-    /// Runs the program on a scene.
+    /// Runs the program on a scene, and adds the time that it took to `spent`.
     fn observe(&self, scene: &Scene, spent: &mut Duration) -> Result<Observation, String> {
         let xml = scene::write(scene).into_bytes();
         let task = SceneTask { name: "smallest".to_owned(), xml, scene: scene.clone(), recording: None };
@@ -165,7 +168,7 @@ impl Shrinker<'_> {
     }
 }
 
-/// Returns the wrong steps of a run; if the program did not end well, the step after its last record.
+/// Returns the wrong steps of a run. If the program did not end well, this is the step after its last record.
 fn wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
     let options = Options { threads: 1, fair: true, ..Options::default() };
     let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());

@@ -1,8 +1,8 @@
 //! Times a submission and the reference program, if a suite gives points for speed.
 //!
-//! Both run alternately in the same sandbox, on the same scene and machine. Both traces are judged, so that a program
-//! that omits work in its timed runs gets no points. The reference is this program itself, in the role of the course's
-//! original.
+//! Both run alternately in the same sandbox, on the same scene and the same machine. Their traces are judged, so that a
+//! program that omits work in timed runs gets no points. The reference is this program itself, in the role of the
+//! course's original.
 use super::{
     config,
     execute::Runner,
@@ -20,9 +20,9 @@ use fosssim_findings::{
 use std::{fs, time::Instant};
 
 impl SubmissionGrading<'_> {
-    /// Times the scenes of each group that marks speed, if all of the group's scenes are accepted. Earlier times of the
-    /// same program on this machine are reused. Timed runs together may take as long as the graded runs. When it is
-    /// used up, each further scene is timed once.
+    /// Times the scenes of each group that gives points for speed, if all scenes of the group are accepted. Earlier
+    /// times of the same program on this machine are reused. All timed runs together may take as long as the graded
+    /// runs. When this time is used up, each further scene is timed only once.
     pub(super) fn time_scenes(&self, results: &mut [(SceneResult, bool)]) {
         let mut rest = results;
         let begin = Instant::now();
@@ -48,7 +48,7 @@ impl SubmissionGrading<'_> {
         }
     }
 
-    /// Stores a result again, with its times.
+    /// Stores a result again, after its times were added.
     fn keep_timed(&self, scene: &SceneTask, result: &SceneResult) {
         if let (Some(_), Ok(staged)) = (&result.timing, &*self.staged_program()) {
             let students = self.grader.plan.student_hints(&scene.name);
@@ -57,8 +57,7 @@ impl SubmissionGrading<'_> {
         }
     }
 
-    /// Returns the timed runs of a scene; after `end`, only one run is made. `None` if the grader failed or was
-    /// stopped.
+    /// Times a scene. After the time `end`, only one run is made. Returns `None` if the grader failed or was stopped.
     fn time_scene(&self, scene: &SceneTask, marking: SpeedMarking, end: Instant) -> Option<Timing> {
         let (staged, reference) = (self.staged_program(), self.shared.reference(self.grader.reference?));
         let (Ok(staged), Ok(reference)) = (&*staged, &*reference) else { return None };
@@ -81,7 +80,7 @@ impl SubmissionGrading<'_> {
             }
             let submission = || run(staged, &self.grader.plan.run);
             let other = || run(reference, &config::default_run());
-            // Alternate the order, so that neither always profits from warm caches.
+            // The order alternates, so that neither program always profits from warm caches.
             let ((verdict, submission), (sound, reference)) = match round % 2 {
                 0 => (submission(), other()),
                 _ => {
@@ -103,12 +102,12 @@ impl SubmissionGrading<'_> {
     }
 }
 
-/// Returns whether the times come from this machine and from enough runs.
+/// Returns whether the times were measured on this machine, and in enough runs.
 fn is_from_this_machine(timing: &Timing, marking: SpeedMarking) -> bool {
     timing.machine == machine_name() && (timing.failed.is_some() || timing.runs.len() >= marking.runs as usize)
 }
 
-/// Returns the names of this machine and its processor.
+/// Returns a name for this machine and its processor.
 fn machine_name() -> String {
     let name = fs::read_to_string("/proc/sys/kernel/hostname").unwrap_or_default();
     let processor = fs::read_to_string("/proc/cpuinfo").unwrap_or_default();

@@ -1,9 +1,9 @@
-//! Copies a submission to a folder in which it can run. No other process can read or change the copy. Its digest is
-//! computed while it is written.
+//! Copies a submission into a folder in which it can run. No other process can read or change the copy. The copy's
+//! digest is computed while it is written.
 //!
 //! Each file is opened once, below the submission's folder, without following links or blocking, and all checks use the
-//! open file. A user who may write in that folder can exchange a name, but not the open file. If a file can't be copied
-//! because of its kind or its permissions, that is the submission's fault and not the grader's. Sources are built in a
+//! open file. A user who may write into that folder can replace a name, but not the open file. If a file can't be
+//! copied because of its kind or its permissions, the submission is at fault, not the grader. Sources are built in a
 //! copy of their folder, in the sandbox, so that a build changes nothing of the submission.
 use super::{
     cancellation::Cancellation,
@@ -31,31 +31,31 @@ use std::{
 /// The maximum size of a submission's folder, in bytes.
 pub(super) const MAX_FOLDER_BYTES: u64 = 1 << 30;
 const MAX_FILES: u64 = 20_000;
-/// The maximum size of a build's folder, including sources, in bytes.
+/// The maximum size of the folder in which a build runs, including the sources, in bytes.
 const MAX_BUILD_BYTES: u64 = 2 << 30;
 const MAX_DEPTH: u32 = 64;
-/// The maximum number of bytes of compiler output that a report keeps.
+/// The maximum number of bytes of the compiler's output that are kept for reports.
 const MAX_OUTPUT_BYTES: usize = 64 << 10;
-/// The size of a copied block, in bytes.
+/// The number of bytes that are copied at a time.
 const BLOCK_BYTES: usize = 1 << 16;
 
-/// A program to run, with its digest. Dropping the value removes the copy.
+/// A copy of a program that can be run, and its digest. When the value is dropped, the copy is removed.
 #[derive(Debug)]
 pub struct StagedProgram {
-    /// The path of the program.
+    /// The path of the copied program.
     pub program: PathBuf,
-    /// The digest of the program's bytes; the digest of its path if there is no runnable program.
+    /// The digest of the program's bytes. If there is no program that can be run, the digest of the submission's path.
     pub digest: blake3::Hash,
-    /// The result of the build, if there was one.
+    /// The result of the build, if the program was built.
     pub build: Option<Build>,
-    /// The reason why the submission cannot be run, which is its own fault.
+    /// The reason why the submission cannot be run; `None` if it can. The submission itself is at fault.
     pub refused: Option<UnusableReason>,
-    /// The identity of the copied file.
+    /// The identity of the file that was copied.
     pub(super) identity: Option<ProgramIdentity>,
     _folder: Option<TemporaryFolder>,
 }
 
-/// Creates a message with a path and the error of the operating system.
+/// Returns a function that makes a message from an error of the operating system, with the path that it is about.
 pub(super) fn describe_error_at(path: &Path) -> impl FnOnce(io::Error) -> String {
     move |error| format!("{}: {error}", path.display())
 }
@@ -63,9 +63,9 @@ pub(super) fn describe_error_at(path: &Path) -> impl FnOnce(io::Error) -> String
 /// The reason why a submission's files were not copied.
 #[derive(Debug)]
 pub(super) enum CopyError {
-    /// The submission's own fault, as text.
+    /// The submission is at fault; the value is the reason.
     Submission(String),
-    /// An error of the grader or the machine, as text.
+    /// The grader or the machine is at fault; the value is the reason.
     Ours(String),
 }
 
@@ -75,10 +75,10 @@ impl From<String> for CopyError {
     }
 }
 
-/// Decides who is at fault if a part of a submission cannot be opened or read: for inaccessible or missing files it is
-/// the submission.
+/// Decides who is at fault if a file of a submission cannot be opened or read. If the file is missing or not
+/// accessible, it is the submission.
 pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
-    // A path that is too long is the submission's fault; a failing disk is the machine's.
+    // If a path is too long, the submission is at fault. If a disk fails, the machine is.
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
     match closed || error.kind() == io::ErrorKind::InvalidFilename {
         true => CopyError::Submission(format!("{} can't be read: {error}", name.to_string_lossy().escape_debug())),
@@ -86,8 +86,8 @@ pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
     }
 }
 
-/// Copies the program that speed is compared with. The copy has the name of the course's original, which makes it run
-/// in that role.
+/// Copies the program with whose speed submissions are compared. The copy has the name of the course's original, which
+/// makes it run in that role.
 ///
 /// # Errors
 ///
@@ -105,14 +105,15 @@ pub(super) fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
     opened.open_file(OsStr::new(name), MAX_FOLDER_BYTES).map(|(file, _)| file)
 }
 
-/// Returns the digest of a file without copying it; `None` for files that [`Recipe::open_file`] rejects, and for links.
+/// Returns the digest of a file without copying it. For links, and for files that [`Recipe::open_file`] rejects,
+/// returns `None`.
 #[must_use]
 pub fn digest(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
     if length <= MAX_FOLDER_BYTES { digest_of(file) } else { None }
 }
 
-/// Returns the digest of the file that [`Recipe::file_in`] would stage, without copying it.
+/// Returns the digest of the file that [`Recipe::file_in`] would copy, without copying it.
 #[must_use]
 pub fn digest_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Option<blake3::Hash> {
     let file = open_in(folder, name).ok()?;
@@ -125,7 +126,7 @@ fn digest_of(file: File) -> Option<blake3::Hash> {
 }
 
 impl StagedProgram {
-    /// Creates a staged submission without a runnable program.
+    /// Creates the value for a submission that has no program that can be run.
     fn without_program(path: &Path) -> Self {
         let digest = blake3::hash(path.as_os_str().as_encoded_bytes());
         Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
@@ -135,18 +136,18 @@ impl StagedProgram {
         Self { refused: Some(why), ..Self::without_program(path) }
     }
 
-    /// Returns the digest of the program's bytes; `None` without a runnable program.
+    /// Returns the digest of the program's bytes; `None` if there is no program that can be run.
     pub(super) fn program_digest(&self) -> Option<blake3::Hash> {
         let is_built = self.build.as_ref().is_none_or(|build| build.end.is_success());
         (is_built && self.refused.is_none()).then_some(self.digest)
     }
 }
 
-/// Copies an open program, unless it is the grader or cannot be started.
+/// Copies an open program, unless it is the grader itself or cannot be started.
 pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result<StagedProgram, String> {
     let metadata = file.metadata().map_err(describe_error_at(path))?;
     let name = path.file_name().unwrap_or_else(|| "program".as_ref());
-    // A modified copy of the grader with this name would also write right traces.
+    // A modified copy of the grader with this name would also write right traces, so the name is checked as well.
     let is_oracle = name.as_encoded_bytes().starts_with(b"FOSSSimOracle");
     let why = match copy_as(name, file, path, &mut { MAX_FOLDER_BYTES }) {
         Ok(staged) => {
@@ -163,18 +164,18 @@ pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result
     Ok(StagedProgram::unusable(path, why))
 }
 
-/// Copies an open program into a new folder, under the name `name`.
+/// Copies an open program into a new folder, where it is called `name`.
 fn copy_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<StagedProgram, CopyError> {
     let folder = TemporaryFolder::make("program").map_err(describe_error_at(&std::env::temp_dir()))?;
     let copy = folder.path().join(name);
-    // A program is executable, even if the upload lost the permission.
+    // The copy is executable, even if the upload has lost this permission.
     let digest = copy_file(file, path, &copy, room, true)?;
     let identity = ProgramIdentity::from_path(&copy);
     Ok(StagedProgram { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
 }
 
-/// Builds the sources in `folder`, in a copy, and stages the resulting program. A failed build is not an error;
-/// [`StagedProgram::build`] describes it.
+/// Builds a copy of the sources in `folder`, and copies the resulting program. If the build fails, this is not an
+/// error, but described in [`StagedProgram::build`].
 pub(super) fn build(
     sources: &Path,
     step: &BuildStep,
@@ -195,7 +196,7 @@ pub(super) fn build(
     let command = step.command.first().map_or("", String::as_str);
     let tool = match find_tool(command, &copy) {
         Some(tool) => tool,
-        // A missing script of the submission is the submission's fault.
+        // If a script of the submission is missing, the submission is at fault.
         None if command.contains('/') => return Ok(failed(BuildEnd::NoScript(command.to_owned()), String::new())),
         None => {
             return Err(format!(
@@ -227,7 +228,7 @@ pub(super) fn build(
     if outcome.ended != RunEnd::Exited(0) {
         return Ok(failed(BuildEnd::Ended(outcome.ended), output));
     }
-    // The build may have left a link in the program's place.
+    // The build may have put a link where the program should be.
     match made.regular_file(&step.program, MAX_FOLDER_BYTES) {
         Ok((file, _)) => {
             let build = Some(Build { end: BuildEnd::Made, output });
@@ -238,9 +239,9 @@ pub(super) fn build(
     }
 }
 
-/// Copies an open regular file and digests its bytes. Holes stay holes. `room` is the remaining byte budget, which is
-/// reduced by the file's size. The copy is executable if the file is executable, begins like a program, or `is_program`
-/// is set.
+/// Copies an open regular file, and returns the digest of its bytes. Holes in the file remain holes. `room` is the
+/// number of bytes that may still be copied; it is reduced by the file's size. The copy is executable if the file is
+/// executable, if it begins like a program, or if `is_program` is set.
 fn copy_file(
     mut source: File,
     from: &Path,
@@ -263,7 +264,7 @@ fn copy_file(
             Err(error) if error.kind() == io::ErrorKind::Interrupted => continue,
             Err(error) => return Err(classify_error(from, error)),
         };
-        // The file may have grown since its length was read.
+        // The file may have become longer after its length was read.
         *room = room.checked_sub(read.len() as u64).ok_or_else(too_large_error)?;
         hasher.update(read);
         executable |= length == 0 && FileKind::from_start(read) == FileKind::Program;
@@ -286,13 +287,13 @@ fn too_large_error() -> CopyError {
     ))
 }
 
-/// The remaining budget of bytes and files for a submission's copy.
+/// The numbers of bytes and files of a submission that may still be copied.
 struct CopyBudget {
     bytes: u64,
     files: u64,
 }
 
-/// Copies a submission's folder to a new folder that only the grader may enter.
+/// Copies a submission's folder to a new folder, which only the grader can enter.
 fn copy_sources(from: &Path, to: &Path) -> Result<(), CopyError> {
     let mut budget = CopyBudget { bytes: MAX_FOLDER_BYTES, files: MAX_FILES };
     let source = OpenFolder::open(from).map_err(|error| classify_error(from, error))?;
@@ -301,7 +302,8 @@ fn copy_sources(from: &Path, to: &Path) -> Result<(), CopyError> {
     copy_folder(&source, Path::new(""), &target, 1, &mut budget)
 }
 
-/// Copies files and folders; links and other entries are skipped. `name` is the folder's name in messages.
+/// Copies the files and folders in a folder. Links and other entries are skipped. `name` is the folder's name in
+/// messages.
 fn copy_folder(
     from: &OpenFolder,
     name: &Path,
@@ -342,7 +344,8 @@ fn copy_folder(
     Ok(())
 }
 
-/// Finds a build command: by its path relative to the sources, or by its name in the system's folders.
+/// Finds the command that builds sources. It is given by its path relative to the sources, or by its name in the
+/// system's folders.
 fn find_tool(command: &str, sources: &Path) -> Option<PathBuf> {
     let candidates: Vec<PathBuf> = if command.contains('/') {
         vec![sources.join(command)]
@@ -352,7 +355,7 @@ fn find_tool(command: &str, sources: &Path) -> Option<PathBuf> {
     candidates.into_iter().find(|path| path.is_file())
 }
 
-/// Creates a folder with a pipe, a socket and a link; the socket exists as long as its listener.
+/// Creates a folder that contains a pipe, a socket and a link. The socket exists as long as the returned listener.
 #[cfg(test)]
 pub(crate) fn make_odd_entries(folder: &Path) -> std::os::unix::net::UnixListener {
     std::fs::create_dir(folder).unwrap();

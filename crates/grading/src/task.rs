@@ -1,4 +1,4 @@
-//! A scene of a suite, ready to be run.
+//! A scene of a suite that is ready to be run.
 use super::{
     library,
     result::{Failure, Reason, SceneResult},
@@ -6,34 +6,34 @@ use super::{
 };
 use fosssim_model::scene::Scene;
 
-/// A scene to run.
+/// A scene to be run, with everything that a run needs.
 #[derive(Debug, Clone)]
 pub struct SceneTask {
-    /// The scene's name, `Group/name`.
+    /// The name of the scene, as `Group/name`.
     pub name: String,
-    /// The scene's XML, as passed to the program.
+    /// The content of the scene's file, as the program receives it.
     pub xml: Vec<u8>,
     /// The parsed scene.
     pub scene: Scene,
-    /// The scene's recorded trace, compressed with zstd, if there is one.
+    /// The recording of the scene, compressed with zstd, if there is one.
     pub recording: Option<&'static [u8]>,
 }
 
 impl SceneTask {
-    /// Returns the scene's name as commands accept it: `asset:Group/name` if it is embedded.
+    /// Returns the scene's name in the form that commands accept. For embedded scenes it is `asset:Group/name`.
     #[must_use]
     pub fn address(&self) -> String {
         let is_embedded = library::scene(&self.name).is_some_and(|embedded| embedded == self.xml);
         format!("{}{}", if is_embedded { "asset:" } else { "" }, self.name)
     }
 
-    /// Creates the result of a scene that has no judged run.
+    /// Creates the result of the scene for the case that no run was judged.
     #[must_use]
     pub fn without_run(&self, verdict: Verdict, why: Reason) -> SceneResult {
         SceneResult::without_run(&self.name, self.scene.step_count(), verdict, why)
     }
 
-    /// Returns the result of a scene on which the grader or the machine failed.
+    /// Creates the result of the scene for the case that the grader or the machine failed.
     #[must_use]
     pub fn failure_result(&self, failure: Failure) -> SceneResult {
         self.without_run(Verdict::JudgeError, Reason::Failed(failure))

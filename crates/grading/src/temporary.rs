@@ -1,7 +1,7 @@
-//! The grader's temporary folders, which no other user can read, and the leftovers of killed graders.
+//! Manages the grader's temporary folders, which no other user can read, and removes those of killed graders.
 //!
-//! All folders of a grader are in one folder, where a locked file shows that the grader is alive. A lock also works
-//! between containers, unlike process numbers.
+//! All temporary folders of a grader are in one folder. A locked file in it shows that the grader is alive. In contrast
+//! to process numbers, locks also work between containers.
 use fosssim_sandbox::collect;
 use std::{
     fs::{self, File, Permissions},
@@ -12,16 +12,16 @@ use std::{
     time::Duration,
 };
 
-/// The prefix of the names of graders' folders.
+/// The prefix of the names of the folders of graders.
 const FOLDER_PREFIX: &str = "fosssim-grader-";
-/// The name of the file that a grader keeps locked.
+/// The name of the file that a grader keeps locked while it is alive.
 const LOCK_FILE: &str = "lock";
-/// A temporary folder of this grader that others cannot read. Dropping it removes the folder with everything that
-/// programs left in it.
+/// A temporary folder of this grader that others cannot read. When it is dropped, the folder is removed with everything
+/// that programs left in it.
 #[derive(Debug)]
 pub(super) struct TemporaryFolder {
     path: PathBuf,
-    // This folder is removed after the folders in it.
+    // The grader's folder is kept until all folders in it are removed.
     _grader: Arc<Grader>,
 }
 
@@ -32,8 +32,8 @@ impl TemporaryFolder {
         let made = make_closed(&format!("{purpose}-"), &grader.path)?;
         let path = made.keep();
         if purpose == "build" && is_root() {
-            // Build tools use whole paths and run as another user, so the folder must be accessible. Its entries have
-            // restrictive permissions.
+            // Build tools use whole paths and run as another user, so the folder must be accessible. The entries in it
+            // have restrictive permissions.
             fs::set_permissions(&path, Permissions::from_mode(0o711))?;
         }
         Ok(Self { path, _grader: grader })
@@ -46,30 +46,30 @@ impl TemporaryFolder {
 
 impl Drop for TemporaryFolder {
     fn drop(&mut self) {
-        // A folder that can't be removed now is removed by a later sweep.
+        // If a folder can't be removed now, a later sweep removes it.
         drop(collect::remove_folder(&self.path));
     }
 }
 
-/// Working folders that no program has changed, kept for further runs. Creating a folder takes as long as a small run
-/// on some file systems.
+/// Working folders that no program has changed. They are kept for further runs, because on some file systems creating a
+/// folder takes as long as a small run.
 #[derive(Debug, Default)]
 pub struct Folders(Mutex<Vec<TemporaryFolder>>);
 
 impl Folders {
-    /// Returns a [kept](Self::keep) folder, which has only files of the grader, or a new one.
+    /// Returns a [kept](Self::keep) folder, which contains only files of the grader, or a new one.
     pub(super) fn take(&self) -> io::Result<TemporaryFolder> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
         kept.map_or_else(|| TemporaryFolder::make("run"), Ok)
     }
 
-    /// Keeps a folder that only the grader has changed.
+    /// Keeps a folder that only the grader has changed, for further runs.
     pub(super) fn keep(&self, folder: TemporaryFolder) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(folder);
     }
 }
 
-/// The folder of all temporary folders of this process, which exists while there are any.
+/// The folder that contains all temporary folders of this process. It exists as long as there is one.
 #[derive(Debug)]
 struct Grader {
     path: PathBuf,
@@ -77,7 +77,7 @@ struct Grader {
 }
 
 impl Grader {
-    /// Returns this process's folder, and creates it if it does not exist.
+    /// Returns the folder of this process. It is created if it does not exist.
     fn current() -> io::Result<Arc<Self>> {
         static CURRENT_GRADER: Mutex<Weak<Grader>> = Mutex::new(Weak::new());
         let mut this = CURRENT_GRADER.lock().unwrap_or_else(PoisonError::into_inner);
@@ -97,7 +97,7 @@ impl Grader {
             let lock = path.join(LOCK_FILE);
             let made = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
                 file.try_lock().map_err(io::Error::from)?;
-                // The sweep of another grader may have removed the folder before it was locked.
+                // Another grader's sweep may have removed the folder before it was locked.
                 let (held, there) = (file.metadata()?, fs::metadata(&lock)?);
                 if (held.dev(), held.ino()) == (there.dev(), there.ino()) {
                     Ok(file)
@@ -108,7 +108,7 @@ impl Grader {
             match made {
                 Ok(lock) => {
                     if is_root() {
-                        // Programs run as other users. They must be able to reach their own folders, but not to list
+                        // Programs run as other users. They must be able to reach their own folders, but must not list
                         // this one.
                         fs::set_permissions(&path, Permissions::from_mode(0o711))?;
                     }
@@ -128,7 +128,7 @@ impl Drop for Grader {
     }
 }
 
-/// Creates a new folder that only its owner can read.
+/// Creates a new folder that only its owner can enter.
 fn make_closed(prefix: &str, place: &Path) -> io::Result<tempfile::TempDir> {
     tempfile::Builder::new().prefix(prefix).permissions(Permissions::from_mode(0o700)).tempdir_in(place)
 }
@@ -137,7 +137,7 @@ fn is_root() -> bool {
     fs::metadata("/proc/self").is_ok_and(|own| own.uid() == 0)
 }
 
-/// Removes the temporary folders of killed graders. A living grader holds its lock, even in another container.
+/// Removes the temporary folders of killed graders. A grader that is alive holds its lock, even in another container.
 pub fn sweep() {
     sweep_in(&std::env::temp_dir());
 }
@@ -147,14 +147,14 @@ fn sweep_in(place: &Path) {
     for entry in fs::read_dir(place).into_iter().flatten().flatten() {
         let path = entry.path();
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(FOLDER_PREFIX));
-        // Check the entry itself, not a link's target. Other users' folders are left to their owners.
+        // The entry itself is checked, not the target of a link. Folders of other users are left to these users.
         if !ours || !entry.metadata().is_ok_and(|data| data.is_dir() && data.uid() == own.uid()) {
             continue;
         }
         match collect::open_file(&path.join(LOCK_FILE), false) {
             Ok((lock, _)) if lock.try_lock().is_ok() => remove_folder_of(&path),
-            // The grader was killed before it created the lock, or is about to create it, and will then use another
-            // folder. A folder that is not empty stays.
+            // The grader was killed before it created the lock, or it is about to create it; in that case it will use
+            // another folder. A folder that is not empty is kept.
             Err(collect::CollectError::Missing { .. }) => drop(fs::remove_dir(&path)),
             _ => {}
         }
@@ -162,7 +162,7 @@ fn sweep_in(place: &Path) {
 }
 
 /// Removes a grader's folder. The lock is removed last, because a folder without a lock counts as new. A supervisor may
-/// use the folder for a moment after its grader has ended.
+/// still use the folder shortly after its grader has ended.
 fn remove_folder_of(path: &Path) {
     const MAX_TRIES: u32 = 20;
     const PAUSE: Duration = Duration::from_millis(50);

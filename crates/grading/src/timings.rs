@@ -1,4 +1,4 @@
-//! Measures the processor time of each part of runs, for `grade --timings`.
+//! Measures how much processor time each part of a run takes, for `grade --timings`.
 use fosssim_sandbox::{ProcessorTimeScope, processor_time};
 use std::{
     collections::BTreeMap,
@@ -9,22 +9,22 @@ use std::{
 /// A part of a run.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub enum RunPart {
-    /// Starting the program in its sandbox, and waiting for it.
+    /// The program is started in its sandbox and waited for.
     Start,
-    /// Running the program.
+    /// The program runs.
     Program,
-    /// Judging the trace.
+    /// The trace is judged.
     Judging,
-    /// Emptying the working folder.
+    /// The working folder is emptied.
     CleanUp,
-    /// Searching for the mistake.
+    /// The mistake is searched.
     Explaining,
-    /// Drawing cards for pages.
+    /// Cards for pages are drawn.
     Drawing,
 }
 
 impl RunPart {
-    /// The parts that the grader's own process does, with their names.
+    /// The parts that run in the grader's own process, and their names.
     pub const OWN_PARTS: [(Self, &str); 5] = [
         (Self::Start, "starting runs"),
         (Self::Judging, "judging"),
@@ -34,18 +34,18 @@ impl RunPart {
     ];
 }
 
-/// The processor time and the number of all runs, by part.
+/// For each part, the processor time of all runs and their number.
 #[derive(Debug, Default)]
 pub struct Timings(Mutex<BTreeMap<RunPart, (Duration, u32)>>);
 
 impl Timings {
-    /// Returns the time that a part of the runs took, and the number of runs.
+    /// Returns the processor time that a part of all runs took, and the number of runs.
     #[must_use]
     pub fn total(&self, part: RunPart) -> (Duration, u32) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).get(&part).copied().unwrap_or_default()
     }
 
-    /// Adds the time of a run's part.
+    /// Adds the processor time that a part of one run took.
     pub(super) fn add(&self, part: RunPart, time: Duration) {
         let mut parts = self.0.lock().unwrap_or_else(PoisonError::into_inner);
         let (total, runs) = parts.entry(part).or_default();
@@ -53,7 +53,7 @@ impl Timings {
     }
 }
 
-/// Measures the parts of one run on its thread; without `--timings` no clock is read.
+/// Measures the parts of one run, in the run's thread. Without `--timings`, no clock is read.
 pub(super) struct Stopwatch<'a> {
     timings: Option<&'a Timings>,
     last: Duration,
@@ -65,7 +65,7 @@ impl<'a> Stopwatch<'a> {
         Self { timings, last: timings.map_or(Duration::ZERO, |_| processor_time(ProcessorTimeScope::Thread)) }
     }
 
-    /// Adds the time since the end of the last part to `part`.
+    /// Adds the time since the previous part ended to `part`.
     pub(super) fn end(&mut self, part: RunPart) {
         if let Some(timings) = self.timings {
             let now = processor_time(ProcessorTimeScope::Thread);

@@ -1,4 +1,4 @@
-//! Grades existing traces. No program is run, so its duration and its exit status are unknown.
+//! Grades traces that exist already. No program is run, so its duration and its exit status are unknown.
 use super::{
     conclude::{CountedReader, ProgramRun, Run, conclude},
     grade::Grade,
@@ -15,8 +15,8 @@ use std::{
     sync::atomic::{AtomicU64, Ordering},
 };
 
-/// Returns the result of one scene for a trace, as if a program had written it and ended well, and the outcome of
-/// judging.
+/// Judges a trace of a scene as if a program had written it and ended well. Returns the result of the scene, and the
+/// outcome of judging.
 pub fn judge_trace<'a, R: Read + Send>(
     plan: &Plan,
     task: &'a SceneTask,
@@ -41,11 +41,11 @@ pub fn judge_trace<'a, R: Read + Send>(
     (SceneResult { ended: None, measured: Measurements::default(), ..explained }, examined)
 }
 
-/// Returns the grade of the results of all scenes, in the plan's order.
+/// Computes the grade from the results of all scenes, in the order of the plan.
 #[must_use]
 pub fn grade(plan: &Plan, submission: String, results: Vec<SceneResult>, warnings: Vec<String>) -> Grade {
     let results = results.into_iter().map(|result| (result, false)).collect();
-    // The run times are unknown, because the traces exist already.
+    // The times of the runs are unknown, because the traces existed already.
     let mut grade = Grade { warnings, ..score::grade(plan, submission, false, results) };
     reconcile_explanations(&mut grade);
     grade

@@ -1,4 +1,4 @@
-//! Describes the contents of a submission's folder, for messages about a missing program.
+//! Describes what a submission's folder contains, for messages about a missing program.
 use super::{
     names,
     result::{FolderContents, UnusableReason},
@@ -8,11 +8,12 @@ use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
 /// The maximum number of entries that a message names.
 const MAX_NAMED: usize = 6;
-/// The maximum number of entries that are searched for a program in a subfolder.
+/// The maximum number of entries among which a program is searched in subfolders.
 const MAX_SCANNED_ENTRIES: u32 = 2000;
 const MAX_DEPTH: u32 = 3;
 
-/// Returns the reason why there is no program: the expected name, and the contents of the folder.
+/// Returns the reason why a submission has no program: the name that was expected, and what the folder contains
+/// instead.
 pub(super) fn explain_missing_program(program: &str, folder: &Path) -> UnusableReason {
     let found = match OpenFolder::open(folder) {
         Ok(opened) => list_contents(program, &opened),
@@ -42,7 +43,8 @@ fn format_entry(folder: &OpenFolder, name: &OsStr) -> String {
     names::printable(name) + slash
 }
 
-/// Returns the path of a file with a name below a folder; files in a folder come before those in its subfolders.
+/// Returns the path of the first file called `name` below a folder. The files in a folder come before those in its
+/// subfolders.
 fn find_below(
     folder: &OpenFolder,
     wanted: &OsStr,

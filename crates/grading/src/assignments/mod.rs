@@ -8,10 +8,11 @@ mod timing;
 
 pub use timing::{MadeScene, TIMING_SCENES};
 
-/// The part of the suite template before its groups: the settings, with comments.
+/// The beginning of the suite template, before its groups. It contains the settings, with comments.
 const SETTINGS_TEMPLATE: &str = include_str!("settings.toml");
 
-/// Returns a commented suite file to start from: the settings, and the groups of a built-in suite.
+/// Returns a suite file with comments, as a starting point. It has the settings of the template, and the groups of a
+/// built-in suite.
 #[must_use]
 pub fn template(name: &str) -> Option<String> {
     let (assignment, Version { suite, .. }) = version(name)?;
@@ -20,28 +21,28 @@ pub fn template(name: &str) -> Option<String> {
     Some(SETTINGS_TEMPLATE.replace("TITLE", title).replace("MILESTONE", key) + groups)
 }
 
-/// A version of an assignment's suite. Additional scenes change the points of all scenes, so they need a new version;
-/// published versions do not change.
+/// A version of an assignment's suite. A published version never changes. Additional scenes would change the points of
+/// all scenes, so they need a new version.
 #[derive(Debug, Clone, Copy)]
 pub struct Version {
-    /// The suite file's text.
+    /// The text of the version's suite file.
     pub suite: &'static str,
-    /// The names of its scenes, one per line; `None` for a version with all scenes of the assignment's folder.
+    /// The names of the version's scenes, one per line; `None` if it has all scenes in the assignment's folder.
     scenes: Option<&'static str>,
 }
 
 impl Version {
-    /// Returns whether the version contains a scene of the assignment.
+    /// Returns whether the version contains a scene of its assignment.
     #[must_use]
     pub fn has(&self, scene: &str) -> bool {
         self.scenes.is_none_or(|scenes| scenes.lines().any(|line| line == scene))
     }
 }
 
-/// The suite of the milestones before t2m2, under a name that existing servers and courses may still use.
+/// The suite for the milestones before t2m2. Existing servers and courses may still use its name.
 const EARLIER_VERSION: Version = Version { suite: include_str!("earlier/suite.toml"), scenes: None };
 
-/// The two versions in an assignment's folder.
+/// Includes the two versions from an assignment's folder.
 macro_rules! two_versions {
     ($key:literal) => {
         [
@@ -70,8 +71,8 @@ pub const fn versions(assignment: Assignment) -> &'static [Version] {
     }
 }
 
-/// Returns the assignment and the version of a suite name such as `t2m2@1`, ignoring case; `t2m2` is the newest
-/// version.
+/// Returns the assignment and the version that a suite name means, such as `t2m2@1`. `t2m2` means the newest version.
+/// Upper and lower case are the same.
 #[must_use]
 pub fn version(name: &str) -> Option<(Assignment, Version)> {
     if matches!(name, "earlier" | "earlier@1") {
@@ -87,15 +88,15 @@ pub fn version(name: &str) -> Option<(Assignment, Version)> {
     Some((assignment, all[number]))
 }
 
-/// Returns the names of the built-in suites with their versions, such as `t2m2@2`, beginning with the newest version
-/// for the default assignment.
+/// Returns the names of the built-in suites with their versions, such as `t2m2@2`. The newest version for the default
+/// assignment comes first.
 pub fn names() -> impl Iterator<Item = String> {
     Assignment::list_default_first().into_iter().flat_map(|assignment| {
         (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))
     })
 }
 
-/// Returns the end of a message about an unknown suite, like [`near::suggest`].
+/// Returns the end of a message about an unknown suite, as [`near::suggest`] does.
 #[must_use]
 pub fn suggest(name: &str) -> String {
     let known: Vec<String> = names().collect();

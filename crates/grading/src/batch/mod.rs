@@ -1,7 +1,7 @@
-//! Distributes the scenes of submissions among jobs, and reports the progress.
+//! Distributes the scenes of submissions among jobs, and reports progress.
 //!
-//! Events are the interface to reports and progress displays. They arrive on the caller's thread, one at a time, and a
-//! result is stored before its event is sent. The steps of a grading are in [`grader`](super::grader).
+//! Reports and progress displays receive events. Events arrive on the caller's thread, one at a time. A result is
+//! stored before its event is sent. The module [`grader`](super::grader) makes the steps of a grading.
 use super::{
     cancellation::Cancellation,
     grade::Grade,
@@ -16,65 +16,65 @@ use std::sync::{
     mpsc,
 };
 
-/// A progress event of a grading.
+/// An event that reports the progress of a grading.
 #[derive(Debug)]
 pub enum Event<'a> {
     /// A run of a scene begins.
     SceneBegins {
-        /// The submission's number.
+        /// The index of the submission.
         submission: usize,
-        /// The scene's number in the plan.
+        /// The index of the scene in the plan.
         scene: usize,
     },
-    /// A running scene has been judged up to this step. Not every step is reported.
+    /// A running scene has been judged up to a step. This is not reported for every step.
     Step {
-        /// The submission's number.
+        /// The index of the submission.
         submission: usize,
-        /// The scene's number in the plan.
+        /// The index of the scene in the plan.
         scene: usize,
-        /// The last judged step.
+        /// The last step that has been judged.
         step: u32,
     },
     /// A scene has its verdict.
     SceneDone {
-        /// The submission's number.
+        /// The index of the submission.
         submission: usize,
-        /// The scene's number in the plan.
+        /// The index of the scene in the plan.
         scene: usize,
-        /// Whether the verdict was reused from an earlier run.
+        /// Whether the verdict was reused from an earlier grading.
         cached: bool,
     },
     /// A submission has its grade.
     Graded {
-        /// The submission's number.
+        /// The index of the submission.
         submission: usize,
         /// The grade.
         grade: &'a Grade,
     },
 }
 
-/// The grades of a batch, and an error outside the grades, if there was one.
+/// The grades of several submissions, and an error outside of the grades, if there was one.
 #[derive(Debug)]
 pub struct BatchResult {
     /// The grades, in the order of the submissions.
     pub grades: Vec<Grade>,
-    /// An error outside the grades, if there was one.
+    /// An error outside of the grades, if there was one.
     pub fault: Option<GradeFault>,
 }
 
-/// An error outside the results of scenes; its cause is the grader or the machine.
+/// An error outside of the results of scenes. The grader or the machine is the cause.
 #[derive(Debug, thiserror::Error)]
 pub enum GradeFault {
-    /// Results could not be stored, for example because the disk is full, so grading was stopped.
+    /// Results could not be stored, for example because the disk is full. The grading was stopped.
     #[error(transparent)]
     Keeping(#[from] KeepError),
-    /// An event could not be reported; grading continued.
+    /// An event could not be reported. The grading continued.
     #[error("reporting the progress of grading failed: {0}; please report this")]
     Telling(Fault),
 }
 
-/// Grades all submissions, and returns the grades in the same order. After a cancellation, scenes that were not run are
-/// marked. Without `results`, nothing is reused or stored.
+/// Grades all submissions, and returns the grades in the same order. After a cancellation, grades mark the scenes that
+/// were not run. Without `results`, nothing is reused or stored.
 pub fn run(
     grader: &Grader<'_>,
     submissions: &[Submission],
@@ -95,14 +95,14 @@ pub fn run(
     let mut grades = distribute(grader, &gradings, &mut tell);
     Grade::note_same_programs(&mut grades);
     drop(gradings);
-    // Sweep again, because processes of killed graders may have ended only after the first sweep.
+    // Sweep again, because processes of killed graders may have ended after the first sweep.
     temporary::sweep();
     let fault = shared.full.into_inner().map(GradeFault::Keeping).or(telling.map(GradeFault::Telling));
     BatchResult { grades, fault }
 }
 
-/// Starts the jobs, each of which processes scenes one after the other. The job with a submission's last result makes
-/// the grade. This thread receives all events.
+/// Starts the jobs, each of which grades one scene after the other. The job that completes a submission also makes its
+/// grade. This thread receives all events.
 fn distribute(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mut dyn FnMut(Event<'_>)) -> Vec<Grade> {
     let scenes: Vec<&SceneTask> = grader.plan.scenes().collect();
     let tasks = gradings.len() * scenes.len();

@@ -1,18 +1,18 @@
-//! The properties of contacts, zones and steps that scenes have to contain, each with its values.
+//! The properties of contacts, zones and steps whose values scenes have to contain.
 
-/// A property: its name, and its possible values.
+/// A property of events: its name, and its possible values.
 #[derive(Debug, Clone, Copy)]
 pub struct Axis {
     /// The name of the property.
     pub name: &'static str,
-    /// The possible values, as text.
+    /// The possible values, as words for reports.
     pub values: &'static [&'static str],
 }
 
-/// One value of one property: the property's name, and the value's index.
+/// A value of a property: the property's name, and the index of the value.
 pub(super) type Value = (&'static str, usize);
 
-/// Declares a property and its values.
+/// Declares a property as an enum whose variants are its values.
 macro_rules! axis {
     ($name:ident, $title:literal: $($value:ident = $words:literal),+ $(,)?) => {
         #[derive(Debug, Clone, Copy, PartialEq, Eq)]

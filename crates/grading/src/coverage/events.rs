@@ -1,4 +1,5 @@
-//! The properties of an observer's events: of a detection call, and of a zone before it is moved.
+//! Computes the properties of two kinds of events that an observer sees: a detection call, and a zone before it is
+//! moved.
 use super::axes::{
     EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Found, Integrator, Kind, Likeness, Limit, Motion, Normal,
     Place, Radii, Restitution, Side, SomeFixed, When, Why,
@@ -12,10 +13,10 @@ use fosssim_num::{
     vector::{Vec2, divide, vector_at},
 };
 
-/// The share of an edge's length, from each end, in which positions count as near the end.
+/// The share of an edge's length at each end. A position in it counts as near the end.
 const NEAR_END: f64 = 0.05;
 
-/// Returns the stage in which a pair is checked, as a property.
+/// Returns the stage in which a pair is checked, as a value of a property.
 pub(super) const fn place_of_stage(stage: Stage) -> Found {
     match stage {
         Stage::Simple | Stage::ContinuousTime => Found::Continuous,
@@ -113,7 +114,8 @@ pub(super) fn masses(scene: &Scene, bodies: &[usize]) -> Likeness {
     if bodies.iter().all(|&body| scene.particles[body].mass == first) { Likeness::Equal } else { Likeness::Unequal }
 }
 
-/// Returns whether all radii of a pair are the same: those of the particles, or of the edge and the particle.
+/// Compares the radii of a pair, and returns whether they are equal. They are those of two particles, or those of a
+/// particle and an edge.
 pub(super) fn radii(scene: &Scene, bodies: &[usize], edge: Option<&Edge>) -> Radii {
     let first = scene.particles[bodies[0]].radius;
     let equal = match edge {
@@ -140,7 +142,7 @@ pub(super) const fn ends(edge: &Edge) -> Ends {
     }
 }
 
-/// Returns a body's position at `time`, a fraction of the step.
+/// Returns a body's position at `time`, which is a fraction of the step.
 fn position(detection: &Detection<'_>, body: usize, time: f64) -> Vec2 {
     let start = vector_at(detection.q_start, body);
     start + time * (vector_at(detection.q_end, body) - start)
@@ -178,8 +180,8 @@ pub(super) fn normal(scene: &Scene, pair: Pair) -> Normal {
     if (normal.dot(&normal) - 1.0).abs() < 1e-6 { Normal::Unit } else { Normal::Other }
 }
 
-/// Returns the reason why a pair does not collide, from the signs of its polynomials at a few times of this step and
-/// the next.
+/// Returns why a pair does not collide. It follows from the signs of the pair's polynomials at a few times of this step
+/// and the next.
 pub(super) fn miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Why {
     const SAMPLE_TIMES: u32 = 8;
     let positive = |polynomial: &Polynomial, time: f64| polynomial.evaluate(time) > 0.0;
@@ -199,8 +201,8 @@ pub(super) fn miss_reason(kind: PairKind, polynomials: &[Polynomial]) -> Why {
     }
 }
 
-/// Returns the motion of a zone from the start of the step to its positions before the failsafe. The arithmetic is that
-/// of collisions.md 5: a zone that does not turn has exactly zero angular momentum.
+/// Classifies the motion of a zone, from the start of the step to its positions before the failsafe. The arithmetic is
+/// the same as in collisions.md 5, so a zone that does not rotate has an angular momentum of exactly zero.
 pub(super) fn zone_motion(scene: &Scene, particles: &[usize], q_start: &[f64], q_end: &[f64]) -> Motion {
     let mass = |particle: usize| scene.particles[particle].mass;
     let moved = |particle| vector_at(q_end, particle) - vector_at(q_start, particle);

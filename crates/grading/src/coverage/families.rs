@@ -1,25 +1,25 @@
-//! The kinds of events in a step that are counted, with their properties and the values that exclude each other.
+//! The kinds of events in a step that are counted. Each has properties, and pairs of values that exclude each other.
 use super::axes::{
     Age, Axis, Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Forces, Found, Held, Hits, Integrator,
     Kind, Likeness, Limit, Links, LoopEnd, Motion, Normal, Penalty, Place, Position, Radii, Restitution, Rounds, Side,
     Size, SomeFixed, Value, When, Why, ZoneCount, ZoneEdge,
 };
 
-/// A kind of event with its properties. Scenes have to contain every pair of values of any two properties.
+/// A kind of event and its properties. Scenes should contain every pair of values of any two properties.
 #[derive(Debug)]
 pub struct Family {
-    /// The name of the event.
+    /// The name of the kind of event.
     pub name: &'static str,
-    /// The family's properties.
+    /// The properties of such events.
     pub axes: &'static [Axis],
-    /// The pairs of values that no event can have.
+    /// The pairs of values that exclude each other, so that no event has both.
     pub(super) never: &'static [(Value, Value)],
 }
 
-/// An event: the index of its kind in [`FAMILIES`], and the index of each property's value.
+/// An event: the index of its kind in [`FAMILIES`], and for each property the index of its value.
 pub(super) type Event = (usize, Vec<usize>);
 
-/// Declares a kind of event: its number, its properties, and the values that exclude each other.
+/// Declares a kind of event, with its number, its properties, and the values that exclude each other.
 macro_rules! family {
     ($type:ident, $number:literal, $name:literal { $($field:ident: $axis:ident),+ $(,)? } never $never:expr) => {
         #[derive(Debug, Clone, Copy)]
@@ -37,7 +37,8 @@ macro_rules! family {
     };
 }
 
-/// Declares values that exclude each other: one value, and all values of another property that never occur with it.
+/// Declares values that exclude each other: one value, and all values of another property that never occur together
+/// with it.
 macro_rules! never {
     ($($one:ident::$value:ident with $other:ident::{$($excluded:ident),+}),* $(,)?) => {
         &[$($((($one::AXIS.name, $one::$value as usize), ($other::AXIS.name, $other::$excluded as usize))),+),*]
@@ -86,8 +87,8 @@ family!(NoContact, 3, "a pair does not collide" {
     found: Found,
     fixed: SomeFixed,
 } never never![
-    // Only edges have ends that a particle can miss. A pair with a half-plane has one particle, which is either fixed
-    // or not.
+    // Only edges have ends that a particle can miss. A pair with a half-plane has only one particle, which is either
+    // fixed or not.
     Kind::Particles with Why::{BesideFirst, BesideSecond},
     Kind::HalfPlane with Why::{BesideFirst, BesideSecond},
     Kind::HalfPlane with SomeFixed::{Some},
@@ -106,14 +107,16 @@ family!(MovedZone, 4, "the failsafe moves a zone" {
     limit: Limit,
     integrator: Integrator,
 } never never![
-    // A single body hits a half-plane. It cannot turn, has not grown, has no edge, and differs from no other body.
+    // A zone with a single body is one that hits a half-plane. It cannot rotate, has not grown, has no edge, and has no
+    // other body to differ from.
     Size::One with Held::{Nothing, Fixed},
     Size::One with Motion::{Turns},
     Size::One with Age::{Grown},
     Size::One with ZoneEdge::{Next, Previous, Apart},
     Size::One with Likeness::{Unequal},
     Size::One with Radii::{Unequal},
-    // An edge and its particle are three bodies. One contact joins at most three, and a half-plane has its own contact.
+    // An edge and a particle are three bodies. A contact joins at most three bodies, and a half-plane has a contact of
+    // its own.
     Size::Two with ZoneEdge::{Next, Previous, Apart},
     Size::More with Links::{One},
 ]);
@@ -135,7 +138,7 @@ family!(HybridStep, 6, "a hybrid step" {
     penalty: Penalty,
     integrator: Integrator,
 } never never![
-    // If impulses do not suffice, zones are searched in at least one round.
+    // If the impulses do not suffice, there is at least one round in which zones are searched.
     LoopEnd::Nothing with ZoneCount::{One, Several},
     LoopEnd::Within with ZoneCount::{One, Several},
     LoopEnd::JustEnough with ZoneCount::{One, Several},
@@ -149,13 +152,13 @@ family!(HybridStep, 6, "a hybrid step" {
     ZoneCount::None with Rounds::{Two, More},
     ZoneCount::One with Rounds::{None},
     ZoneCount::Several with Rounds::{None},
-    // The ways in which the loop can end with each limit.
+    // These are the ways in which the loop can end for each limit on the rounds.
     Limit::Zero with LoopEnd::{Nothing, Within, JustEnough, RunOut},
     Limit::One with LoopEnd::{Within, JustEnough, NotAllowed},
     Limit::More with LoopEnd::{NotAllowed},
 ]);
 
-/// All kinds of events, in the order of their numbers.
+/// All kinds of events, in the order of their indices.
 pub const FAMILIES: [Family; 7] = [
     ParticleContact::FAMILY,
     EdgeContact::FAMILY,

@@ -1,8 +1,9 @@
-//! The contents of a suite's scenes, measured from the reference's run: kinds of contacts, zones and steps.
+//! Measures what a suite's scenes contain, such as kinds of contacts, zones and steps, from the reference's run of each
+//! scene.
 //!
-//! An event in a step has properties ([`FAMILIES`]): it is a contact, a pair that does not collide, a zone that the
-//! failsafe moves, the step as a whole. A suite covers a pair of values of two properties if an event in one of its
-//! scenes has both. A mistake that depends on one or two properties therefore occurs in some scene.
+//! An event is a contact, a pair that does not collide, a zone that the failsafe moves, or a step as a whole. Events
+//! have properties ([`FAMILIES`]). A suite covers a pair of values of two properties if an event in one of its scenes
+//! has both values. Then a mistake that depends on one or two properties shows in at least one scene.
 mod axes;
 mod events;
 mod families;
@@ -18,20 +19,20 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// Two values of two properties of one kind of event, by index. The first property comes before the second in the
-/// family's list.
+/// Two values of two properties of the same kind of event, given by indices. The first property comes before the second
+/// one in the list of properties.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Pairing {
-    /// The kind of event, an index into [`FAMILIES`].
+    /// The kind of event, as an index in [`FAMILIES`].
     pub family: usize,
-    /// The first property's index and its value's index.
+    /// The index of the first property, and the index of its value.
     pub one: (usize, usize),
-    /// The second property's index and its value's index.
+    /// The index of the second property, and the index of its value.
     pub other: (usize, usize),
 }
 
 impl Pairing {
-    /// Returns all pairs of values that an event can have.
+    /// Returns all pairs of values that can occur in an event.
     pub fn all() -> impl Iterator<Item = Self> {
         FAMILIES
             .iter()
@@ -54,7 +55,7 @@ impl Pairing {
         !family.never.iter().any(|never| *never == (one, other) || *never == (other, one))
     }
 
-    /// Returns both values as text, such as `fixed: the first, time: start of the step`.
+    /// Describes both values, such as `fixed: the first, time: start of the step`.
     #[must_use]
     pub fn describe(self) -> String {
         let value = |(axis, value): (usize, usize)| {
@@ -65,14 +66,15 @@ impl Pairing {
     }
 }
 
-/// The events of some scenes.
+/// The events that occur in one or several scenes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Coverage {
     seen: BTreeSet<Pairing>,
 }
 
 impl Coverage {
-    /// Returns the events of one scene; `None` if the scene's collision handling is not that of the assignment.
+    /// Returns the events that occur in a scene; `None` if the scene's collision handling is not the one that the
+    /// assignment asks for.
     ///
     /// # Errors
     ///
@@ -89,24 +91,25 @@ impl Coverage {
         Ok(coverage)
     }
 
-    /// Adds the events of other scenes.
+    /// Adds the events that occur in other scenes.
     pub fn add(&mut self, other: &Self) {
         self.seen.extend(&other.seen);
     }
 
-    /// Returns whether no event is recorded.
+    /// Returns whether no event has been recorded.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.seen.is_empty()
     }
 
-    /// Returns whether some event has both values.
+    /// Returns whether any event has both values.
     #[must_use]
     pub fn has(&self, pairing: Pairing) -> bool {
         self.seen.contains(&pairing)
     }
 
-    /// Returns the single values that occur, each as the kind of event, the property, and the value.
+    /// Returns the single values that occur. Each is given by the indices of the kind of event, the property, and the
+    /// value.
     pub fn values(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let values = self
             .seen
@@ -115,19 +118,19 @@ impl Coverage {
         values.collect::<BTreeSet<_>>().into_iter()
     }
 
-    /// Returns the number of pairs of values that a kind of event has, and the number of possible pairs.
+    /// Returns how many pairs of values occur for a kind of event, and how many are possible.
     #[must_use]
     pub fn counts(&self, family: usize) -> (usize, usize) {
         let all = || Pairing::all().filter(|pairing| pairing.family == family);
         (all().filter(|pairing| self.has(*pairing)).count(), all().count())
     }
 
-    /// Returns the pairs of values that are missing.
+    /// Returns the possible pairs of values that do not occur.
     pub fn missing(&self) -> impl Iterator<Item = Pairing> {
         Pairing::all().filter(|pairing| !self.has(*pairing))
     }
 
-    /// Records an event.
+    /// Records that an event occurs.
     fn note(&mut self, (family, values): &families::Event) {
         for (first, &one) in values.iter().enumerate() {
             for (second, &other) in values.iter().enumerate().skip(first + 1) {

@@ -1,4 +1,4 @@
-//! Observes the reference's run and records every event.
+//! Observes the reference's run of a scene, and records every event.
 use super::{
     Coverage,
     axes::{
@@ -15,11 +15,11 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// The bodies of a contact of the current pass, and its event in two forms: for bodies with no other contact, and for
-/// bodies with several contacts. The end of the pass decides which applies.
+/// The bodies of a contact in the current pass, and its event in two forms: for bodies that have no other contact, and
+/// for bodies that have several. Which form applies is known at the end of the pass.
 type WatchedContact = (Vec<usize>, [Event; 2]);
 
-/// A zone of the last round, and whether it was moved.
+/// A zone of the previous round, and whether it was moved.
 type EarlierZone = (Vec<usize>, bool);
 
 pub(super) struct Watch<'a> {
@@ -29,19 +29,20 @@ pub(super) struct Watch<'a> {
     step: StepEvents,
 }
 
-/// The events of the current step.
+/// The events of the current step, before they are complete.
 #[derive(Default)]
 struct StepEvents {
-    /// The positions of bodies at the start and at the end of the step, in the current pass.
+    /// The positions of bodies at the start and at the end of the step, as the current pass uses them.
     q_start: Vec<f64>,
     q_end: Vec<f64>,
     contacts: Vec<WatchedContact>,
-    /// The number of hits in each pass of the impulse rounds, or in the step's only pass.
+    /// The number of hits in each pass of the impulse rounds, or in the only pass of the step.
     hits: Vec<usize>,
-    /// All contacts of the step's passes for zones.
+    /// All contacts in the passes that search for zones.
     zone_contacts: BTreeSet<Pair>,
-    /// The zones that are moved in this round and the round before.
+    /// The zones that are moved in this round.
     zones: Vec<EarlierZone>,
+    /// The zones of the previous round, and whether each was moved.
     before: Vec<EarlierZone>,
     rounds: u32,
 }
@@ -86,7 +87,7 @@ impl<'a> Watch<'a> {
         }
     }
 
-    /// Records the contacts of a pass, after it is known which have bodies in common.
+    /// Records the contacts of a pass, at whose end it is known which of them have bodies in common.
     fn note_contacts(&mut self) {
         let contacts = std::mem::take(&mut self.step.contacts);
         for (index, (bodies, [alone, several])) in contacts.iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Suites and scenes in files.
+//! Reads suites and scenes from files.
 use super::{MatchingScenes, Plan, built_in, built_in_names, load_by, suggest};
 use crate::config::SuiteError;
 use fosssim_files::{open_file, read_limited, read_text};
@@ -8,17 +8,17 @@ use std::{io, path::Path};
 /// The maximum size of a suite file, in bytes.
 pub const MAX_SUITE_BYTES: u64 = 1 << 20;
 
-/// The maximum number of scenes of a suite.
+/// The maximum number of scenes in a suite.
 pub const MAX_SCENES: usize = 10_000;
-/// The maximum number of bytes in all scenes of a suite.
+/// The maximum size of all scenes of a suite together, in bytes.
 pub const MAX_SCENE_BYTES: u64 = 256 << 20;
 
-/// The reason why a suite cannot be used: there is no such suite, a file is unreadable, or the suite has errors.
+/// The reason why a suite cannot be used. It does not exist, a file cannot be read, or the suite has errors.
 #[derive(Debug, thiserror::Error)]
 #[error("{words}")]
 pub struct FindError {
     words: String,
-    /// The reason why a file can't be read.
+    /// The reason why a file can't be read; `None` if something else is wrong.
     #[source]
     why: Option<io::Error>,
 }
@@ -29,18 +29,19 @@ impl From<String> for FindError {
     }
 }
 
-/// Returns the message for an invalid suite, with a line for each problem.
+/// Returns the message about an invalid suite. Each problem has its own line.
 fn describe_errors(name: &str, SuiteError { problems }: &SuiteError) -> String {
     let lines: String = problems.iter().map(|(at, text)| format!("\n{name}:{at}: {text}")).collect();
     let plural = if problems.len() == 1 { "" } else { "s" };
     format!("the suite has {} problem{plural}:{lines}", problems.len())
 }
 
-/// Finds a suite: a built-in one by its name, or one in a file. Files that it names are relative to its folder.
+/// Finds a suite. It is a built-in suite that is given by its name, or a file. Paths in the file are relative to the
+/// file's folder.
 ///
 /// # Errors
 ///
-/// Fails if there is no such suite, or with all of its problems.
+/// Fails if there is no such suite. If the suite is invalid, the error contains all problems.
 pub fn find(name: &str) -> Result<Plan, FindError> {
     let path = Path::new(name);
     let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
@@ -64,7 +65,7 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
     loaded.map_err(|error| describe_errors(name, &error).into())
 }
 
-/// Reads and validates a suite, and finds its scenes; files are relative to `folder`.
+/// Reads and validates a suite, and finds its scenes. Paths in it are relative to `folder`.
 ///
 /// # Errors
 ///
@@ -74,7 +75,7 @@ pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
     load_by(text, &mut |pattern| find_files(pattern, folder, &mut room))
 }
 
-/// The remaining budget for a suite's files.
+/// The numbers of files and bytes that the scenes of a suite may still have.
 struct FileBudget {
     scenes: usize,
     bytes: u64,
@@ -107,7 +108,7 @@ fn find_files(pattern: &str, folder: &Path, room: &mut FileBudget) -> Result<Mat
     Ok(found)
 }
 
-/// Returns the content of a scene file, which must be regular so that reading does not block.
+/// Returns the content of a scene file. It must be a regular file, because reading anything else might never end.
 fn scene_file(path: &Path) -> Result<Vec<u8>, String> {
     const MAX_BYTES: u64 = scene::MAX_SCENE_BYTES as u64;
     let (file, size) = open_file(path, true).map_err(|error| error.to_string())?;

@@ -1,7 +1,8 @@
-//! Results in a folder: a journal with one JSON line per judged scene.
+//! Stores results in a folder. A journal has one line of JSON for each scene that was judged.
 //!
-//! A line is written and flushed before its result is reported. A line that a crash cut short is dropped at the next
-//! opening. Lines of other versions are ignored. A lock prevents two graders in one folder.
+//! A line is written and flushed before its result is reported. If a crash cuts a line short, the line is removed when
+//! the journal is next opened. Lines of other versions are ignored. A lock prevents two graders from using the same
+//! folder.
 use super::{KeepError, Results, format_line, read_line};
 use crate::{key::Key, result::SceneResult};
 use fosssim_files::{FileError, Folder};
@@ -18,17 +19,18 @@ use std::{
 /// The name of the journal file.
 pub const JOURNAL_NAME: &str = "journal.jsonl";
 
-/// The name of the file that an active grader keeps locked.
+/// The name of the file that a grader keeps locked while it uses the folder.
 pub const LOCK_FILE: &str = ".lock";
 
-/// The maximum size of a journal, in bytes: four times that of 10,000 submissions of 85 scenes that are all wrong and
-/// well explained.
+/// The maximum size of a journal, in bytes. It is four times the size for 10,000 submissions with 85 scenes each, if
+/// all scenes are wrong and have long explanations.
 pub const MAX_JOURNAL_BYTES: u64 = 16 << 30;
 
-/// The maximum length of a line, in bytes; results have some thousand bytes. A journal with a longer line is damaged.
+/// The maximum length of a line, in bytes. Results have some thousand bytes. If a line is longer, the journal is
+/// damaged.
 pub const MAX_LINE_BYTES: usize = 16 << 20;
 
-/// The results in an output folder, which stays locked while this value exists.
+/// The results in an output folder. The folder is locked as long as this value exists.
 #[derive(Debug)]
 pub struct FolderResults {
     journal: Mutex<Journal>,
@@ -43,7 +45,7 @@ struct Journal {
 }
 
 impl FolderResults {
-    /// Opens or creates the journal in an existing folder. `fresh` discards earlier results.
+    /// Opens the journal in an existing folder, or creates it. With `fresh`, earlier results are discarded.
     ///
     /// # Errors
     ///
@@ -71,11 +73,11 @@ impl FolderResults {
         let mut found = BTreeMap::new();
         let sound = if fresh { 0 } else { read(&file, &mut found).map_err(at(JOURNAL_NAME))? };
         if metadata.nlink() > 1 {
-            // The journal has several names (hard links), from a backup or a student. Copy it, so that the other file
-            // does not change.
+            // The journal has several names (hard links), because of a backup or a student. It is copied, so that the
+            // file under the other name does not change.
             file = copy(&file, sound, &opened).map_err(at(JOURNAL_NAME))?;
         }
-        // Remove the bytes after the last whole line, which a crash left.
+        // The bytes after the last whole line are removed; a crash left them.
         file.set_len(sound).map_err(at(JOURNAL_NAME))?;
         file.seek(io::SeekFrom::Start(sound)).map_err(at(JOURNAL_NAME))?;
         let path = folder.join(JOURNAL_NAME);
@@ -97,12 +99,12 @@ fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
     })
 }
 
-/// Reads the results of a journal, and the end of its last whole line.
+/// Reads the results in a journal. Returns the position after the last whole line.
 fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> {
     let mut sound = 0;
     for_each_line(BufReader::new(file), |line| -> io::Result<()> {
         sound += line.len() as u64;
-        // A damaged line is skipped; the other lines stay valid.
+        // A damaged line is skipped. The other lines are still valid.
         if let Some(entry) = read_line(line) {
             found.insert(entry.key, entry.result);
         }
@@ -111,11 +113,11 @@ fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> 
     Ok(sound)
 }
 
-/// Passes the whole lines of a journal to `take`.
+/// Calls `take` for each whole line of a journal.
 ///
 /// # Errors
 ///
-/// Fails if the journal can't be read or has a line longer than any result, and if `take` fails.
+/// Fails if the journal can't be read, if it has a line that is longer than any result, or if `take` fails.
 pub fn for_each_line<E: From<io::Error>>(
     mut journal: impl BufRead,
     mut take: impl FnMut(&[u8]) -> Result<(), E>,
@@ -160,11 +162,11 @@ impl Results for FolderResults {
     }
 }
 
-/// Appends a whole line or nothing.
+/// Appends a line. If that fails, the file is as long as before.
 fn append(file: &mut File, line: &[u8]) -> io::Result<()> {
     let before = file.stream_position().unwrap_or(0);
     file.write_all(line).and_then(|()| file.flush()).inspect_err(|_| {
-        // Truncate, so that the next line does not follow half a line.
+        // The file is cut to its earlier length, so that the next line does not follow half a line.
         let _ = file.set_len(before);
         let _ = file.seek(io::SeekFrom::Start(before));
     })

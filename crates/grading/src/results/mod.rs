@@ -1,7 +1,8 @@
-//! Storage of results, so that nothing is lost or done twice.
+//! Stores results, so that nothing is lost or done twice.
 //!
-//! Results are found by a key that digests everything they depend on ([`Key`]), so the results of a changed program,
-//! scene, rule or grader are not found. The grades do not depend on the storage.
+//! A result is found by a key, which is a digest of everything that the result depends on ([`Key`]). If the program,
+//! the scene, a rule or the grader changes, the old result is not found. Grades do not depend on whether results are
+//! stored.
 mod folder;
 
 pub use super::form::{Entry, format_line, read_line};
@@ -9,21 +10,21 @@ pub use folder::{FolderResults, JOURNAL_NAME, LOCK_FILE, MAX_JOURNAL_BYTES, MAX_
 
 use super::{key::Key, result::SceneResult};
 
-/// A storage of results, which several jobs use in parallel.
+/// A storage of results. Several jobs use it at the same time.
 pub trait Results: Sync {
     /// Finds the newest result that was stored under a key.
     fn find(&self, key: &Key) -> Option<SceneResult>;
 
-    /// Stores a result. With persistent storage, the result is written when this function returns. The submission's
-    /// name is for people only.
+    /// Stores a result. If the storage is persistent, the result is written before this function returns. The
+    /// submission's name is only for people who read the file.
     ///
     /// # Errors
     ///
-    /// Fails if the result can't be stored, for example because the disk is full. Earlier results stay.
+    /// Fails if the result can't be stored, for example because the disk is full. Earlier results are kept.
     fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError>;
 }
 
-/// The reason why a result can't be stored; always an error of the grader or the machine.
+/// The reason why a result can't be stored. It is always an error of the grader or the machine.
 #[derive(Debug, thiserror::Error)]
 #[error("{0}")]
 pub struct KeepError(pub String);

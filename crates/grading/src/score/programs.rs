@@ -1,4 +1,4 @@
-//! The grade of a program that was run.
+//! Completes the grade of a program that was run.
 use crate::{
     config::Visibility,
     execute::Runner,
@@ -20,15 +20,16 @@ use fosssim_mistakes::{
 };
 use fosssim_model::assignments::Assignment;
 
-/// The maximum number of causes per submission for which a smallest scene is made.
+/// The maximum number of causes of a submission for which a smallest scene is searched.
 const MAX_CAUSES: usize = 4;
 
 impl SubmissionGrading<'_> {
-    /// Returns the grade of the results of all scenes, in the plan's order, each with whether it was reused. If the
-    /// suite gives points for speed, the submission is timed first.
+    /// Grades the results of all scenes, in the order of the plan. The flag of each result tells whether it was reused.
+    /// If the suite gives points for speed, the submission is timed first.
     pub(crate) fn grade(&self, mut results: Vec<(SceneResult, bool)>) -> Grade {
         let (plan, options) = (self.grader.plan, self.grader.options);
-        // A run in parallel to the last scene does not count; otherwise the result would depend on the number of jobs.
+        // A scene that ran at the same time as the last scene does not count. Otherwise the result would depend on the
+        // number of jobs.
         let known: Vec<_> = results
             .iter()
             .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
@@ -44,7 +45,7 @@ impl SubmissionGrading<'_> {
         if self.grader.smallest.is_some() && results.iter().any(|(result, _)| is_wrong(result)) {
             drop(self.staged_program());
         }
-        // Dropping the value removes the submission's copy.
+        // When this value is dropped, the copy of the submission is removed.
         let staged = lock(&self.staged).take();
         let (program, build) = match staged.as_deref() {
             Some(Ok(staged)) => (staged.program_digest(), staged.build.clone()),
@@ -73,14 +74,14 @@ impl SubmissionGrading<'_> {
         }
         reconcile_explanations(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
-            // A panic in this part must not lose the grade.
+            // The grade must not be lost if this part panics.
             grade.smallest = catch_panic(|| self.find_smallest(&grade, staged, describe)).unwrap_or_default();
         }
         grade
     }
 
-    /// Returns the smallest scene for each cause. It is made from scenes that students see, if these show the cause, so
-    /// that it reveals nothing of others.
+    /// Finds the smallest scene for each cause. If scenes that students see show the cause, the smallest scene is made
+    /// from them, so that it reveals nothing about others.
     fn find_smallest(&self, grade: &Grade, staged: &StagedProgram, tell: &DescribeSmallest<'_>) -> Vec<SmallestScene> {
         let plan = self.grader.plan;
         let is_visible = |name: &str| {
@@ -114,9 +115,9 @@ impl SubmissionGrading<'_> {
         found
     }
 
-    /// Infers the milestone that the program implements, if the milestone's library lacks features that the suite's
-    /// milestone has. This is tried only if no scene is accepted, and at least half of the scenes have no readable
-    /// trace.
+    /// Infers the milestone for which the program was written, if the library of that milestone lacks features that the
+    /// suite's milestone has. This is tried only if no scene is accepted and at least half of the scenes have no
+    /// readable trace.
     fn looks_like(&self, results: &[(SceneResult, bool)]) -> Option<Assignment> {
         let expected = self.grader.plan.milestone?;
         let count = |is: fn(Verdict) -> bool| results.iter().filter(|(result, _)| is(result.verdict)).count();
@@ -126,7 +127,7 @@ impl SubmissionGrading<'_> {
         }
         let (staged, first) = (self.staged_program(), self.grader.plan.scenes().next()?);
         let program = &staged.as_ref().as_ref().ok()?.program;
-        // An error in this part must not lose the grade.
+        // The grade must not be lost if this part fails.
         let found = milestone::infer_milestone(&self.runner(first, None), program).ok().flatten();
         found.filter(|found| milestone::lacks(*found, expected))
     }
@@ -138,8 +139,8 @@ fn is_wrong(result: &SceneResult) -> bool {
     !is_of_us && !result.verdict.is_accepted() && result.ended.is_some()
 }
 
-/// Returns the contents that all failing scenes have in common. `contents` are those of all scenes, in order; they are
-/// computed only if some scenes fail and some do not.
+/// Returns the contents that all failing scenes have in common. `contents` computes the contents of all scenes, in
+/// order. It is called only if some scenes fail and others do not.
 fn locate_failure<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
     let failing = |ended: &Option<RunEnd>| ended.as_ref().and_then(FailureKind::from_end);
     let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));

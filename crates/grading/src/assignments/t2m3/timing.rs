@@ -1,10 +1,10 @@
-//! The contest's timing scenes, as large as the course's. They are generated on demand, because their files would be
-//! several megabytes large.
+//! The timing scenes of the contest, which are as large as the course's. They are generated when they are needed,
+//! because their files would have several megabytes.
 use std::{fmt::Write, sync::OnceLock};
 
-/// A generated scene.
+/// A scene that is generated when it is needed.
 pub struct MadeScene {
-    /// The scene's name, in the form of an embedded scene's.
+    /// The name of the scene, in the same form as for embedded scenes.
     pub name: &'static str,
     make: fn() -> String,
     text: OnceLock<String>,
@@ -17,7 +17,7 @@ pub static TIMING_SCENES: [MadeScene; 2] = [
 ];
 
 impl MadeScene {
-    /// Returns the scene's XML.
+    /// Returns the content of the scene's file.
     pub fn xml(&'static self) -> &'static [u8] {
         self.text.get_or_init(self.make).as_bytes()
     }
@@ -33,7 +33,7 @@ impl DrawnNumbers {
     }
 }
 
-/// Formats thousandths as a decimal number.
+/// Formats a number of thousandths as a decimal number.
 fn format_thousandths(number: i32) -> String {
     format!("{}{}.{:03}", if number < 0 { "-" } else { "" }, number.abs() / 1000, number.abs() % 1000)
 }
@@ -46,7 +46,7 @@ fn begin(description: &str, stiffness: u32) -> String {
     )
 }
 
-/// Adds a particle, whose position and velocity are in thousandths.
+/// Adds a particle to a scene. Its position and its velocity are in thousandths.
 fn add_particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: i32, fixed: bool) {
     let ([px, py], [vx, vy]) = (place.map(format_thousandths), velocity.map(format_thousandths));
     let (radius, fixed) = (format_thousandths(radius), u8::from(fixed));
@@ -56,7 +56,8 @@ fn add_particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: 
     );
 }
 
-/// Returns a scene of 15,000 balls in a box of four edges. Each ball is near its neighbors, and a few are fast.
+/// Returns a scene of 15,000 balls in a box of four edges. Each ball is close to its neighbors, and a few balls are
+/// fast.
 fn box_of_balls() -> String {
     let mut text = begin("15,000 balls in a box of four edges. The time that it takes counts.", 100);
     let mut drawn = DrawnNumbers(1);
@@ -76,7 +77,7 @@ fn box_of_balls() -> String {
     text + "</scene>\n"
 }
 
-/// Returns a scene of 120 ribbons of 40 particles on a half-plane, one above the other.
+/// Returns a scene of 120 ribbons, one above the other, on a half-plane. Each ribbon has 40 particles.
 fn pile_of_ribbons() -> String {
     let (ribbons, length) = (120, 40);
     let mut text = begin("120 ribbons fall onto each other and onto a half-plane. The time that it takes counts.", 200);
