@@ -123,7 +123,7 @@ fn parts() {
     println!("- Judging on one thread takes {:.2} of the time of recording.", ratio(judged(1), with));
     let rescaled: Vec<Vec<u8>> = scenes.iter().map(|(scene, trace)| rescaled(scene, trace)).collect();
     let by_both = |traces: &[&[u8]]| {
-        let options = Options { threads: 1, fair: true, ..Options::default() };
+        let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
         time(|| {
             for ((scene, _), trace) in scenes.iter().zip(traces) {
                 drop(replay::judge(scene, *trace, &options, &mut ()));

@@ -9,7 +9,7 @@ use std::{env, error::Error, fs};
 /// Returns the two verdicts, and the place of the first difference between trace and reference.
 pub fn run(scene: &[u8], trace: &[u8]) -> Result<String, Box<dyn Error>> {
     let scene = scene::read("scene", scene)?.scene;
-    let options = replay::Options { fair: true, ..replay::Options::default() };
+    let options = replay::Options { uses_fair_rules: true, ..replay::Options::default() };
     let outcome = replay::judge(&scene, trace, &options, &mut ());
     let mut text = String::new();
     for (name, book) in [("original", Book::Parity), ("fair", Book::Fair)] {

@@ -133,7 +133,7 @@ pub fn explain(bytes: &[u8]) {
 /// Judges a whole trace by both rule books.
 pub fn judge(bytes: &[u8]) {
     let Some((scene, trace, _)) = whole(bytes) else { return };
-    let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
+    let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
     let outcome = replay::judge(&scene, &trace[..], &options, &mut ());
     for book in [Book::Parity, Book::Fair] {
         let account = outcome.findings_by(book);

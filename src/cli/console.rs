@@ -217,7 +217,7 @@ impl Drop for Bar {
 }
 
 impl Progress for Bar {
-    fn step_judged(&mut self, step: u32, _remarks: &[Remark]) {
+    fn observe_step_end(&mut self, step: u32, _remarks: &[Remark]) {
         self.show_step(step);
     }
 }

@@ -45,7 +45,7 @@ fn suite() -> Vec<(String, Scene)> {
 
 /// The explanations of the row's traces that the fair rules reject; after the first two only which known mistake it is.
 fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
-    let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
+    let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
     let mut found = Vec::new();
     for (_, scene) in scenes {
         let Some(trace) = simulated(scene, Some(row)) else { continue };
@@ -116,7 +116,7 @@ fn what_submissions_of_the_corpus_do_wrong_is_named() {
     let Some(folder) = corpus::folder() else { return };
     let text = std::fs::read_to_string(folder.join("verdicts.jsonl")).expect("readable");
     let rows: Vec<Value> = text.lines().map(|line| serde_json::from_str(line).expect("JSON")).collect();
-    let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
+    let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
     let named: Vec<Option<String>> = rows
         .par_iter()
         .filter_map(|row| {

@@ -42,7 +42,7 @@ pub fn rows(kind: student::RowKind) -> Vec<&'static Row> {
 }
 
 fn judged(scene: &Scene, trace: &[u8], threads: usize) -> (Overall, Judgement) {
-    let outcome = judge(scene, trace, &Options { threads, fair: true, ..Options::default() }, &mut ());
+    let outcome = judge(scene, trace, &Options { threads, uses_fair_rules: true, ..Options::default() }, &mut ());
     (outcome.parity.overall, *outcome.fair.expect("the fair rules were asked"))
 }
 

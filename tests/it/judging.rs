@@ -10,7 +10,8 @@ use rayon::prelude::*;
 /// Both ways say the same of a trace, to the last field.
 pub fn compare(name: &str, scene: &Scene, trace: &[u8]) {
     let [one, other] = [false, true].map(|one_by_one| {
-        let options = Options { threads: 1, fair: true, one_by_one, ..Options::default() };
+        let options =
+            Options { threads: 1, uses_fair_rules: true, judges_individually: one_by_one, ..Options::default() };
         // As text, which compares NaN, too.
         format!("{:?}", replay::judge(scene, trace, &options, &mut ()))
     });

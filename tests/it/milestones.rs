@@ -19,7 +19,7 @@ use fosssim_oracle::{
 
 /// Whether the fair rules accept the trace, and the original's.
 fn verdicts(scene: &Scene, trace: &[u8]) -> [bool; 2] {
-    let outcome = judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ());
+    let outcome = judge(scene, trace, &Options { threads: 1, uses_fair_rules: true, ..Options::default() }, &mut ());
     let fair = outcome.fair.expect("the fair rules were asked").verdict == FairVerdict::Accepted;
     [fair, outcome.parity.overall == Overall::Passed]
 }

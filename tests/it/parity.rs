@@ -14,11 +14,11 @@ use fosssim_oracle::{
 struct Heard(Vec<(u32, Vec<Remark>)>);
 
 impl Progress for Heard {
-    fn step_begins(&mut self, step: u32) {
+    fn observe_step_begin(&mut self, step: u32) {
         self.0.push((step, Vec::new()));
     }
 
-    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
+    fn observe_step_end(&mut self, step: u32, remarks: &[Remark]) {
         let last = self.0.last_mut().expect("a step begins before it is judged");
         assert_eq!(last.0, step);
         last.1.extend_from_slice(remarks);

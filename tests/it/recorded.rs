@@ -1,7 +1,7 @@
 //! Judging against a recording instead of the simulator.
 use crate::workspace::{embedded, simulate};
 use fosssim_oracle::{
-    judge::{Book, Finding, FindingDetail, FindingKind, Overall, Stop, recorded, replay},
+    judge::{Book, Finding, FindingDetail, FindingKind, Overall, Stop, recording, replay},
     scene::Collision,
     suite::library,
     trace::Layout,
@@ -12,7 +12,7 @@ fn the_recording_itself_passes_for_every_embedded_scene() {
     for name in library::names() {
         let scene = embedded(name);
         let recording = zstd::decode_all(library::recording(name).expect("a recording")).expect("zstd");
-        let outcome = recorded::judge(&scene, &simulate(&scene)[..], &recording[..], &mut ()).expect("a recording");
+        let outcome = recording::judge(&scene, &simulate(&scene)[..], &recording[..], &mut ()).expect("a recording");
         assert_eq!(outcome.parity.overall, Overall::Passed, "{name}: {:?}", outcome.parity.findings.first_divergence);
         assert_eq!(outcome.steps_judged, scene.step_count());
     }
@@ -27,7 +27,7 @@ fn wrong_responses_that_lock_step_lets_pass_are_found_at_their_step() {
     let (right, wrong) = (simulate(&scene), simulate(&bouncy));
     let lock_step = replay::judge(&scene, &wrong[..], &replay::Options::default(), &mut ());
     assert_eq!(lock_step.parity.overall, Overall::Passed, "the original never looks at responses here");
-    let outcome = recorded::judge(&scene, &wrong[..], &right[..], &mut ()).expect("a recording");
+    let outcome = recording::judge(&scene, &wrong[..], &right[..], &mut ()).expect("a recording");
     assert_eq!(outcome.parity.overall, Overall::Failed);
     let first = outcome.parity.findings.first_divergence.expect("a divergence");
     assert!(matches!(first.detail, FindingDetail::Position { .. } | FindingDetail::Velocity { .. }), "{first}");
@@ -45,7 +45,7 @@ fn another_start_is_a_difference_of_step_0() {
     let right = simulate(&scene);
     let mut wrong = right.clone();
     wrong[..8].copy_from_slice(&77.0_f64.to_le_bytes());
-    let outcome = recorded::judge(&scene, &wrong[..], &right[..], &mut ()).expect("a recording");
+    let outcome = recording::judge(&scene, &wrong[..], &right[..], &mut ()).expect("a recording");
     assert_eq!(outcome.parity.findings.first_divergence.expect("a divergence").step, 0);
     assert_eq!((outcome.parity.findings.wrong_steps, outcome.right_steps(Book::Parity)), (0, scene.step_count() - 1));
 }
@@ -56,7 +56,7 @@ fn the_first_record_is_no_step() {
     let right = simulate(&scene);
     let mut other = scene.clone();
     other.particles.iter_mut().for_each(|particle| particle.velocity.x += 0.125);
-    let outcome = recorded::judge(&scene, &simulate(&other)[..], &right[..], &mut ()).expect("a recording");
+    let outcome = recording::judge(&scene, &simulate(&other)[..], &right[..], &mut ()).expect("a recording");
     assert_eq!(
         (outcome.parity.findings.wrong_steps, outcome.right_steps(Book::Parity)),
         (u64::from(scene.step_count()), 0)
@@ -68,16 +68,16 @@ fn cut_traces_have_no_verdict_and_cut_recordings_are_a_fault() {
     let scene = embedded("ContinuousTimeTests/head-on-equal-masses");
     let right = simulate(&scene);
     let half = &right[..right.len() / 2];
-    let outcome = recorded::judge(&scene, half, &right[..], &mut ()).expect("a recording");
+    let outcome = recording::judge(&scene, half, &right[..], &mut ()).expect("a recording");
     assert_eq!(outcome.parity.overall, Overall::None);
     assert!(matches!(outcome.stop, Some(Stop::Trace { .. })));
     // The findings before the end are listed in the order of the kinds, as in any other outcome.
     let mut faster = scene.clone();
     faster.particles.iter_mut().for_each(|particle| particle.velocity *= 1.25);
     let wrong = simulate(&faster);
-    let outcome = recorded::judge(&scene, &wrong[..wrong.len() - 1], &right[..], &mut ()).expect("a recording");
+    let outcome = recording::judge(&scene, &wrong[..wrong.len() - 1], &right[..], &mut ()).expect("a recording");
     let kinds: Vec<FindingKind> = outcome.parity.findings.examples.iter().map(Finding::kind).collect();
     assert!(kinds.contains(&FindingKind::SuperfluousCollision) && kinds.is_sorted(), "{kinds:?}");
-    let error = recorded::judge(&scene, &right[..], half, &mut ()).expect_err("half a recording").to_string();
+    let error = recording::judge(&scene, &right[..], half, &mut ()).expect_err("half a recording").to_string();
     assert!(error.starts_with("the recording is damaged: frame ") && error.ends_with("record it again"), "{error}");
 }

@@ -1,6 +1,6 @@
 //! The corpus of root-finder vectors: every zero and every first time must match the original bit for bit.
 use fosssim_oracle::num::{
-    first_time::{first_time, first_time_of},
+    first_time::{first_time, first_time_of_lists},
     polynomial::{MAX_COEFFICIENTS, Polynomial, trim},
     rpoly::zeros,
 };
@@ -74,7 +74,7 @@ fn compare_first_times(file: &str, cut: fn(&[f64]) -> &[f64]) {
             let polynomials: Vec<Polynomial> = lists.iter().map(|list| Polynomial::untrimmed(cut(list))).collect();
             first_time(&polynomials)
         } else {
-            first_time_of(lists.iter().map(|list| cut(list)))
+            first_time_of_lists(lists.iter().map(|list| cut(list)))
         };
         match actual {
             Err(_) => assert_eq!(expected.to_bits(), ENDLESS, "case {cases}: {lists:?}"),

@@ -7,7 +7,7 @@ use crate::{
 use fosssim_evidence::{self as evidence, KeptPart, examine};
 use fosssim_judge::{
     Rules,
-    replay::{BothObservers, Options},
+    replay::{ObserverPair, Options},
 };
 use fosssim_model::scene::{self, Scene};
 use fosssim_report::{
@@ -44,9 +44,9 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     // Bytes that can't be read are noticed below.
     let _ = trace.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = looks_like(&start);
-    let options = Options { threads: 1, fair: request.rules.ask_fair(), ..Options::default() };
+    let options = Options { threads: 1, uses_fair_rules: request.rules.ask_fair(), ..Options::default() };
     let (mut told, mut wrong) = (PageProgress { host, all: scene.step_count() }, WrongSteps::new(StepChoice::None));
-    let heard = &mut BothObservers(&mut told, &mut wrong);
+    let heard = &mut ObserverPair(&mut told, &mut wrong);
     let examined = examine(&scene, Cursor::new(start).chain(trace), KeptPart::All, &options, heard);
     let outcome = &examined.outcome;
     // Report judging as complete, because the search for the mistake, which follows, may take as long.

@@ -2,7 +2,7 @@
 use crate::parts::PageAnswer;
 use fosssim_judge::study::Study;
 use fosssim_model::sim::{PairMotion, PointMotion};
-use fosssim_num::{printed::format_g, vector::Vec2};
+use fosssim_num::{number_format::format_g, vector::Vec2};
 use fosssim_render::{detection, plot::PlotTarget};
 use fosssim_report::{detect::Detect, style::Style};
 use serde::Deserialize;

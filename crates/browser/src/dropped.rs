@@ -33,7 +33,7 @@ pub(crate) struct PageProgress<'a> {
 }
 
 impl Progress for PageProgress<'_> {
-    fn step_judged(&mut self, step: u32, _: &[Remark]) {
+    fn observe_step_end(&mut self, step: u32, _: &[Remark]) {
         self.host.progress(step, self.all);
     }
 }

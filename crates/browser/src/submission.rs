@@ -9,7 +9,7 @@ use fosssim_grading::{
     result::Reason,
     traces,
 };
-use fosssim_mistakes::together::told::cut_result;
+use fosssim_mistakes::together::disclosure::limit_result;
 use fosssim_report::{
     grade,
     words::{self, explanation},
@@ -91,7 +91,7 @@ impl DroppedSubmission {
             return Err(format!("cannot read the trace of {}: {why}", task.name));
         }
         if self.is_for_students {
-            cut_result(self.plan.student_hints(&task.name), &mut result);
+            limit_result(self.plan.student_hints(&task.name), &mut result);
         }
         let value = json!({
             "verdict": result.verdict.name(),

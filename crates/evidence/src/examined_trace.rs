@@ -5,10 +5,10 @@ use crate::{
 };
 use fosssim_judge::{
     Outcome,
-    kept::{KeptTrace, MAX_KEPT_BYTES},
-    replay::{self, BothObservers, Options, Progress},
+    kept_trace::{KeptTrace, MAX_KEPT_BYTES},
+    replay::{self, ObserverPair, Options, Progress},
 };
-use fosssim_mistakes::diagnose::{Explanation, explain_kept};
+use fosssim_mistakes::diagnose::{Explanation, explain_kept_trace};
 use fosssim_model::scene::Scene;
 use std::io::{self, Read};
 
@@ -48,20 +48,20 @@ pub fn examine<'a, R: Read + Send>(
 ) -> ExaminedTrace<'a> {
     let mut kept = KeptTrace::new(if keep == KeptPart::Nothing { 0 } else { MAX_KEPT_BYTES });
     let mut rulings = StepRulings::default();
-    let outcome = replay::judge(scene, kept.reader(&mut trace), options, &mut BothObservers(&mut rulings, progress));
+    let outcome = replay::judge(scene, kept.keep_from(&mut trace), options, &mut ObserverPair(&mut rulings, progress));
     if keep == KeptPart::All && outcome.stop.is_some() {
         let room = (MAX_KEPT_BYTES - kept.bytes().len()) as u64;
         // After an error of reading, nothing more is kept.
-        let _ = io::copy(&mut kept.reader(trace.take(room)), &mut io::sink());
+        let _ = io::copy(&mut kept.keep_from(trace.take(room)), &mut io::sink());
     }
     ExaminedTrace { scene, rulings: rulings.into_steps(&outcome), outcome, trace: kept }
 }
 
 impl ExaminedTrace<'_> {
-    /// Returns the likely mistakes of the program that wrote the trace ([`explain_kept`]).
+    /// Returns the likely mistakes of the program that wrote the trace ([`explain_kept_trace`]).
     #[must_use]
     pub fn explain(&self) -> Vec<Explanation> {
-        explain_kept(self.scene, &self.trace)
+        explain_kept_trace(self.scene, &self.trace)
     }
 
     /// Returns the evidence, with at most `budget` numbers of each motion. It covers the whole trace if that can be

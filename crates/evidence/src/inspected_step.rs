@@ -1,6 +1,6 @@
 //! Inspects one step in detail: every detection pass, contact and zone, and the calls of findings.
 use crate::matching::{are_different, match_polynomials};
-use fosssim_judge::study::{NoAnswer, Study};
+use fosssim_judge::study::{EndlessSearch, Study};
 use fosssim_model::{
     scene::Scene,
     sim::{Decision, Detection, Impulse, Observer, Pair, PairMotion, Pass, ResumeState, State, StepController, Zone},
@@ -68,7 +68,7 @@ pub struct InspectedCall {
     /// The pair of the call.
     pub pair: Pair,
     /// The reference's own computation of the call.
-    pub study: Result<Study, NoAnswer>,
+    pub study: Result<Study, EndlessSearch>,
     /// The number of polynomials that the reference logs for the call; 0 without continuous-time detection.
     pub polynomials: usize,
     /// The trace's log of the call.

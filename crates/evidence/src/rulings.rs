@@ -33,14 +33,14 @@ impl StepRulings {
 }
 
 impl Progress for StepRulings {
-    fn step_judged(&mut self, _step: u32, _remarks: &[Remark]) {
+    fn observe_step_end(&mut self, _step: u32, _remarks: &[Remark]) {
         self.steps.push(StepRuling::default());
     }
 
-    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
+    fn observe_wrong_step(&mut self, wrong: &WrongStep<'_>) {
         if let Some(last) = self.steps.last_mut() {
-            last.wrong_by_parity = !wrong.parity.firsts.is_empty();
-            last.wrong_by_fair = !wrong.fair.firsts.is_empty();
+            last.wrong_by_parity = !wrong.parity.first_findings.is_empty();
+            last.wrong_by_fair = !wrong.fair.first_findings.is_empty();
         }
     }
 }

@@ -14,7 +14,7 @@ fn asset(name: &str) -> Scene {
 }
 
 fn judged(scene: &Scene, trace: &[u8]) -> (Outcome, Evidence) {
-    let options = replay::Options { fair: true, ..Default::default() };
+    let options = replay::Options { uses_fair_rules: true, ..Default::default() };
     let mut rulings = StepRulings::default();
     let outcome = replay::judge(scene, trace, &options, &mut rulings);
     let focus: Vec<Focus> = outcome.findings_by(Book::Fair).examples.iter().map(Focus::from).collect();

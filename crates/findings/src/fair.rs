@@ -60,20 +60,20 @@ pub struct Borderline {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Shares {
     /// The largest share for the coefficients of polynomials.
-    #[serde(rename = "coefficients", with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(rename = "coefficients", with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub coefficient: f64,
     /// The largest share for contact normals.
-    #[serde(rename = "normals", with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(rename = "normals", with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub normal: f64,
     /// The largest share for positions.
-    #[serde(rename = "positions", with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(rename = "positions", with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub position: f64,
     /// The largest share for velocities.
-    #[serde(rename = "velocities", with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(rename = "velocities", with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub velocity: f64,
 }
 

@@ -126,7 +126,7 @@ pub enum FindingDetail {
         /// The first collision of this pair in the trace.
         actual: LoggedImpulse,
         /// The Euclidean distance between the two normals.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         residual: f64,
     },
     /// The number of polynomials differs.
@@ -176,13 +176,13 @@ pub enum FindingDetail {
         /// common.
         power: usize,
         /// The reference's coefficient, multiplied by that factor.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         expected: f64,
         /// The coefficient in the trace.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         actual: f64,
         /// The distance between the two coefficients.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         residual: f64,
         /// The coefficients in the form in which the original compares them; `None` for the fair rules.
         rescaled: Option<RescaledCoefficient>,
@@ -196,13 +196,13 @@ pub enum FindingDetail {
         /// The index of the particle.
         particle: usize,
         /// The position (x, y) in the reference.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         expected: [f64; 2],
         /// The position (x, y) in the trace.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         actual: [f64; 2],
         /// The Euclidean distance between the two positions.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         residual: f64,
     },
     /// A velocity differs by more than the bound of the maximum velocity residual.
@@ -210,13 +210,13 @@ pub enum FindingDetail {
         /// The index of the particle.
         particle: usize,
         /// The velocity (x, y) in the reference.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         expected: [f64; 2],
         /// The velocity (x, y) in the trace.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         actual: [f64; 2],
         /// The Euclidean distance between the two velocities.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         residual: f64,
     },
     /// The time of impact differs from the time at which the polynomials become positive (fair rules).
@@ -259,10 +259,10 @@ pub enum FindingDetail {
         /// The place of the pair's first polynomial in the step.
         place: PolynomialPlace,
         /// The time of impact if no coefficient is missing.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         expected: f64,
         /// The time of impact according to the trace's polynomials.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         actual: f64,
     },
     /// A state cannot be judged, because it contains NaN or is far larger than every state that the scene leads to
@@ -271,10 +271,10 @@ pub enum FindingDetail {
         /// The index of the particle.
         particle: usize,
         /// The particle's position (x, y) in the trace.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         position: [f64; 2],
         /// The particle's velocity (x, y) in the trace.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         velocity: [f64; 2],
     },
     /// The trace mixes the two accepted forms of the approach polynomial (fair rules).
@@ -373,16 +373,16 @@ pub struct RescaledCoefficient {
     #[serde(rename = "coefficient")]
     pub power: usize,
     /// The coefficient of the reference, scaled to the size of the trace's polynomial.
-    #[serde(with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub expected: f64,
     /// The coefficient in the trace.
-    #[serde(with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub actual: f64,
     /// The distance between the two coefficients.
-    #[serde(with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub residual: f64,
 }
 

@@ -2,7 +2,7 @@
 //! (oracle-behavior.md 4 to 6).
 use super::book_findings::BookFindings;
 use fosssim_model::sim::StepError;
-use fosssim_num::tolerances::{PARITY_ACCUMULATED, PARITY_MAXIMUM};
+use fosssim_num::tolerances::{PARITY_ACCUMULATED_RESIDUAL, PARITY_MAX_RESIDUAL};
 use serde::{Deserialize, Serialize};
 
 /// The original's verdict on the whole trace.
@@ -22,20 +22,20 @@ pub enum Overall {
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct Residuals {
     /// The sum of the position residuals of all steps.
-    #[serde(rename = "accumulated_position_residual", with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(rename = "accumulated_position_residual", with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub accumulated_position: f64,
     /// The sum of the velocity residuals of all steps.
-    #[serde(rename = "accumulated_velocity_residual", with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(rename = "accumulated_velocity_residual", with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub accumulated_velocity: f64,
     /// The largest position residual of all steps. NaN is ignored.
-    #[serde(rename = "maximum_position_residual", with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(rename = "maximum_position_residual", with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub maximum_position: f64,
     /// The largest velocity residual of all steps. NaN is ignored.
-    #[serde(rename = "maximum_velocity_residual", with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(rename = "maximum_velocity_residual", with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     pub maximum_velocity: f64,
 }
 
@@ -45,10 +45,10 @@ impl Residuals {
     #[must_use]
     pub const fn with_bounds(&self) -> [(f64, f64); 4] {
         [
-            (self.accumulated_position, PARITY_ACCUMULATED),
-            (self.accumulated_velocity, PARITY_ACCUMULATED),
-            (self.maximum_position, PARITY_MAXIMUM),
-            (self.maximum_velocity, PARITY_MAXIMUM),
+            (self.accumulated_position, PARITY_ACCUMULATED_RESIDUAL),
+            (self.accumulated_velocity, PARITY_ACCUMULATED_RESIDUAL),
+            (self.maximum_position, PARITY_MAX_RESIDUAL),
+            (self.maximum_velocity, PARITY_MAX_RESIDUAL),
         ]
     }
 }

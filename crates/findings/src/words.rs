@@ -9,7 +9,7 @@ use fosssim_model::{
     trace::LoggedImpulse,
 };
 use fosssim_num::{
-    printed::format_exact,
+    number_format::format_exact,
     vector::{self, Vec2},
 };
 use std::fmt::{self, Display, Formatter};

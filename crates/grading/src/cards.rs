@@ -4,7 +4,7 @@ use super::{config::Hints, result::SceneResult};
 use fosssim_evidence::StepRuling;
 use fosssim_files::Place;
 use fosssim_judge::{Outcome, Rules};
-use fosssim_mistakes::{diagnose::Explanation, together::told::cut};
+use fosssim_mistakes::{diagnose::Explanation, together::disclosure::limit_explanations};
 use fosssim_model::scene::Scene;
 use std::io;
 
@@ -68,7 +68,7 @@ impl Cards<'_> {
         if !self.for_students {
             return Ok((card, None));
         }
-        let explanations = cut(students, judged.explanations.to_vec());
+        let explanations = limit_explanations(students, judged.explanations.to_vec());
         Ok((card, self.keep_one(&JudgedTrace { explanations: &explanations, hints: students, ..*judged })?))
     }
 
@@ -121,7 +121,7 @@ mod tests {
     use super::*;
     use crate::{Verdict, result::Reason};
     use fosssim_judge::replay;
-    use fosssim_mistakes::together::told::cut_result;
+    use fosssim_mistakes::together::disclosure::limit_result;
     use fosssim_model::scene::original;
 
     /// Returns a scene, the outcome of judging a trace of it, and the result.
@@ -197,7 +197,7 @@ mod tests {
             assert_eq!(text(own.as_ref()).as_deref(), expected, "{for_students} {students:?}");
             let mut told = SceneResult { card, card_for_students: own.clone(), ..result.clone() };
             assert!(!cards.lacks_card(&told, students));
-            cut_result(students, &mut told);
+            limit_result(students, &mut told);
             assert_eq!(told.card, own);
             // A result of a grading that made no page for students is graded again for one.
             let kept = SceneResult { card_for_students: None, ..told };

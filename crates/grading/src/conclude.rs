@@ -12,11 +12,11 @@ use super::{
 use fosssim_judge::{
     Book, Outcome, Rules, Ruling, Stop,
     fair::{self, FairRefusal},
-    kept::KeptTrace,
+    kept_trace::KeptTrace,
 };
 use fosssim_mistakes::{
     diagnose::{self, Explanation},
-    together::told::cut_result,
+    together::disclosure::limit_result,
 };
 use fosssim_model::{scene::Scene, trace::Layout};
 use std::{
@@ -115,8 +115,8 @@ impl SearchDepth {
     #[must_use]
     pub fn explain(self, scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
         match self {
-            Self::NotFinite => diagnose::not_finite(scene, trace),
-            Self::Mistakes => diagnose::explain_kept(scene, trace),
+            Self::NotFinite => diagnose::explain_not_finite(scene, trace),
+            Self::Mistakes => diagnose::explain_kept_trace(scene, trace),
         }
     }
 }
@@ -157,7 +157,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanat
         card: None,
         card_for_students: None,
     };
-    cut_result(hints, &mut result);
+    limit_result(hints, &mut result);
     result
 }
 
@@ -272,7 +272,7 @@ mod tests {
     fn what_is_not_told_is_not_explained() {
         let scene = original::read(scenes::ALL_KINDS.as_bytes()).expect("a scene").scene;
         let trace = student::record_trace(&scene, Student::new(Some(Mistake::ParticleEdgeEmpty))).expect("a trace");
-        let options = replay::Options { fair: true, ..replay::Options::default() };
+        let options = replay::Options { uses_fair_rules: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
         let task = &SceneTask { name: "a/b".to_owned(), xml: Vec::new(), scene, recording: None };
         let program = ProgramRun::not_run();

@@ -17,9 +17,9 @@ use fosssim_evidence::StepRulings;
 use fosssim_files::Place;
 use fosssim_judge::{
     Outcome, Rules,
-    kept::{KeptTrace, MAX_KEPT_BYTES},
-    recorded,
-    replay::{self, BothObservers, Options, Progress, Remark},
+    kept_trace::{KeptTrace, MAX_KEPT_BYTES},
+    recording,
+    replay::{self, ObserverPair, Options, Progress, Remark},
 };
 use fosssim_sandbox::{
     self as sandbox, Backend, Job, LeftFolder, Limits, Policy, ProgramIdentity, RunningProgram, collect::CollectError,
@@ -110,7 +110,7 @@ impl Runner<'_> {
         let mut kept = KeptTrace::new(MAX_KEPT_BYTES);
         let mut rulings = StepRulings::default();
         let mut told = StepReporter(on_step);
-        let heard = &mut BothObservers(&mut rulings, &mut told);
+        let heard = &mut ObserverPair(&mut rulings, &mut told);
         let judged = self.judge_trace(program, task, &mut kept, trace, heard);
         watch.end(RunPart::Judging);
         drop(left);
@@ -234,7 +234,7 @@ impl Runner<'_> {
             self.judge(task, kept, &mut trace, watch)
         });
         // The judge has already reported an error of reading here.
-        let _ = io::copy(&mut kept.reader(trace), &mut io::sink());
+        let _ = io::copy(&mut kept.keep_from(trace), &mut io::sink());
         judged
     }
 
@@ -245,15 +245,19 @@ impl Runner<'_> {
         trace: impl Read + Send,
         watch: &mut dyn Progress,
     ) -> Result<Outcome, String> {
-        let options =
-            Options { stop_by: self.rules.official(), threads: 1, fair: self.rules.ask_fair(), ..Options::default() };
+        let options = Options {
+            stopping_book: self.rules.official(),
+            threads: 1,
+            uses_fair_rules: self.rules.ask_fair(),
+            ..Options::default()
+        };
         if !self.recorded {
-            return Ok(replay::judge(&task.scene, kept.reader(trace), &options, watch));
+            return Ok(replay::judge(&task.scene, kept.keep_from(trace), &options, watch));
         }
         let no_recording = || format!("{} has no recording: grade it without --recorded", task.name);
         let recording = zstd::Decoder::with_buffer(task.recording.ok_or_else(no_recording)?)
             .map_err(|error| format!("a recording can't be unpacked: {error}"))?;
-        recorded::judge(&task.scene, kept.reader(trace), recording, watch).map_err(|error| error.to_string())
+        recording::judge(&task.scene, kept.keep_from(trace), recording, watch).map_err(|error| error.to_string())
     }
 
     fn arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
@@ -302,7 +306,7 @@ fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneR
 struct StepReporter<'a>(&'a mut dyn FnMut(u32));
 
 impl Progress for StepReporter<'_> {
-    fn step_judged(&mut self, step: u32, _remarks: &[Remark]) {
+    fn observe_step_end(&mut self, step: u32, _remarks: &[Remark]) {
         (self.0)(step);
     }
 }

@@ -188,7 +188,7 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
     // A built-in scene belongs to the milestone that its folder names. For other scenes, the milestone follows from
     // their contents.
     let bundled = plan.scenes().filter_map(|task| library::assignment(&task.name)).max();
-    let whose = bundled.or_else(|| diagnose::milestone(plan.scenes().map(|task| &task.scene)));
+    let whose = bundled.or_else(|| diagnose::find_milestone(plan.scenes().map(|task| &task.scene)));
     diagnose::refuted_keys(whose, &wrong, &right)
 }
 

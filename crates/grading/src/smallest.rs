@@ -3,7 +3,7 @@
 use super::{config::RunLimits, execute::Runner, located::FailureKind, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
 pub use fosssim_findings::smallest::SmallestScene;
-use fosssim_judge::{Stop, kept::MAX_KEPT_BYTES, replay::Options};
+use fosssim_judge::{Stop, kept_trace::MAX_KEPT_BYTES, replay::Options};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use fosssim_model::{
     assignments::Assignment,
@@ -170,7 +170,7 @@ impl Shrinker<'_> {
 
 /// Returns the wrong steps of a run. If the program did not end well, this is the step after its last record.
 fn wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
-    let options = Options { threads: 1, fair: true, ..Options::default() };
+    let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());
     let is_unreadable = matches!(examined.outcome.stop, Some(Stop::Trace { .. }));
     let ended = FailureKind::from_end(&seen.ended).is_some() || is_unreadable;

@@ -23,8 +23,12 @@ pub fn judge_trace<'a, R: Read + Send>(
     trace: R,
     progress: &mut dyn Progress,
 ) -> (SceneResult, ExaminedTrace<'a>) {
-    let options =
-        Options { stop_by: plan.rules.official(), threads: 1, fair: plan.rules.ask_fair(), ..Options::default() };
+    let options = Options {
+        stopping_book: plan.rules.official(),
+        threads: 1,
+        uses_fair_rules: plan.rules.ask_fair(),
+        ..Options::default()
+    };
     let bytes = AtomicU64::new(0);
     let counted = CountedReader { inner: trace, bytes: &bytes };
     let examined = examine(&task.scene, counted, KeptPart::All, &options, progress);

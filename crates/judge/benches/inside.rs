@@ -122,7 +122,7 @@ fn record<W: std::io::Write>(scene: &Scene, target: W) -> W {
 }
 
 fn judge(scene: &Scene, trace: &[u8], fair: bool) {
-    let options = Options { threads: 1, fair, ..Options::default() };
+    let options = Options { threads: 1, uses_fair_rules: fair, ..Options::default() };
     black_box(replay::judge(scene, trace, &options, &mut ()));
 }
 
@@ -304,7 +304,7 @@ fn growth() {
         let recorded = least(rounds, || _ = record(&scene, std::io::sink()));
         let trace = std::env::temp_dir().join(format!("fosssim-growth-{particles}.bin"));
         drop(record(&scene, std::fs::File::create(&trace).expect("a file")));
-        let options = Options { threads: 1, fair: true, ..Options::default() };
+        let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
         let graded = least(rounds, || {
             let file = std::fs::File::open(&trace).expect("the trace");
             assert!(replay::judge(&scene, file, &options, &mut ()).fair.is_some());

@@ -25,10 +25,10 @@ const FAIR_WORK_FACTOR: u64 = 40;
 pub struct Budget<'a> {
     scene: &'a Scene,
     factor: u64,
-    rest: u64,
+    remaining: u64,
     /// The work that is allowed before the work of the scene's own run is known.
-    at_least: u64,
-    is_wide: bool,
+    min_work: u64,
+    is_widened: bool,
 }
 
 impl<'a> Budget<'a> {
@@ -37,28 +37,28 @@ impl<'a> Budget<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene, fair: bool) -> Self {
         let factor = if fair { FAIR_WORK_FACTOR } else { PARITY_WORK_FACTOR };
-        let at_least = least_of_scene(scene).saturating_mul(factor);
-        Self { scene, factor, rest: MIN_WORK.saturating_add(at_least), at_least, is_wide: false }
+        let at_least = min_scene_work(scene).saturating_mul(factor);
+        Self { scene, factor, remaining: MIN_WORK.saturating_add(at_least), min_work: at_least, is_widened: false }
     }
 
     /// Sets the floor, which is the work that is allowed for every trace.
     pub(crate) fn with_floor(self, floor: u64) -> Self {
-        Self { rest: floor, at_least: 0, ..self }
+        Self { remaining: floor, min_work: 0, ..self }
     }
 
     /// Returns the remaining work.
     #[must_use]
-    pub fn rest(&self) -> u64 {
-        self.rest
+    pub fn remaining(&self) -> u64 {
+        self.remaining
     }
 
     /// Subtracts `work` from the remaining work, and returns `false` if too little remains.
     pub fn spend(&mut self, work: u64) -> bool {
-        if work > self.rest {
+        if work > self.remaining {
             self.widen();
         }
-        let rest = self.rest.checked_sub(work);
-        self.rest = rest.unwrap_or(0);
+        let rest = self.remaining.checked_sub(work);
+        self.remaining = rest.unwrap_or(0);
         rest.is_some()
     }
 
@@ -67,11 +67,11 @@ impl<'a> Budget<'a> {
     /// # Errors
     /// Fails with a [`StepError`] of kind `Work` if no work remains.
     pub fn step(&mut self, simulation: &mut Simulation, observer: &mut dyn Observer) -> Result<(), StepError> {
-        if self.rest < (MIN_WORK.saturating_add(self.at_least)) / 2 {
+        if self.remaining < (MIN_WORK.saturating_add(self.min_work)) / 2 {
             self.widen();
         }
         let begin = simulation.work();
-        simulation.limit_work(begin.saturating_add(self.rest));
+        simulation.limit_work(begin.saturating_add(self.remaining));
         let result = simulation.step(observer);
         self.spend(simulation.work() - begin);
         result
@@ -79,11 +79,11 @@ impl<'a> Budget<'a> {
 
     /// Adds the work of the scene's own run, once, and returns whether it added anything.
     pub fn widen(&mut self) -> bool {
-        if std::mem::replace(&mut self.is_wide, true) {
+        if std::mem::replace(&mut self.is_widened, true) {
             return false;
         }
-        let own = work_for_scene(self.scene).saturating_mul(self.factor).saturating_sub(self.at_least);
-        self.rest = self.rest.saturating_add(own);
+        let own = scene_work(self.scene).saturating_mul(self.factor).saturating_sub(self.min_work);
+        self.remaining = self.remaining.saturating_add(own);
         own > 0
     }
 }
@@ -91,7 +91,7 @@ impl<'a> Budget<'a> {
 /// Returns a lower bound for the work of the scene's own run: a detection pass and an iteration of Newton's method for
 /// each step, if there are any. Nearly all traces stay below the allowed multiple of this bound, so the scene need not
 /// be run.
-fn least_of_scene(scene: &Scene) -> u64 {
+fn min_scene_work(scene: &Scene) -> u64 {
     let pass = match scene.collision {
         Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => pairs(scene).count() as u64,
         Collision::None | Collision::Penalty { .. } | Collision::Simple { .. } => 0,
@@ -100,7 +100,7 @@ fn least_of_scene(scene: &Scene) -> u64 {
 }
 
 /// Returns the work of the scene's own run.
-fn work_for_scene(scene: &Scene) -> u64 {
+fn scene_work(scene: &Scene) -> u64 {
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     for _ in 0..scene.step_count() {
         if simulation.step(&mut ()).is_err() {
@@ -117,9 +117,9 @@ mod tests {
         options::Options,
         outcome::{Outcome, Stop},
         parity::Overall,
-        replay::judge_within,
+        replay::judge_with_memory,
         rules::{Book, Ruling},
-        samples::{changed_trace, run, scene, write_frames},
+        samples::{change_trace, scene, simulate, write_frames},
     };
 
     /// Returns a scene in which a ball moves between two posts. Where the posts overlap the ball, each round of
@@ -137,7 +137,7 @@ mod tests {
 
     /// Returns a trace of `scene` in which every step except the first begins between the posts.
     fn squeezed(scene: &Scene) -> Vec<u8> {
-        changed_trace(scene, |frames| {
+        change_trace(scene, |frames| {
             for frame in &mut frames[1..] {
                 frame.state.positions[..2].copy_from_slice(&[0.0, 0.0]);
                 frame.state.velocities[..2].copy_from_slice(&[1.0, 0.0]);
@@ -146,8 +146,8 @@ mod tests {
     }
 
     fn judged(floor: u64, scene: &Scene, mut trace: &[u8], fair: bool, threads: usize) -> Outcome {
-        let options = Options { fair, threads, ..Options::default() };
-        judge_within(usize::MAX, Some(floor), scene, &mut trace, &options, &mut ())
+        let options = Options { uses_fair_rules: fair, threads, ..Options::default() };
+        judge_with_memory(usize::MAX, Some(floor), scene, &mut trace, &options, &mut ())
     }
 
     /// Returns the step at which judging stopped early.
@@ -218,18 +218,18 @@ mod tests {
         let scene = scene(&format!(
             r#"<scene><duration time="20"/><integrator type="implicit-euler" dt="0.1"/>{bodies}</scene>"#
         ));
-        let own = work_for_scene(&scene);
+        let own = scene_work(&scene);
         assert!(own > MIN_WORK, "{own}");
         let mut budget = Budget::new(&scene, false);
         assert!(budget.spend(own));
-        assert!(!budget.is_wide);
+        assert!(!budget.is_widened);
     }
 
     #[test]
     fn what_the_scene_itself_takes_is_always_allowed() {
         let scene = posts(0.0, 20_000);
-        let trace = write_frames(&scene, &run(&scene, ()));
-        let floor = work_for_scene(&scene) / 2;
+        let trace = write_frames(&scene, &simulate(&scene, ()));
+        let floor = scene_work(&scene) / 2;
         for fair in [false, true] {
             let outcome = judged(floor, &scene, &trace, fair, 2);
             assert_eq!((given_up(&outcome), outcome.parity.overall), (None, Overall::Passed));

@@ -29,11 +29,11 @@
 pub mod budget;
 mod contacts;
 pub mod fair;
-pub mod kept;
+pub mod kept_trace;
 mod options;
 pub mod overlap;
 mod progress;
-pub mod recorded;
+pub mod recording;
 pub mod replay;
 #[cfg(test)]
 mod samples;
@@ -48,4 +48,4 @@ pub use fosssim_findings::{
 };
 use fosssim_findings::{counts, finding, outcome, rules};
 pub use fosssim_model::trace::ReadFailure;
-pub use wrong_coefficients::{differing_powers, find_factor};
+pub use wrong_coefficients::{find_differing_powers, find_factor};

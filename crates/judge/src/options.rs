@@ -12,10 +12,11 @@ pub struct Options {
     /// Whether judging stops after the first step with a finding. The outcome then has no verdict.
     pub stop_at_first: bool,
     /// The rule book that decides which finding stops judging.
-    pub stop_by: Book,
-    /// Whether the trace is also judged by the fair rules ([`Outcome::fair`](super::Outcome::fair)).
-    pub fair: bool,
+    pub stopping_book: Book,
+    /// Whether the trace is also judged by the fair rules
+    /// ([`Outcome::uses_fair_rules`](super::Outcome::uses_fair_rules)).
+    pub uses_fair_rules: bool,
     /// Whether every step and every call is judged separately, without shortcuts. The outcome is the same; tests
     /// compare both ways.
-    pub one_by_one: bool,
+    pub judges_individually: bool,
 }

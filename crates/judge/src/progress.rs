@@ -11,11 +11,11 @@ pub trait Progress {
     /// Observes the start of judging, after the initial record has been read.
     fn observe_begin(&mut self) {}
     /// Observes that a step is about to be judged; steps count from 1.
-    fn step_begins(&mut self, _step: u32) {}
+    fn observe_step_begin(&mut self, _step: u32) {}
     /// Observes that a step has been judged.
-    fn step_judged(&mut self, _step: u32, _remarks: &[Remark]) {}
+    fn observe_step_end(&mut self, _step: u32, _remarks: &[Remark]) {}
     /// Observes a step with a fault; not called for the rest of damaged records.
-    fn step_wrong(&mut self, _wrong: &WrongStep<'_>) {}
+    fn observe_wrong_step(&mut self, _wrong: &WrongStep<'_>) {}
 }
 
 /// A step with findings of at least one rule book.
@@ -34,35 +34,35 @@ pub struct WrongStep<'a> {
 #[derive(Debug, Clone, Copy)]
 pub struct StepFindings<'a> {
     /// The first finding of each kind, in the order in which they were made.
-    pub firsts: &'a [Finding],
+    pub first_findings: &'a [Finding],
     /// The number of further findings of each kind.
-    pub more: FindingCounts,
+    pub further_counts: FindingCounts,
 }
 
 impl Progress for () {}
 
 /// Two observers that are called one after the other.
-pub struct BothObservers<'a>(pub &'a mut dyn Progress, pub &'a mut dyn Progress);
+pub struct ObserverPair<'a>(pub &'a mut dyn Progress, pub &'a mut dyn Progress);
 
-impl Progress for BothObservers<'_> {
+impl Progress for ObserverPair<'_> {
     fn observe_begin(&mut self) {
         self.0.observe_begin();
         self.1.observe_begin();
     }
 
-    fn step_begins(&mut self, step: u32) {
-        self.0.step_begins(step);
-        self.1.step_begins(step);
+    fn observe_step_begin(&mut self, step: u32) {
+        self.0.observe_step_begin(step);
+        self.1.observe_step_begin(step);
     }
 
-    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
-        self.0.step_judged(step, remarks);
-        self.1.step_judged(step, remarks);
+    fn observe_step_end(&mut self, step: u32, remarks: &[Remark]) {
+        self.0.observe_step_end(step, remarks);
+        self.1.observe_step_end(step, remarks);
     }
 
-    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
-        self.0.step_wrong(wrong);
-        self.1.step_wrong(wrong);
+    fn observe_wrong_step(&mut self, wrong: &WrongStep<'_>) {
+        self.0.observe_wrong_step(wrong);
+        self.1.observe_wrong_step(wrong);
     }
 }
 

@@ -8,12 +8,12 @@ mod workers;
 
 pub use super::{
     options::Options,
-    progress::{BothObservers, Progress, Remark, StepFindings, WrongStep},
+    progress::{ObserverPair, Progress, Remark, StepFindings, WrongStep},
 };
 
 use super::{
     budget::Budget,
-    fair::{self, Context, Judging, Reach, Records, StepJudgement},
+    fair::{self, Context, JudgementBuilder, Reach, Records, StepJudgement},
     finding::FindingDetail,
     outcome::{Damage, Outcome, Stop},
     rules::Book,
@@ -42,7 +42,7 @@ struct StepSlot {
     /// The step's number, from 1.
     step: u32,
     /// The offset of the step's end record.
-    last: u64,
+    last_record: u64,
     before: State,
     /// The order of bodies with which the reference begins the step, in a contest.
     order: SweepOrder,
@@ -51,20 +51,20 @@ struct StepSlot {
     end: LenientFrame,
     damage: Option<Damage>,
     result: StepResult,
-    fair: StepJudgement,
+    fair_judgement: StepJudgement,
     /// Whether the fair rules need the reference's own run.
     is_extraordinary: bool,
     /// Whether the reference's own run must be known before the step is judged.
     is_deferred: bool,
     error: Option<StepError>,
     /// Whether more polynomials must be compared than were kept.
-    beyond_limit: bool,
+    is_beyond_limit: bool,
     /// Whether the original's rules have judged the step completely.
-    is_done: bool,
+    is_judged: bool,
     /// The work of judging the step by the original's rules, in detection calls.
     work: u64,
     /// Whether the fair rules have judged the step completely, and their work.
-    is_done_fairly: bool,
+    is_fairly_judged: bool,
     fair_work: u64,
     /// The number of bytes read for the step.
     bytes: usize,
@@ -82,7 +82,7 @@ struct Batch {
 /// trace's own state, uses its mid record, and is compared with its end record (oracle-behavior.md 4 to 6). Memory does
 /// not depend on the trace's length. After the last record, one byte is read to find out whether more follow.
 pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, progress: &mut dyn Progress) -> Outcome {
-    judge_within(record_memory(scene), None, scene, &mut trace, options, progress)
+    judge_with_memory(record_memory(scene), None, scene, &mut trace, options, progress)
 }
 
 /// Judges like [`judge`], with `memory` bytes for the lists of a record, and with another floor of work, if `floor` is
@@ -90,7 +90,7 @@ pub fn judge<R: Read + Send>(scene: &Scene, mut trace: R, options: &Options, pro
 ///
 /// This function is compiled only here, for every source of traces. Generic code would be compiled in the calling
 /// crate, at that crate's optimization level.
-pub(super) fn judge_within(
+pub(super) fn judge_with_memory(
     memory: usize,
     floor: Option<u64>,
     scene: &Scene,
@@ -99,12 +99,12 @@ pub(super) fn judge_within(
     progress: &mut dyn Progress,
 ) -> Outcome {
     let reader = LenientReader::new(trace, Layout::for_scene(scene)).with_limit(memory);
-    let mut replay = Replay::new(scene, reader, options.fair);
+    let mut replay = Replay::new(scene, reader, options.uses_fair_rules);
     if let Some(floor) = floor {
         replay.budgets = replay.budgets.map(|budget| budget.with_floor(floor));
     }
-    if let (true, Some(context)) = (options.one_by_one, &mut replay.shape.fair) {
-        context.looks_closely = true;
+    if let (true, Some(context)) = (options.judges_individually, &mut replay.step_rules.fair) {
+        context.computes_all_bounds = true;
     }
     replay.judge(options, progress)
 }
@@ -122,7 +122,7 @@ struct StepRules<'a> {
 struct Replay<'a, R> {
     scene: &'a Scene,
     reader: LenientReader<R>,
-    shape: StepRules<'a>,
+    step_rules: StepRules<'a>,
     /// The end state of the last step that was read.
     state: State,
     steps_read: u32,
@@ -137,7 +137,7 @@ struct Replay<'a, R> {
     /// Whether the first record, or a record of the delivered steps, is damaged.
     damaged: bool,
     /// The judgement of the fair rules so far, if they judge.
-    judging: Option<Box<Judging>>,
+    judging: Option<Box<JudgementBuilder>>,
     outcome: Outcome,
 }
 
@@ -154,29 +154,29 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         let mut workers = Workers::new(self.scene, options);
         loop {
             // A trace that fits into one batch is judged without other threads, unless they were requested.
-            let is_last = stop.is_some() || self.complete();
+            let is_last = stop.is_some() || self.is_complete();
             let mut stop_after = None;
             let at_once =
-                !is_last && current.poll_waiting() && current.bytes <= LARGE_BATCH_BYTES && workers.start_pool();
+                !is_last && current.has_waiting_step() && current.bytes <= LARGE_BATCH_BYTES && workers.start_pool();
             if at_once {
-                let (shape, rest) = (self.shape, self.rest());
-                workers.judge_beside(&current, &shape, rest, || stop_after = self.read_batch(&mut next));
-            } else if current.poll_waiting() {
-                workers.judge(&current, &self.shape, self.rest(), is_last);
+                let (shape, rest) = (self.step_rules, self.remaining_work());
+                workers.judge_while(&current, &shape, rest, || stop_after = self.read_batch(&mut next));
+            } else if current.has_waiting_step() {
+                workers.judge(&current, &self.step_rules, self.remaining_work(), is_last);
             }
             let mut has_more = false;
             for (budget, work) in self.budgets.iter_mut().zip(current.work()) {
-                has_more |= work > budget.rest() && budget.widen();
+                has_more |= work > budget.remaining() && budget.widen();
             }
-            if has_more && current.poll_waiting() {
-                workers.judge(&current, &self.shape, self.rest(), is_last);
+            if has_more && current.has_waiting_step() {
+                workers.judge(&current, &self.step_rules, self.remaining_work(), is_last);
             }
             if self.deliver(&mut current, progress, options) {
                 break;
             }
             if let Some(stop) = stop {
                 if let Stop::Trace { step, .. } = stop {
-                    progress.step_begins(step);
+                    progress.observe_step_begin(step);
                     self.try_step(step);
                 }
                 self.outcome.damage = self.outcome.damage.take().or(self.damage.take());
@@ -193,7 +193,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             stop = stop_after;
             std::mem::swap(&mut current, &mut next);
         }
-        self.outcome.searches = workers.searches();
+        self.outcome.searches = workers.search_counts();
         self.conclude()
     }
 
@@ -219,7 +219,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         Self {
             scene,
             reader,
-            shape: StepRules { layout, logs_impulses, fair: fair.then(|| Context::new(scene)) },
+            step_rules: StepRules { layout, logs_impulses, fair: fair.then(|| Context::new(scene)) },
             state: State::default(),
             steps_read: 0,
             reach: fair.then(|| Reach::new(scene)),
@@ -233,11 +233,11 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     }
 
     /// Returns the remaining work of each rule book.
-    fn rest(&self) -> [u64; 2] {
-        [self.budgets[0].rest(), self.budgets[1].rest()]
+    fn remaining_work(&self) -> [u64; 2] {
+        [self.budgets[0].remaining(), self.budgets[1].remaining()]
     }
 
-    fn complete(&self) -> bool {
+    fn is_complete(&self) -> bool {
         self.steps_read == self.outcome.steps
     }
 
@@ -247,7 +247,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.read_frame(&mut frame, &mut damage)?;
         self.damaged = damage.is_some();
         self.outcome.damage = damage;
-        if let (false, Some(context), Some(judgement)) = (self.damaged, self.shape.fair, &mut self.judging) {
+        if let (false, Some(context), Some(judgement)) = (self.damaged, self.step_rules.fair, &mut self.judging) {
             judgement.add_initial(&fair::judge_initial(&context, &frame));
         }
         self.state = frame.state;
@@ -271,7 +271,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     /// Fills a batch. If a step is unreadable, returns the reason to stop; the batch contains the steps before it.
     fn read_batch(&mut self, batch: &mut Batch) -> Option<Stop> {
         (batch.filled, batch.bytes) = (0, 0);
-        while !self.complete() && batch.filled < BATCH_STEPS && batch.bytes < BATCH_BYTES {
+        while !self.is_complete() && batch.filled < BATCH_STEPS && batch.bytes < BATCH_BYTES {
             if batch.filled == batch.slots.len() {
                 batch.slots.push(Mutex::default());
             }
@@ -290,15 +290,15 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.step = self.steps_read + 1;
         slot.damage = None;
         slot.error = None;
-        slot.beyond_limit = false;
-        (slot.is_done, slot.work) = (false, 0);
-        (slot.is_done_fairly, slot.fair_work) = (self.shape.fair.is_none(), 0);
+        slot.is_beyond_limit = false;
+        (slot.is_judged, slot.work) = (false, 0);
+        (slot.is_fairly_judged, slot.fair_work) = (self.step_rules.fair.is_none(), 0);
         slot.before.clone_from(&self.state);
-        slot.order.clone_from(self.order.follow(slot.step, &self.state, self.budgets[0].rest()));
+        slot.order.clone_from(self.order.follow(slot.step, &self.state, self.budgets[0].remaining()));
         let mut damage = None;
         let mut read = Ok(());
-        if self.shape.layout.has_polynomials {
-            if self.shape.fair.is_some() {
+        if self.step_rules.layout.has_polynomials {
+            if self.step_rules.fair.is_some() {
                 read = self.read_frame(&mut slot.mid, &mut damage);
             } else {
                 // Parity never compares the mid record's lists, so they are read into the end record's buffer.
@@ -314,8 +314,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         slot.damage = damage;
         read?;
         self.state.clone_from(&slot.end.state);
-        slot.last = self.reader.record_offset();
-        slot.bytes = memory(&slot.end).max(memory(&slot.mid)) + self.shape.layout.state_bytes();
+        slot.last_record = self.reader.record_offset();
+        slot.bytes = frame_memory(&slot.end).max(frame_memory(&slot.mid)) + self.step_rules.layout.state_bytes();
         self.steps_read += 1;
         Ok(())
     }
@@ -324,13 +324,13 @@ impl<'a, R: Read + Send> Replay<'a, R> {
     fn deliver(&mut self, batch: &mut Batch, progress: &mut dyn Progress, options: &Options) -> bool {
         for slot in &mut batch.slots[..batch.filled] {
             let slot = lock(slot);
-            progress.step_begins(slot.step);
+            progress.observe_step_begin(slot.step);
             if !self.budgets[0].spend(slot.work) {
                 self.outcome.stop = Some(Stop::Step(StepError::Work { step: slot.step }));
                 return true;
             }
-            if slot.beyond_limit {
-                self.outcome.stop = Some(beyond_limit(slot, self.shape.layout));
+            if slot.is_beyond_limit {
+                self.outcome.stop = Some(beyond_limit(slot, self.step_rules.layout));
                 return true;
             }
             self.damaged |= slot.damage.is_some();
@@ -342,33 +342,39 @@ impl<'a, R: Read + Send> Replay<'a, R> {
             if parity.endless.is_some() {
                 slot.result.clear();
             }
-            tally::accumulate(&mut parity.residuals, &slot.result.residuals);
+            tally::add_residuals(&mut parity.residuals, &slot.result.residuals);
             parity.findings.counts += slot.result.counts;
             // The rest of a damaged record counts for the original, but its numbers prove no mistake.
             if !self.damaged {
-                slot.result.firsts.iter().for_each(|first| parity.findings.keep_first(first));
+                slot.result.first_findings.iter().for_each(|first| parity.findings.keep_first(first));
                 self.deliver_fair(slot);
             }
-            if self.outcome.parity.endless.is_some() && self.shape.fair.is_none() {
+            if self.outcome.parity.endless.is_some() && self.step_rules.fair.is_none() {
                 return true;
             }
             let outcome = &mut self.outcome;
             outcome.steps_judged += 1;
             outcome.damaged_steps += u32::from(self.damaged);
-            progress.step_judged(slot.step, &slot.result.remarks);
+            progress.observe_step_end(slot.step, &slot.result.remarks);
             if slot.result.counts.total() > 0 && !self.damaged {
                 outcome.parity.findings.wrong_steps += 1;
             }
-            let is_right = slot.result.firsts.is_empty() && slot.fair.findings.is_empty();
+            let is_right = slot.result.first_findings.is_empty() && slot.fair_judgement.findings.is_empty();
             if !is_right && !self.damaged {
-                let parity = StepFindings { firsts: &slot.result.firsts, more: slot.result.further_counts() };
-                let fair = StepFindings { firsts: &slot.fair.findings, more: slot.fair.more };
-                progress.step_wrong(&WrongStep { step: slot.step, parity, fair });
+                let parity = StepFindings {
+                    first_findings: &slot.result.first_findings,
+                    further_counts: slot.result.further_counts(),
+                };
+                let fair = StepFindings {
+                    first_findings: &slot.fair_judgement.findings,
+                    further_counts: slot.fair_judgement.further_counts,
+                };
+                progress.observe_wrong_step(&WrongStep { step: slot.step, parity, fair });
             }
             slot.mid.shrink();
             slot.end.shrink();
-            let is_hopeless = match options.stop_by {
-                Book::Fair if self.judging.is_some() => !slot.fair.findings.is_empty(),
+            let is_hopeless = match options.stopping_book {
+                Book::Fair if self.judging.is_some() => !slot.fair_judgement.findings.is_empty(),
                 Book::Parity | Book::Fair => slot.result.counts.total() > 0,
             };
             if is_hopeless && options.stop_at_first {
@@ -380,36 +386,37 @@ impl<'a, R: Read + Send> Replay<'a, R> {
 
     /// Adds the fair rules' findings about a step, until the fair rules stop.
     fn deliver_fair(&mut self, slot: &mut StepSlot) {
-        let (Some(judging), Some(context), Some(reach)) = (&mut self.judging, &self.shape.fair, &mut self.reach) else {
-            slot.fair = StepJudgement::default();
+        let (Some(judging), Some(context), Some(reach)) = (&mut self.judging, &self.step_rules.fair, &mut self.reach)
+        else {
+            slot.fair_judgement = StepJudgement::default();
             return;
         };
         let step = slot.step;
         let budget = &mut self.budgets[1];
         let mut has_judged = budget.spend(slot.fair_work);
-        let frame = self.shape.layout.end_record(step);
-        let mid = self.shape.layout.has_polynomials.then_some(&slot.mid);
+        let frame = self.step_rules.layout.end_record(step);
+        let mid = self.step_rules.layout.has_polynomials.then_some(&slot.mid);
         let records = Records { step, frame, before: &slot.before, mid, end: &slot.end };
         if let Some(error) = slot.error {
             // If the scene itself has no result, no trace is right.
             has_judged &= reach.advance_to(step);
-            slot.fair = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
+            slot.fair_judgement = StepJudgement::default().with_finding(records, FindingDetail::NoResult { error });
         } else if has_judged && slot.is_extraordinary {
-            let known = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair));
+            let known = (!slot.is_deferred).then(|| std::mem::take(&mut slot.fair_judgement));
             let identical = slot.result.identical;
-            let (mut judged, mut work) = reach.judge(context, records, identical, known, budget.rest());
-            if work > budget.rest() && budget.widen() {
-                (judged, work) = reach.judge(context, records, identical, None, budget.rest());
+            let (mut judged, mut work) = reach.judge(context, records, identical, known, budget.remaining());
+            if work > budget.remaining() && budget.widen() {
+                (judged, work) = reach.judge(context, records, identical, None, budget.remaining());
             }
             has_judged = budget.spend(work);
-            slot.fair = judged;
+            slot.fair_judgement = judged;
         }
         if has_judged {
-            judging.add(&slot.fair);
+            judging.add(&slot.fair_judgement);
         } else {
             judging.stop_judging(step);
-            self.shape.fair = None;
-            slot.fair = StepJudgement::default();
+            self.step_rules.fair = None;
+            slot.fair_judgement = StepJudgement::default();
         }
     }
 }
@@ -421,15 +428,15 @@ fn beyond_limit(slot: &StepSlot, layout: Layout) -> Stop {
         frame: layout.end_record(slot.step),
         step: slot.step,
         cause: ReadFailure::Limit,
-        offset: slot.last,
+        offset: slot.last_record,
         what: Malformation::BeyondKept { logged, kept },
     }
 }
 
 impl Batch {
     /// Returns whether a step of the batch is still to be judged.
-    fn poll_waiting(&mut self) -> bool {
-        self.slots[..self.filled].iter_mut().map(lock).any(|slot| !slot.is_done || !slot.is_done_fairly)
+    fn has_waiting_step(&mut self) -> bool {
+        self.slots[..self.filled].iter_mut().map(lock).any(|slot| !slot.is_judged || !slot.is_fairly_judged)
     }
 
     /// Returns the work of judging the batch so far, by each rule book.
@@ -440,7 +447,7 @@ impl Batch {
 }
 
 /// Returns the memory of a record's lists, in bytes.
-fn memory(frame: &LenientFrame) -> usize {
+fn frame_memory(frame: &LenientFrame) -> usize {
     let LenientFrame { impulses, polynomials, .. } = frame;
     8 * polynomials.coefficients.len()
         + 8 * polynomials.coefficient_ends.len()

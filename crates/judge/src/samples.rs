@@ -29,7 +29,7 @@ pub(crate) fn scene(text: &str) -> Scene {
 }
 
 /// Returns the frames of a run that `steer` may change as it goes.
-pub(crate) fn run(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
+pub(crate) fn simulate(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
     let layout = Layout::for_scene(scene);
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
@@ -53,20 +53,20 @@ pub(crate) fn write_frames(scene: &Scene, frames: &[Frame]) -> Vec<u8> {
 }
 
 /// Returns the reference trace with changed frames.
-pub(crate) fn changed_trace(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
-    let mut frames = run(scene, ());
+pub(crate) fn change_trace(scene: &Scene, change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
+    let mut frames = simulate(scene, ());
     change(&mut frames);
     write_frames(scene, &frames)
 }
 
 /// Returns the outcome by both rule books.
 pub(crate) fn judge_by_both(scene: &Scene, trace: &[u8]) -> Outcome {
-    let options = Options { fair: true, threads: 1, ..Options::default() };
+    let options = Options { uses_fair_rules: true, threads: 1, ..Options::default() };
     replay::judge(scene, trace, &options, &mut ())
 }
 
 /// Replaces a frame's polynomials.
-pub(crate) fn relog(frame: &mut Frame, mut change: impl FnMut(usize, &[f64]) -> Vec<f64>) {
+pub(crate) fn replace_polynomials(frame: &mut Frame, mut change: impl FnMut(usize, &[f64]) -> Vec<f64>) {
     let log = std::mem::take(&mut frame.polynomials);
     for (index, coefficients) in log.iter().enumerate() {
         frame.polynomials.push(&change(index, coefficients));

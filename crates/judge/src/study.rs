@@ -5,7 +5,7 @@
 //! finder and sets of times (collisions.md 2, root-finder.md 15 and 16). It adds the mathematically right approach
 //! polynomial of a particle and an edge (numerics.md 1), and whether round-off may change the reference's decision.
 use crate::{
-    fair::{compare::compare, decides, formulas},
+    fair::{certain_decision, compare::compare, formulas},
     finding::Role,
 };
 use fosssim_model::sim::{Decision, ImpactTime, PairMotion, PointMotion};
@@ -15,7 +15,7 @@ use fosssim_num::{
     interval::{Interval, Intervals},
     polynomial::{MAX_COEFFICIENTS, Polynomial},
     rpoly,
-    tolerances::IMAGINARY_PART,
+    tolerances::MIN_IMAGINARY_PART,
 };
 
 fosssim_model::drops_leading!();
@@ -32,25 +32,25 @@ pub struct Curve {
     /// The zeros in the order of the reference's root finder, as real and imaginary part.
     pub zeros: Vec<(f64, f64)>,
     /// The intervals in which the polynomial is positive, over all times; sorted and disjoint.
-    pub positive: Vec<Interval>,
+    pub positive_intervals: Vec<Interval>,
 }
 
 impl Curve {
-    fn search(role: Role, untrimmed: Polynomial) -> Result<Self, NoAnswer> {
-        let endless = |_| NoAnswer { role, coefficients: untrimmed };
+    fn search(role: Role, untrimmed: Polynomial) -> Result<Self, EndlessSearch> {
+        let endless = |_| EndlessSearch { role, coefficients: untrimmed };
         let logged = Polynomial::trimmed(untrimmed.coefficients());
         let zeros = match logged.coefficients() {
             [] | [_] => Vec::new(),
             coefficients => rpoly::zeros(coefficients).map_err(endless)?.as_slice().to_vec(),
         };
         let positive = positive_set(logged.coefficients()).map_err(endless)?.as_slice().to_vec();
-        Ok(Self { role, untrimmed, logged, zeros, positive })
+        Ok(Self { role, untrimmed, logged, zeros, positive_intervals: positive })
     }
 
     /// Returns the zeros that count as real, ascending.
     #[must_use]
     pub fn real_zeros(&self) -> Vec<f64> {
-        let real = self.zeros.iter().filter(|(_, imaginary)| imaginary.abs() < IMAGINARY_PART);
+        let real = self.zeros.iter().filter(|(_, imaginary)| imaginary.abs() < MIN_IMAGINARY_PART);
         let mut zeros: Vec<f64> = real.map(|&(real, _)| real).collect();
         zeros.sort_by(f64::total_cmp);
         zeros
@@ -61,7 +61,7 @@ impl Curve {
 /// finite or is extremely small. The original hangs on such polynomials.
 #[derive(Debug, Clone, Copy, PartialEq, thiserror::Error)]
 #[error("the root search of the {role} polynomial does not end")]
-pub struct NoAnswer {
+pub struct EndlessSearch {
     /// The role of the polynomial.
     pub role: Role,
     /// The polynomial's coefficients, with nothing dropped.
@@ -73,13 +73,13 @@ pub struct NoAnswer {
 pub struct Answer {
     /// The intervals in which all polynomials are positive, over all times; sorted and disjoint. An interval may be a
     /// single time.
-    pub positive: Vec<Interval>,
+    pub positive_intervals: Vec<Interval>,
     /// The decision.
     pub decision: Decision,
 }
 
 impl Answer {
-    fn for_motion(motion: &PairMotion, curves: &[&Curve]) -> Result<Self, NoAnswer> {
+    fn for_motion(motion: &PairMotion, curves: &[&Curve]) -> Result<Self, EndlessSearch> {
         let polynomials: Vec<Polynomial> = curves.iter().map(|curve| curve.logged).collect();
         // Every search was made before, separately, and has ended.
         let time = first_time(&polynomials).unwrap_or(f64::INFINITY);
@@ -89,14 +89,14 @@ impl Answer {
             None => Decision::Miss { time: ImpactTime::Found(time) },
         };
         let mut both = Intervals::<MAX_SETS>::EMPTY;
-        both.push(Interval::EVERYTHING);
+        both.push(Interval::ALL_TIMES);
         for curve in curves {
             let mut set = Intervals::<MAX_SETS>::EMPTY;
-            curve.positive.iter().for_each(|&interval| set.push(interval));
+            curve.positive_intervals.iter().for_each(|&interval| set.push(interval));
             both = both.intersection(&set);
         }
         let positive = if curves.is_empty() { Vec::new() } else { both.as_slice().to_vec() };
-        Ok(Self { positive, decision })
+        Ok(Self { positive_intervals: positive, decision })
     }
 }
 
@@ -123,7 +123,7 @@ pub struct Study {
     pub answer: Answer,
     /// Whether the pair certainly collides, or certainly does not, in every correct program; `None` if round-off may
     /// change the decision.
-    pub certain: Option<bool>,
+    pub certain_decision: Option<bool>,
     /// The right approach polynomial, if it differs from the course's.
     pub right_approach: Option<RightApproach>,
 }
@@ -132,8 +132,8 @@ impl Study {
     /// Examines a pair with the given motion.
     ///
     /// # Errors
-    /// Fails with [`NoAnswer`] if the original hangs.
-    pub fn for_motion(motion: &PairMotion) -> Result<Self, NoAnswer> {
+    /// Fails with [`EndlessSearch`] if the original hangs.
+    pub fn for_motion(motion: &PairMotion) -> Result<Self, EndlessSearch> {
         let kind = motion.kind();
         let polynomials = motion.polynomials();
         let curves: Vec<Curve> = polynomials
@@ -153,8 +153,8 @@ impl Study {
                 Some(RightApproach { curve, answer })
             }
         };
-        let certain = decides(&bounded, &expected);
-        Ok(Self { motion: *motion, curves, answer, certain, right_approach })
+        let certain = certain_decision(&bounded, &expected);
+        Ok(Self { motion: *motion, curves, answer, certain_decision: certain, right_approach })
     }
 
     /// Returns whether a logged polynomial is right by the fair rules: equal except for a positive factor, round-off,
@@ -185,8 +185,8 @@ fn right_approach(polynomials: &[Polynomial], expected: &formulas::ExpectedPolyn
 /// position may deviate by a rounding error.
 impl From<PointMotion> for formulas::BoundedPointMotion {
     fn from(point: PointMotion) -> Self {
-        let start = BoundedVector::exact(point.start);
-        let mut shift = BoundedVector::rounded(point.start + point.shift) - start;
+        let start = BoundedVector::from_exact(point.start);
+        let mut shift = BoundedVector::from_rounded(point.start + point.shift) - start;
         (shift.x.value, shift.y.value) = (point.shift.x, point.shift.y);
         Self { start, shift }
     }
@@ -196,12 +196,12 @@ impl From<PointMotion> for formulas::BoundedPointMotion {
 impl From<&PairMotion> for formulas::BoundedPairMotion {
     fn from(motion: &PairMotion) -> Self {
         let way = formulas::BoundedPointMotion::from;
-        let sum = |radii: [f64; 2]| BoundedValue::exact(radii[0]) + BoundedValue::exact(radii[1]);
+        let sum = |radii: [f64; 2]| BoundedValue::from_exact(radii[0]) + BoundedValue::from_exact(radii[1]);
         match *motion {
             PairMotion::Particles { centers, radii } => Self::Particles(centers.map(way), sum(radii)),
             PairMotion::Edge { center, ends, radii } => Self::Edge([center, ends[0], ends[1]].map(way), sum(radii)),
             PairMotion::HalfPlane { center, radius, point, normal } => {
-                Self::HalfPlane(way(center), BoundedValue::exact(radius), point, normal)
+                Self::HalfPlane(way(center), BoundedValue::from_exact(radius), point, normal)
             }
         }
     }
@@ -237,8 +237,8 @@ mod tests {
         };
         let study = Study::for_motion(&second).unwrap();
         assert_eq!(study.curves[0].logged.coefficients(), [-16.0, 0.0, -68.0, 36.0, -16.0]);
-        assert_eq!(study.curves[0].positive, []);
-        assert_eq!((study.answer.decision.collides(), study.certain), (false, Some(false)));
+        assert_eq!(study.curves[0].positive_intervals, []);
+        assert_eq!((study.answer.decision.collides(), study.certain_decision), (false, Some(false)));
     }
 
     /// The intermediate sets lead to the same time as the reference's own search.
@@ -251,9 +251,9 @@ mod tests {
         };
         let study = Study::for_motion(&motion).unwrap();
         let Decision::Hit { time, normal } = study.answer.decision else { panic!("{:?}", study.answer) };
-        assert_eq!(study.answer.positive[0].lo, time);
+        assert_eq!(study.answer.positive_intervals[0].lo, time);
         assert_eq!(motion.normal(time), Some(normal));
-        assert_eq!(study.certain, Some(true));
+        assert_eq!(study.certain_decision, Some(true));
         // The edge turns: the right polynomial differs, in t^3 only, and the contact is the same.
         let right = study.right_approach.unwrap();
         let (course, right_one) = (study.curves[3].untrimmed, right.curve.untrimmed);
@@ -279,8 +279,8 @@ mod tests {
             centers: [point(0.0, 0.0, 0.0, 0.0), point(gap, 0.0, 2.0 * radius - gap, 0.0)],
             radii: [radius; 2],
         };
-        assert_eq!(Study::for_motion(&particles(0.7, 0.1)).unwrap().certain, None);
-        assert_eq!(Study::for_motion(&particles(0.75, 0.125)).unwrap().certain, Some(true));
+        assert_eq!(Study::for_motion(&particles(0.7, 0.1)).unwrap().certain_decision, None);
+        assert_eq!(Study::for_motion(&particles(0.75, 0.125)).unwrap().certain_decision, Some(true));
     }
 
     #[test]

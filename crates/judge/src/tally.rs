@@ -5,7 +5,7 @@
 //! lists have the same length, which is known at the end of the step (oracle-behavior.md 6.2).
 mod pending;
 
-use pending::Pending;
+use pending::PendingFindings;
 
 use super::{
     contacts::{Contacts, key, logged_key},
@@ -21,13 +21,16 @@ use fosssim_model::{
 };
 use fosssim_num::{
     polynomial::MAX_COEFFICIENTS,
-    tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL, PARITY_ZERO_POLYNOMIAL},
-    vector::{length, same_bits, vector_at},
+    tolerances::{
+        PARITY_COEFFICIENT_DIFFERENCE, PARITY_MAX_RESIDUAL, PARITY_NORMAL_DISTANCE, PARITY_ZERO_COEFFICIENT_SUM,
+    },
+    vector::{has_same_bits, length, vector_at},
 };
 
 /// Below this sum of moduli, identical coefficients always pass the original's comparison, because `(O*s)/s` differs
-/// from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of [`PARITY_COEFFICIENT`]. Above it
-/// the original may reject even its own output (oracle-behavior.md 8.10), so the comparison is made as it is written.
+/// from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of
+/// [`PARITY_COEFFICIENT_DIFFERENCE`]. Above it the original may reject even its own output (oracle-behavior.md 8.10),
+/// so the comparison is made as it is written.
 const SAFE_SUM: f64 = 1e5;
 
 /// The result of judging one step; reused from step to step.
@@ -38,7 +41,7 @@ pub(super) struct StepResult {
     /// The number of findings of each kind.
     pub(super) counts: FindingCounts,
     /// The first finding of each kind, in the order in which they were found.
-    pub(super) firsts: Vec<Finding>,
+    pub(super) first_findings: Vec<Finding>,
     /// The residuals of each particle: position, velocity. The caller adds them up in the order of the steps.
     pub(super) residuals: Vec<(f64, f64)>,
     /// Whether the step's states, impulses and polynomials are identical to the reference's, after small leading
@@ -50,7 +53,7 @@ impl StepResult {
     /// Resets the result to that of a step without findings.
     pub(super) fn clear(&mut self) {
         self.remarks.clear();
-        self.firsts.clear();
+        self.first_findings.clear();
         self.residuals.clear();
         self.counts = FindingCounts::default();
         self.identical = false;
@@ -59,7 +62,7 @@ impl StepResult {
     /// Returns the number of findings of each kind after the first.
     pub(super) fn further_counts(&self) -> FindingCounts {
         let mut more = FindingCounts::default();
-        for kind in self.firsts.iter().map(Finding::kind) {
+        for kind in self.first_findings.iter().map(Finding::kind) {
             more.add(kind, self.counts.get(kind).saturating_sub(1));
         }
         more
@@ -68,7 +71,7 @@ impl StepResult {
     fn record(&mut self, finding: Finding) {
         let kind = finding.kind();
         if self.counts.get(kind) == 0 {
-            self.firsts.push(finding);
+            self.first_findings.push(finding);
         }
         self.counts.add(kind, 1);
     }
@@ -76,16 +79,16 @@ impl StepResult {
 
 /// Buffers of a tally, kept from step to step.
 #[derive(Debug, Default)]
-pub(super) struct Buffers {
+pub(super) struct TallyBuffers {
     /// The pairs that a pass checks.
     order: Pairs,
     /// The reference's polynomials of the current pass.
     own: PolynomialBytes,
     impulses: Vec<Impulse>,
-    pending: Pending,
+    pending: PendingFindings,
 }
 
-impl Buffers {
+impl TallyBuffers {
     /// Creates an empty tally for steps of this scene.
     pub(super) fn new(scene: &Scene) -> Self {
         Self { order: pairs(scene), ..Self::default() }
@@ -102,7 +105,7 @@ pub(super) struct Tally<'a> {
     mid: Option<&'a LenientFrame>,
     /// Whether the reference's impulses are logged; in `hybrid` they are not.
     logs_impulses: bool,
-    buffers: &'a mut Buffers,
+    buffers: &'a mut TallyBuffers,
     result: &'a mut StepResult,
     passes: usize,
     /// The number of polynomials of the reference so far.
@@ -118,7 +121,7 @@ impl<'a> Tally<'a> {
         frame: &'a LenientFrame,
         mid: Option<&'a LenientFrame>,
         logs_impulses: bool,
-        buffers: &'a mut Buffers,
+        buffers: &'a mut TallyBuffers,
         result: &'a mut StepResult,
     ) -> Self {
         buffers.own.clear();
@@ -141,7 +144,7 @@ impl<'a> Tally<'a> {
 
     /// Compares the trace's next polynomial with the expected bytes `own`.
     #[inline]
-    fn likeness(&self, own: &[u8]) -> Likeness {
+    fn measure_likeness(&self, own: &[u8]) -> Likeness {
         let (index, log) = (self.polynomials, &self.frame.polynomials);
         if index >= log.len() {
             return Likeness::Open;
@@ -149,18 +152,18 @@ impl<'a> Tally<'a> {
         let actual = log.get(index);
         match (actual.len(), own.len()) {
             (0, 0) => Likeness::Same,
-            (1, 8) => likeness::<1>(own, actual),
-            (2, 16) => likeness::<2>(own, actual),
-            (3, 24) => likeness::<3>(own, actual),
-            (4, 32) => likeness::<4>(own, actual),
-            (5, 40) => likeness::<5>(own, actual),
-            (6, 48) => likeness::<6>(own, actual),
+            (1, 8) => measure_likeness::<1>(own, actual),
+            (2, 16) => measure_likeness::<2>(own, actual),
+            (3, 24) => measure_likeness::<3>(own, actual),
+            (4, 32) => measure_likeness::<4>(own, actual),
+            (5, 40) => measure_likeness::<5>(own, actual),
+            (6, 48) => measure_likeness::<6>(own, actual),
             _ => Likeness::Open,
         }
     }
 
     /// Returns whether the lists have the same length, and only a part of the trace's list was kept.
-    pub(super) fn needs_more(&self) -> bool {
+    pub(super) fn has_equal_lists(&self) -> bool {
         self.frame.is_cut() && self.frame.logged_polynomials == self.polynomials
     }
 
@@ -171,9 +174,9 @@ impl<'a> Tally<'a> {
         }
         if has_polynomials {
             self.identical &= self.frame.logged_polynomials == self.polynomials;
-            self.settle_polynomials();
+            self.finish_polynomials();
         }
-        let is_same = same_state(reference, &self.frame.state);
+        let is_same = is_same_state(reference, &self.frame.state);
         self.identical &= is_same;
         self.result.identical = self.identical;
         // Residuals between equal numbers are zero and add nothing; residuals between infinities are NaN and are
@@ -209,7 +212,7 @@ impl<'a> Tally<'a> {
             let Some(actual) = logged(expected).map(|index| &theirs[index]) else { continue };
             let residual = length(actual.normal - expected.normal);
             // In the original a NaN normal passes, because it tests whether the distance is larger than the bound.
-            if residual > PARITY_NORMAL {
+            if residual > PARITY_NORMAL_DISTANCE {
                 self.result.remarks.push(Remark::WrongNormal { actual: *actual, expected: *expected });
                 let detail = FindingDetail::WrongNormal { expected: *expected, actual: *actual, residual };
                 self.result.record(self.finding(detail));
@@ -219,7 +222,7 @@ impl<'a> Tally<'a> {
     }
 
     /// Settles the findings about polynomials: a wrong number of them is the only finding (oracle-behavior.md 6.2).
-    fn settle_polynomials(&mut self) {
+    fn finish_polynomials(&mut self) {
         let actual = self.frame.logged_polynomials;
         if actual != self.polynomials {
             let per_pass = self.polynomials.checked_div(self.passes).unwrap_or(0);
@@ -228,7 +231,7 @@ impl<'a> Tally<'a> {
             self.result.record(self.finding(detail));
             return;
         }
-        self.buffers.pending.settle(self.result);
+        self.buffers.pending.deliver(self.result);
     }
 
     /// Compares the states by Euclidean residuals per particle (oracle-behavior.md 6.3).
@@ -240,7 +243,7 @@ impl<'a> Tally<'a> {
                 (vector_at(&reference.positions, particle), vector_at(&theirs.positions, particle));
             let position = length(expected - actual);
             // The comparison is negated so that NaN is a finding: it fails the accumulated residual.
-            if !(position < PARITY_MAXIMUM) {
+            if !(position < PARITY_MAX_RESIDUAL) {
                 let (expected, actual) = (expected.into(), actual.into());
                 let detail = FindingDetail::Position { particle, expected, actual, residual: position };
                 self.result.record(self.finding(detail));
@@ -249,7 +252,7 @@ impl<'a> Tally<'a> {
             let (expected, actual) =
                 (vector_at(&reference.velocities, particle), vector_at(&theirs.velocities, particle));
             let velocity = length(expected - actual);
-            if !(velocity < PARITY_MAXIMUM) {
+            if !(velocity < PARITY_MAX_RESIDUAL) {
                 let (expected, actual) = (expected.into(), actual.into());
                 let detail = FindingDetail::Velocity { particle, expected, actual, residual: velocity };
                 self.result.record(self.finding(detail));
@@ -270,11 +273,11 @@ impl<'a> Tally<'a> {
             return;
         }
         let actual = self.frame.polynomials.get(index);
-        if equal_and_safe(expected, actual) {
+        if are_equal_and_safe(expected, actual) {
             return;
         }
-        self.identical = self.identical && same_bits(expected, actual);
-        if !passes(expected, actual) {
+        self.identical = self.identical && has_same_bits(expected, actual);
+        if !is_accepted(expected, actual) {
             let at = (self.step, self.frame_number);
             self.buffers.pending.compare(at, expected, actual, place);
         }
@@ -300,7 +303,7 @@ impl Observer for Tally<'_> {
         let is_small = own.max_modulus() < SAFE_SUM / MAX_COEFFICIENTS as f64;
         for (number, bytes) in own.iter().enumerate() {
             let index = self.polynomials;
-            match self.likeness(bytes) {
+            match self.measure_likeness(bytes) {
                 Likeness::Same if is_small => {
                     self.polynomials += 1;
                     continue;
@@ -339,7 +342,7 @@ impl Observer for Tally<'_> {
 impl StepController for Tally<'_> {
     fn choose_resume_state(&mut self, state: &mut State) -> ResumeState {
         if let Some(mid) = self.mid {
-            self.identical &= mid.logged_polynomials == self.polynomials && same_state(state, &mid.state);
+            self.identical &= mid.logged_polynomials == self.polynomials && is_same_state(state, &mid.state);
             state.clone_from(&mid.state);
         }
         ResumeState::Own
@@ -347,7 +350,7 @@ impl StepController for Tally<'_> {
 }
 
 /// Adds one step's residuals in the original's order: particle by particle (oracle-behavior.md 6.3).
-pub(super) fn accumulate(total: &mut Residuals, step: &[(f64, f64)]) {
+pub(super) fn add_residuals(total: &mut Residuals, step: &[(f64, f64)]) {
     for &(position, velocity) in step {
         total.accumulated_position += position;
         total.accumulated_velocity += velocity;
@@ -361,21 +364,22 @@ pub(super) fn accumulate(total: &mut Residuals, step: &[(f64, f64)]) {
 }
 
 /// Returns whether two states are equal bit for bit.
-fn same_state(own: &State, other: &State) -> bool {
-    same_bits(&own.positions, &other.positions) && same_bits(&own.velocities, &other.velocities)
+fn is_same_state(own: &State, other: &State) -> bool {
+    has_same_bits(&own.positions, &other.positions) && has_same_bits(&own.velocities, &other.velocities)
 }
 
 /// Returns whether the original accepts a polynomial (oracle-behavior.md 6.2): right up to a factor, zero, or with a
 /// NaN.
-fn passes(own: &[f64], actual: &[f64]) -> bool {
+fn is_accepted(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
     if own.len() != actual.len() {
         return false;
     }
-    if sum_own < PARITY_ZERO_POLYNOMIAL {
-        return sum_actual < PARITY_ZERO_POLYNOMIAL;
+    if sum_own < PARITY_ZERO_COEFFICIENT_SUM {
+        return sum_actual < PARITY_ZERO_COEFFICIENT_SUM;
     }
-    let alike = |(own, actual): (&f64, &f64)| !((actual - (own * sum_actual) / sum_own).abs() > PARITY_COEFFICIENT);
+    let alike =
+        |(own, actual): (&f64, &f64)| !((actual - (own * sum_actual) / sum_own).abs() > PARITY_COEFFICIENT_DIFFERENCE);
     own.iter().zip(actual).fold(true, |all, pair| all & alike(pair))
 }
 
@@ -384,7 +388,7 @@ fn passes(own: &[f64], actual: &[f64]) -> bool {
 enum Likeness {
     /// The polynomial is identical to the reference's.
     Same,
-    /// The polynomial differs by a factor, and [`passes`] accepts it.
+    /// The polynomial differs by a factor, and [`is_accepted`] accepts it.
     Factor,
     /// The quick comparison does not decide.
     Open,
@@ -393,7 +397,7 @@ enum Likeness {
 /// Compares both polynomials with one division for all coefficients. Its rounding differs from the original's by less
 /// than a hundredth of the bound.
 #[inline]
-fn likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
+fn measure_likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
     let (Some(actual), Some(own)) = (actual.first_chunk::<LENGTH>(), own.as_chunks::<8>().0.first_chunk::<LENGTH>())
     else {
         return Likeness::Open;
@@ -409,10 +413,10 @@ fn likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness {
         sum_actual += actual.abs();
     }
     let factor = sum_actual / sum_own;
-    let mut all = sum_own >= PARITY_ZERO_POLYNOMIAL;
+    let mut all = sum_own >= PARITY_ZERO_COEFFICIENT_SUM;
     for (own, actual) in own.iter().zip(actual) {
         let rescaled = own * factor;
-        all &= ((actual - rescaled).abs() <= 0.9 * PARITY_COEFFICIENT) & (rescaled.abs() <= 1e3);
+        all &= ((actual - rescaled).abs() <= 0.9 * PARITY_COEFFICIENT_DIFFERENCE) & (rescaled.abs() <= 1e3);
     }
     if all { Likeness::Factor } else { Likeness::Open }
 }
@@ -424,7 +428,7 @@ fn sum_of_moduli(coefficients: &[f64]) -> f64 {
 
 /// Returns whether two lists are identical, and small enough that the original's comparison certainly accepts them.
 #[inline]
-fn equal_and_safe(own: &[f64], actual: &[f64]) -> bool {
+fn are_equal_and_safe(own: &[f64], actual: &[f64]) -> bool {
     if own.len() != actual.len() {
         return false;
     }
@@ -443,12 +447,12 @@ mod tests {
 
     #[test]
     fn equal_large_coefficients_are_compared_as_the_original_does() {
-        assert!(equal_and_safe(&[1.0, -2.0], &[1.0, -2.0]));
-        assert!(!equal_and_safe(&[1.0, -2.0], &[1.0, 2.0]));
-        assert!(!equal_and_safe(&[0.0], &[-0.0]));
-        assert!(!equal_and_safe(&[1e6, 1.0], &[1e6, 1.0]));
-        assert!(!equal_and_safe(&[f64::NAN], &[f64::NAN]));
-        assert!(!equal_and_safe(&[1.0], &[1.0, 2.0]));
+        assert!(are_equal_and_safe(&[1.0, -2.0], &[1.0, -2.0]));
+        assert!(!are_equal_and_safe(&[1.0, -2.0], &[1.0, 2.0]));
+        assert!(!are_equal_and_safe(&[0.0], &[-0.0]));
+        assert!(!are_equal_and_safe(&[1e6, 1.0], &[1e6, 1.0]));
+        assert!(!are_equal_and_safe(&[f64::NAN], &[f64::NAN]));
+        assert!(!are_equal_and_safe(&[1.0], &[1.0, 2.0]));
     }
 
     /// A polynomial that clearly has a factor passes, and nearly every polynomial that passes with a factor has it
@@ -467,24 +471,24 @@ mod tests {
             let (factor, noise) = ([0.5, 1.0, 1.0 / 3.0, 7.0][round % 4], [0.0, 1e-12, 1e-10, 2e-10][round / 4 % 4]);
             let actual = own.map(|own| factor * own + noise * (next() - 0.5));
             let bytes: Vec<u8> = own.iter().flat_map(|own| own.to_le_bytes()).collect();
-            match likeness::<3>(&bytes, &actual) {
-                Likeness::Same => assert!(same_bits(&own, &actual)),
+            match measure_likeness::<3>(&bytes, &actual) {
+                Likeness::Same => assert!(has_same_bits(&own, &actual)),
                 Likeness::Factor => {
-                    assert!(passes(&own, &actual) && !same_bits(&own, &actual), "{own:?} {actual:?}");
+                    assert!(is_accepted(&own, &actual) && !has_same_bits(&own, &actual), "{own:?} {actual:?}");
                     clear += 1;
                 }
-                Likeness::Open => assert!(!same_bits(&own, &actual)),
+                Likeness::Open => assert!(!has_same_bits(&own, &actual)),
             }
         }
         assert!(clear > 5000, "{clear}");
         let nan = [f64::NAN, 1.0, 1.0];
-        assert_eq!(likeness::<3>(&[0; 24], &nan), Likeness::Open);
+        assert_eq!(measure_likeness::<3>(&[0; 24], &nan), Likeness::Open);
     }
 
     #[test]
     fn a_nan_residual_raises_no_maximum_but_poisons_the_sum() {
         let mut total = Residuals::default();
-        accumulate(&mut total, &[(f64::NAN, 0.5), (0.25, 0.25)]);
+        add_residuals(&mut total, &[(f64::NAN, 0.5), (0.25, 0.25)]);
         assert!(total.accumulated_position.is_nan());
         assert_eq!(total.maximum_position, 0.25);
         assert_eq!(total.accumulated_velocity, 0.75);

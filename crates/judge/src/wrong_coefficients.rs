@@ -16,14 +16,14 @@ const CANCELLATION_FLOOR: f64 = 1e-13;
 pub fn find_factor(expected: &[f64], actual: &[f64]) -> f64 {
     let agreeing = |factor: f64| {
         let holds = |power: &usize| {
-            coefficient(expected, *power) != 0.0 && coefficient_agrees(expected, actual, *power, factor)
+            coefficient_of_power(expected, *power) != 0.0 && coefficient_agrees(expected, actual, *power, factor)
         };
         (0..expected.len()).filter(holds).count()
     };
     // The coefficient from which a factor was computed always agrees with it, which proves nothing.
     let mut best = (agreeing(1.0).max(1), 1.0);
     for power in (0..expected.len().min(actual.len())).rev() {
-        let ratio = coefficient(actual, power) / coefficient(expected, power);
+        let ratio = coefficient_of_power(actual, power) / coefficient_of_power(expected, power);
         if ratio > 0.0 && ratio.is_finite() {
             let count = agreeing(ratio);
             if count > best.0 {
@@ -36,19 +36,20 @@ pub fn find_factor(expected: &[f64], actual: &[f64]) -> f64 {
 
 /// Returns the powers of t whose coefficients differ with `factor`, the highest first.
 #[must_use]
-pub fn differing_powers(expected: &[f64], actual: &[f64], factor: f64) -> Vec<usize> {
+pub fn find_differing_powers(expected: &[f64], actual: &[f64], factor: f64) -> Vec<usize> {
     let powers = (0..expected.len().max(actual.len())).rev();
     powers.filter(|&power| !coefficient_agrees(expected, actual, power, factor)).collect()
 }
 
 fn coefficient_agrees(expected: &[f64], actual: &[f64], power: usize, factor: f64) -> bool {
     let sum: f64 = expected.iter().map(|coefficient| coefficient.abs()).sum();
-    let right = factor * coefficient(expected, power);
-    (coefficient(actual, power) - right).abs() <= RATIO_TOLERANCE * right.abs() + CANCELLATION_FLOOR * factor * sum
+    let right = factor * coefficient_of_power(expected, power);
+    (coefficient_of_power(actual, power) - right).abs()
+        <= RATIO_TOLERANCE * right.abs() + CANCELLATION_FLOOR * factor * sum
 }
 
 /// Returns the coefficient of a power, or 0 if the list is too short.
-fn coefficient(coefficients: &[f64], power: usize) -> f64 {
+fn coefficient_of_power(coefficients: &[f64], power: usize) -> f64 {
     coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
 }
 
@@ -63,7 +64,7 @@ mod tests {
             let mut actual = expected.map(|value| scale * value);
             actual[4 - power] *= 3.0;
             assert_eq!(find_factor(&expected, &actual), scale);
-            assert_eq!(differing_powers(&expected, &actual, scale), [power]);
+            assert_eq!(find_differing_powers(&expected, &actual, scale), [power]);
         }
     }
 
@@ -71,8 +72,8 @@ mod tests {
     fn where_nothing_agrees_the_factor_is_one() {
         assert_eq!(find_factor(&[1.0, 2.0], &[-1.0, -2.0]), 1.0);
         assert_eq!(find_factor(&[1.0, 2.0], &[3.0, 5.0]), 1.0);
-        assert_eq!(differing_powers(&[1.0, 2.0], &[3.0, 5.0], 1.0), [1, 0]);
-        assert_eq!(differing_powers(&[1.0, 2.0], &[f64::NAN, 2.0], 1.0), [1]);
-        assert_eq!(differing_powers(&[1.0, 2.0], &[2.0], 1.0), [1]);
+        assert_eq!(find_differing_powers(&[1.0, 2.0], &[3.0, 5.0], 1.0), [1, 0]);
+        assert_eq!(find_differing_powers(&[1.0, 2.0], &[f64::NAN, 2.0], 1.0), [1]);
+        assert_eq!(find_differing_powers(&[1.0, 2.0], &[2.0], 1.0), [1]);
     }
 }

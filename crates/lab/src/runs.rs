@@ -22,7 +22,7 @@ pub fn record_trace(scene: &Scene, student: Student) -> Vec<u8> {
 /// Returns the outcome by both rule books, on one thread, because the tools try many programs at one time.
 #[must_use]
 pub fn judge(scene: &Scene, trace: &[u8]) -> Outcome {
-    replay::judge(scene, trace, &Options { threads: 1, fair: true, ..Options::default() }, &mut ())
+    replay::judge(scene, trace, &Options { threads: 1, uses_fair_rules: true, ..Options::default() }, &mut ())
 }
 
 /// Returns whether the fair rules accept the trace.

@@ -31,14 +31,14 @@ impl BoundedValue {
     /// Returns a number without error, such as a factor of a formula.
     #[inline]
     #[must_use]
-    pub const fn exact(value: f64) -> Self {
+    pub const fn from_exact(value: f64) -> Self {
         Self { value, bound: 0.0 }
     }
 
     /// Returns an input with an error of at most one rounding.
     #[inline]
     #[must_use]
-    pub const fn rounded(value: f64) -> Self {
+    pub const fn from_rounded(value: f64) -> Self {
         Self { value, bound: value.abs() }
     }
 }
@@ -47,15 +47,15 @@ impl BoundedVector {
     /// Returns a vector without error.
     #[inline]
     #[must_use]
-    pub fn exact(v: Vec2) -> Self {
-        Self { x: BoundedValue::exact(v.x), y: BoundedValue::exact(v.y) }
+    pub fn from_exact(v: Vec2) -> Self {
+        Self { x: BoundedValue::from_exact(v.x), y: BoundedValue::from_exact(v.y) }
     }
 
     /// Returns a vector whose components each have an error of at most one rounding.
     #[inline]
     #[must_use]
-    pub fn rounded(v: Vec2) -> Self {
-        Self { x: BoundedValue::rounded(v.x), y: BoundedValue::rounded(v.y) }
+    pub fn from_rounded(v: Vec2) -> Self {
+        Self { x: BoundedValue::from_rounded(v.x), y: BoundedValue::from_rounded(v.y) }
     }
 }
 
@@ -194,7 +194,7 @@ mod tests {
         assert_eq!(c - d, size(16.0, 24.0));
         assert_eq!(c * d, size(48.0, 104.0));
         assert_eq!(-2.0 * c, size(24.0, 34.0));
-        let vector = BoundedVector::rounded(Vec2::new(-12.0, 4.0));
+        let vector = BoundedVector::from_rounded(Vec2::new(-12.0, 4.0));
         assert_eq!((vector.x, vector.y), (number(-12.0, 12.0), number(4.0, 4.0)));
         let twice = b * vector;
         assert_eq!((twice.x, twice.y), (b * vector.x, b * vector.y));
@@ -204,7 +204,7 @@ mod tests {
     /// cover it.
     #[test]
     fn cancelled_terms_keep_their_weight() {
-        let (a, b) = (BoundedValue::exact(1e10), BoundedValue::exact(0.1));
+        let (a, b) = (BoundedValue::from_exact(1e10), BoundedValue::from_exact(0.1));
         let left = (a + b) - a;
         assert!((left.value - 0.1).abs() > 1e-8);
         assert!((left.value - 0.1).abs() <= left.bound * UNIT_ROUNDOFF);
@@ -227,17 +227,17 @@ mod tests {
 
     #[test]
     fn a_quotient_knows_its_condition() {
-        let quotient = BoundedValue::rounded(1.0) / BoundedValue { value: 1e-8, bound: 1.0 };
+        let quotient = BoundedValue::from_rounded(1.0) / BoundedValue { value: 1e-8, bound: 1.0 };
         assert_eq!(quotient.value, 1e8);
         assert!(quotient.bound >= 1e16);
-        assert!(!(BoundedValue::rounded(1.0) / BoundedValue::exact(0.0)).bound.is_finite());
+        assert!(!(BoundedValue::from_rounded(1.0) / BoundedValue::from_exact(0.0)).bound.is_finite());
     }
 
     /// Two orders of summing the same dot product differ by less than the bounds allow.
     #[test]
     fn other_orders_of_evaluation_stay_within_the_bound() {
         let (a, b) = (Vec2::new(0.1, -0.3), Vec2::new(0.7, 0.233_333));
-        let bounded = BoundedVector::exact(a).dot(BoundedVector::exact(b));
+        let bounded = BoundedVector::from_exact(a).dot(BoundedVector::from_exact(b));
         let otherwise = a.y * b.y + a.x * b.x;
         assert_eq!(bounded.value, a.dot(&b));
         assert!((bounded.value - otherwise).abs() <= bounded.bound * UNIT_ROUNDOFF);

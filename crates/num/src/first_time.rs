@@ -7,7 +7,7 @@ use super::{
     interval::{Interval, Intervals},
     polynomial::{Polynomial, evaluate},
     rpoly::{self, DoesNotTerminate, MAX_DEGREE, Zeros},
-    tolerances::IMAGINARY_PART,
+    tolerances::MIN_IMAGINARY_PART,
 };
 
 /// Returns the earliest `t >= 0` from which all polynomials are positive, `+inf` if none (root-finder.md 16.3).
@@ -25,7 +25,7 @@ use super::{
 /// polynomials.
 #[inline]
 pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
-    first_time_counted(polynomials, &mut 0)
+    first_time_with_steps(polynomials, &mut 0)
 }
 
 /// Returns the time of [`first_time`], and adds the steps of the root searches to `steps` ([`Zeros::steps`]).
@@ -36,7 +36,7 @@ pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
 /// # Panics
 /// Panics like [`first_time`].
 #[inline]
-pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result<f64, DoesNotTerminate> {
+pub fn first_time_with_steps(polynomials: &[Polynomial], steps: &mut u64) -> Result<f64, DoesNotTerminate> {
     let lists = polynomials.iter().map(Polynomial::coefficients);
     // Two polynomials, of degree five at most, have at most five common intervals; four of them nine.
     match polynomials.len() {
@@ -54,7 +54,7 @@ pub fn first_time_counted(polynomials: &[Polynomial], steps: &mut u64) -> Result
 ///
 /// # Panics
 /// Panics if more than ten lists have sets with the maximum number of intervals.
-pub fn first_time_of<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
+pub fn first_time_of_lists<'a>(lists: impl IntoIterator<Item = &'a [f64]>) -> Result<f64, DoesNotTerminate> {
     intersect_sets::<32>(lists.into_iter(), &mut 0)
 }
 
@@ -66,11 +66,11 @@ fn intersect_sets<'a, const CAPACITY: usize>(
 ) -> Result<f64, DoesNotTerminate> {
     let Some(first) = lists.next() else { return Ok(f64::INFINITY) };
     let mut set = Intervals::<CAPACITY>::EMPTY;
-    for &interval in solve_counted(first, steps)?.as_slice() {
+    for &interval in solve_positive_set(first, steps)?.as_slice() {
         set.push(interval);
     }
     for list in lists {
-        set = set.intersection(&solve_counted(list, steps)?);
+        set = set.intersection(&solve_positive_set(list, steps)?);
     }
     Ok(set.next_time(0.0))
 }
@@ -87,10 +87,10 @@ pub type PositiveSet = Intervals<{ MAX_DEGREE + 1 }>;
 /// # Panics
 /// Panics if there are more than [`MAX_DEGREE`]` + 1` coefficients.
 pub fn positive_set(coefficients: &[f64]) -> Result<PositiveSet, DoesNotTerminate> {
-    solve_counted(coefficients, &mut 0)
+    solve_positive_set(coefficients, &mut 0)
 }
 
-fn solve_counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNotTerminate> {
+fn solve_positive_set(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, DoesNotTerminate> {
     let mut set = PositiveSet::EMPTY;
     let zeros = match coefficients.len() {
         0 => return Ok(set),
@@ -103,7 +103,7 @@ fn solve_counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, D
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
         // If there is no real zero, t = 0 represents the whole line.
         if evaluate(coefficients, 0.0) > 0.0 {
-            set.push(Interval::EVERYTHING);
+            set.push(Interval::ALL_TIMES);
         }
         return Ok(set);
     };
@@ -128,7 +128,7 @@ fn solve_counted(coefficients: &[f64], steps: &mut u64) -> Result<PositiveSet, D
 fn sorted_real_parts<'a>(zeros: &Zeros, storage: &'a mut [f64; MAX_DEGREE]) -> &'a [f64] {
     let mut length = 0;
     for &(re, im) in zeros.as_slice() {
-        if im.abs() < IMAGINARY_PART {
+        if im.abs() < MIN_IMAGINARY_PART {
             let mut place = length;
             if re < storage[0] {
                 while place > 0 {

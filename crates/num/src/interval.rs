@@ -14,7 +14,7 @@ pub struct Interval {
 
 impl Interval {
     /// The interval of all times.
-    pub const EVERYTHING: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
+    pub const ALL_TIMES: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
 
     /// Returns whether the two intervals share a point (closed comparison; false with a NaN bound).
     #[inline]

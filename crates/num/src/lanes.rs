@@ -110,13 +110,13 @@ impl Instructions {
 
     /// Does work with the instructions.
     #[inline]
-    pub fn run<W: Work>(self, work: W) -> W::Output {
+    pub fn run<W: LaneWork>(self, work: W) -> W::Output {
         self.0.dispatch(DispatchedWork(work))
     }
 }
 
 /// Work that is done in lanes.
-pub trait Work {
+pub trait LaneWork {
     /// The type of the result.
     type Output;
     /// Does the work. It must always be inlined, with everything that it calls and without closures, which would be
@@ -126,7 +126,7 @@ pub trait Work {
 
 struct DispatchedWork<W>(W);
 
-impl<W: Work> pulp::WithSimd for DispatchedWork<W> {
+impl<W: LaneWork> pulp::WithSimd for DispatchedWork<W> {
     type Output = W::Output;
     #[inline(always)]
     fn with_simd<S: Simd>(self, simd: S) -> W::Output {
@@ -234,13 +234,13 @@ impl<S: Simd> Lanes<S> {
 
     /// Returns the lanes whose number is less than `bound`.
     #[inline(always)]
-    pub fn below(self, bound: f64) -> Mask<S> {
+    pub fn is_below(self, bound: f64) -> Mask<S> {
         self.lt(self.splat_like(bound))
     }
 
     /// Returns the lanes whose number is at least `bound`.
     #[inline(always)]
-    pub fn at_least(self, bound: f64) -> Mask<S> {
+    pub fn is_at_least(self, bound: f64) -> Mask<S> {
         self.splat_like(bound).le(self)
     }
 
@@ -309,7 +309,7 @@ pub struct Mask<S: Simd> {
 impl<S: Simd> Mask<S> {
     /// Returns a number in lanes that are set, 0 elsewhere.
     #[inline(always)]
-    pub fn or_zero(self, number: f64) -> Lanes<S> {
+    pub fn select_or_zero(self, number: f64) -> Lanes<S> {
         let simd = self.simd;
         let mask = if Lanes::<S>::COUNT > 1 {
             // All bits of a lane or none, as in a mask of several lanes. A selection would test it again.
@@ -383,7 +383,7 @@ mod tests {
 
     struct Rows;
 
-    impl Work for Rows {
+    impl LaneWork for Rows {
         type Output = (usize, Vec<f64>);
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
@@ -391,7 +391,7 @@ mod tests {
                 let values: [f64; MAX_LANES] = std::array::from_fn(|lane| f64::from(first) + 0.125 * lane as f64);
                 Lanes::load(simd, &values)
             };
-            let sum = from(4).at_least(4.125).or_zero(-2.5) + from(0).below(0.25).or_zero(1.0);
+            let sum = from(4).is_at_least(4.125).select_or_zero(-2.5) + from(0).is_below(0.25).select_or_zero(1.0);
             let numbers = [[from(0), from(1), from(2), from(3)], [sum, from(5), from(6), from(7)]];
             let mut rows = vec![-1.0; 9 * Lanes::<S>::COUNT];
             Lanes::store_by_lane(&numbers, 9, &mut rows);

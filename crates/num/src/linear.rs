@@ -3,7 +3,7 @@
 //! It serves the implicit integrators, whose matrices have two rows per particle. Every product, subtraction and
 //! division happens once and in the order of the specification. The order in which moduli are compared is free: each
 //! column's largest is found while its entries are computed.
-use super::lanes::{Instructions, Lanes, Simd, Work};
+use super::lanes::{Instructions, LaneWork, Lanes, Simd};
 
 /// The columns that a triangular solve treats as one panel.
 const PANEL_COLUMNS: usize = 8;
@@ -61,7 +61,7 @@ struct Decomposition<'a> {
     moduli: &'a mut Vec<f64>,
 }
 
-impl Work for Decomposition<'_> {
+impl LaneWork for Decomposition<'_> {
     type Output = usize;
 
     #[inline(always)]
@@ -74,7 +74,7 @@ impl Work for Decomposition<'_> {
         self.moduli.clear();
         self.moduli.resize(n, 0.0);
         for (modulus, column) in self.moduli.iter_mut().zip(self.matrix.chunks_exact(n.max(1))) {
-            *modulus = largest(simd, column);
+            *modulus = largest_modulus(simd, column);
         }
         // Without an early exit, the compiler uses vector instructions.
         let may_skip = self.matrix.iter().fold(true, |may, entry| may & (entry.to_bits() != (-0.0_f64).to_bits()));
@@ -164,7 +164,7 @@ impl Decomposition<'_> {
                 difference.store(entries);
                 moduli = difference.abs().max(moduli);
             }
-            *largest = find_largest(moduli, in_lanes);
+            *largest = find_largest_modulus(moduli, in_lanes);
             for (entry, multiplier) in alone.iter_mut().zip(single) {
                 *entry -= *multiplier * *top;
                 *largest = max_modulus(*largest, *entry);
@@ -182,18 +182,18 @@ struct Pivot {
 
 /// Returns the largest modulus of a column's entries, NaN ignored.
 #[inline(always)]
-fn largest<S: Simd>(simd: S, entries: &[f64]) -> f64 {
+fn largest_modulus<S: Simd>(simd: S, entries: &[f64]) -> f64 {
     let (in_lanes, alone) = entries.split_at(entries.len() / Lanes::<S>::COUNT * Lanes::<S>::COUNT);
     let mut moduli = Lanes::splat(simd, 0.0);
     for entries in in_lanes.chunks_exact(Lanes::<S>::COUNT) {
         moduli = Lanes::load(simd, entries).abs().max(moduli);
     }
-    alone.iter().fold(find_largest(moduli, in_lanes), |largest, entry| max_modulus(largest, *entry))
+    alone.iter().fold(find_largest_modulus(moduli, in_lanes), |largest, entry| max_modulus(largest, *entry))
 }
 
 /// Returns the largest of the moduli of entries. With some instructions the larger of a number and NaN is NaN.
 #[inline(always)]
-fn find_largest<S: Simd>(moduli: Lanes<S>, entries: &[f64]) -> f64 {
+fn find_largest_modulus<S: Simd>(moduli: Lanes<S>, entries: &[f64]) -> f64 {
     let largest = moduli.largest();
     if largest.is_nan() { entries.iter().fold(0.0, |largest, entry| max_modulus(largest, *entry)) } else { largest }
 }

@@ -1,5 +1,5 @@
 //! Polynomials of degree at most five (six while zeros are searched), in fixed storage, highest power first.
-use super::written::Number;
+use super::number_serde::WrittenNumber;
 use serde::{Deserialize, Serialize};
 
 /// The maximum number of coefficients of a detection polynomial (degree 5).
@@ -7,23 +7,23 @@ pub const MAX_COEFFICIENTS: usize = 6;
 
 /// A real polynomial, **highest power first**, after removal of the small leading coefficients.
 #[derive(Debug, Clone, Copy, PartialEq, Default, Serialize, Deserialize, schemars::JsonSchema)]
-#[serde(into = "Vec<Number>", try_from = "Vec<Number>")]
+#[serde(into = "Vec<WrittenNumber>", try_from = "Vec<WrittenNumber>")]
 pub struct Polynomial {
     length: u8,
     /// The coefficients, at the end of the array, after zeros.
     storage: [f64; MAX_COEFFICIENTS],
 }
 
-impl From<Polynomial> for Vec<Number> {
+impl From<Polynomial> for Vec<WrittenNumber> {
     fn from(polynomial: Polynomial) -> Self {
-        polynomial.coefficients().iter().copied().map(Number).collect()
+        polynomial.coefficients().iter().copied().map(WrittenNumber).collect()
     }
 }
 
-impl TryFrom<Vec<Number>> for Polynomial {
+impl TryFrom<Vec<WrittenNumber>> for Polynomial {
     type Error = &'static str;
 
-    fn try_from(form: Vec<Number>) -> Result<Self, Self::Error> {
+    fn try_from(form: Vec<WrittenNumber>) -> Result<Self, Self::Error> {
         let coefficients: Vec<f64> = form.into_iter().map(|number| number.0).collect();
         let fits = coefficients.len() <= MAX_COEFFICIENTS;
         fits.then(|| Self::untrimmed(&coefficients)).ok_or("a detection polynomial must have at most six coefficients")
@@ -101,7 +101,7 @@ pub fn trim(coefficients: &[f64]) -> &[f64] {
 
 #[inline]
 fn is_small(leading: f64) -> bool {
-    leading.abs() < super::tolerances::LEADING_COEFFICIENT
+    leading.abs() < super::tolerances::MIN_LEADING_COEFFICIENT
 }
 
 /// Returns the value at `t` by Horner's rule started from `+0` (root-finder.md 15.2: `0 * inf` is NaN, which is not

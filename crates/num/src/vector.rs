@@ -42,7 +42,7 @@ pub fn columns(values: &[f64]) -> MatrixView2xX<'_, f64> {
 /// Returns whether two lists are identical, bit for bit.
 #[inline]
 #[must_use]
-pub fn same_bits(one: &[f64], other: &[f64]) -> bool {
+pub fn has_same_bits(one: &[f64], other: &[f64]) -> bool {
     one.len() == other.len() && one.iter().zip(other).all(|(one, other)| one.to_bits() == other.to_bits())
 }
 

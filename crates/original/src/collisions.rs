@@ -1,7 +1,7 @@
 //! The original's messages about collisions that do not match (oracle-behavior.md 6.1).
 use fosssim_judge::replay::Remark;
 use fosssim_model::trace::LoggedImpulse;
-use fosssim_num::{printed::format_g, vector::Vec2};
+use fosssim_num::{number_format::format_g, vector::Vec2};
 
 /// The line above the collisions of a step.
 pub(crate) const HEADER: &str = "Collision Detection Error: \n";

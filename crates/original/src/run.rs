@@ -178,7 +178,7 @@ fn simulate<W: Write>(
     transcript.observe_begin();
     let mut stopped = None;
     for step in 1..=scene.step_count() {
-        transcript.step_begins(step);
+        transcript.observe_step_begin(step);
         stopped = simulation.step(&mut recorder).err();
         if stopped.is_some() || recorder.has_failed() {
             break;

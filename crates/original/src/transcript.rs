@@ -8,7 +8,7 @@ use fosssim_judge::{
     replay::{Progress, Remark},
 };
 use fosssim_model::scene::{Integrator, Scene};
-use fosssim_num::printed::format_g;
+use fosssim_num::number_format::format_g;
 use std::{
     io::{self, Write},
     time::Instant,
@@ -41,9 +41,9 @@ pub(crate) enum Task<'a> {
 /// Writes the original's standard output to a stream, event by event.
 ///
 /// For grading, pass it to `judge` as its [`Progress`], then call [`Transcript::graded`]. For recording and plain runs,
-/// call `begins`, `step_begins` and [`Transcript::step_ends`] per step, then [`Transcript::print_completion`] and
-/// [`Transcript::print_exit_line`]. The first error of the stream is kept until [`Transcript::finish`]; later text is
-/// dropped.
+/// call `begins`, `observe_step_begin` and [`Transcript::step_ends`] per step, then [`Transcript::print_completion`]
+/// and [`Transcript::print_exit_line`]. The first error of the stream is kept until [`Transcript::finish`]; later text
+/// is dropped.
 #[derive(Debug)]
 pub(crate) struct Transcript<'a, W: Write> {
     stream: W,
@@ -213,7 +213,7 @@ impl<W: Write> Progress for Transcript<'_, W> {
         self.banner();
     }
 
-    fn step_begins(&mut self, step: u32) {
+    fn observe_step_begin(&mut self, step: u32) {
         self.print_dot(step.saturating_sub(1));
         if self.clock.is_some() {
             // The original prints these lines before it reads the step's record. The parts of a step are not measured
@@ -222,7 +222,7 @@ impl<W: Write> Progress for Transcript<'_, W> {
         }
     }
 
-    fn step_judged(&mut self, step: u32, remarks: &[Remark]) {
+    fn observe_step_end(&mut self, step: u32, remarks: &[Remark]) {
         self.step_ends(step);
         let mut header_due = true;
         for remark in remarks {
@@ -309,8 +309,8 @@ mod tests {
 
     fn steps(transcript: &mut Transcript<'_, Vec<u8>>, steps: std::ops::RangeInclusive<u32>) {
         for step in steps {
-            transcript.step_begins(step);
-            transcript.step_judged(step, &[]);
+            transcript.observe_step_begin(step);
+            transcript.observe_step_end(step, &[]);
         }
     }
 
@@ -358,8 +358,8 @@ mod tests {
         let text = after_heading(&scene, Task::Grade(b"m.bin"), |transcript| {
             transcript.observe_begin();
             steps(transcript, 1..=59);
-            transcript.step_begins(60);
-            transcript.step_judged(60, &[missed, Remark::Polynomials(FindingKind::PolynomialDegree, 2)]);
+            transcript.observe_step_begin(60);
+            transcript.observe_step_end(60, &[missed, Remark::Polynomials(FindingKind::PolynomialDegree, 2)]);
             steps(transcript, 61..=200);
             transcript.print_end(&outcome(Overall::Failed, None));
         });

@@ -2,7 +2,7 @@
 use crate::words::{PINK, RESET};
 use fosssim_judge::{Outcome, Overall, Residuals};
 use fosssim_model::assignments::Definition;
-use fosssim_num::printed::format_g;
+use fosssim_num::number_format::format_g;
 
 /// The original's names of the residuals, in its order.
 const RESIDUAL_NAMES: [&str; 4] = [

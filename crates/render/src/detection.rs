@@ -11,9 +11,9 @@ pub fn render_picture(study: &Study, title: &str, embedding: PlotTarget) -> Stri
         name: curve.role.to_string(),
         coefficients: curve.logged.coefficients(),
         zeros: curve.real_zeros(),
-        positive: &curve.positive,
+        positive: &curve.positive_intervals,
     });
     let curves: Vec<PlottedPolynomial<'_>> = curves.collect();
     let impact = study.answer.decision.collides().then(|| study.answer.decision.time());
-    PolynomialPlot { title, curves: &curves, common: Some(&study.answer.positive), impact }.svg(embedding)
+    PolynomialPlot { title, curves: &curves, common: Some(&study.answer.positive_intervals), impact }.svg(embedding)
 }

@@ -8,16 +8,16 @@ use super::{
     number::{format_exact, format_tidy},
     style::{Look, Style},
     table::{Align, Cell, Table},
-    view::{Number, numbers, to_document, view},
+    view::{WrittenNumber, numbers, to_document, view},
 };
 use fosssim_evidence::CallLog;
 use fosssim_findings::Role;
 use fosssim_judge::{
-    PairWords, PassWords, differing_powers, find_factor,
+    PairWords, PassWords, find_differing_powers, find_factor,
     study::{Answer, Curve, Study},
 };
 use fosssim_model::sim::{Decision, Pair, PairKind, PairMotion, Pass, PointMotion};
-use fosssim_num::{interval::Interval, polynomial::Polynomial, written::WrittenNumbers};
+use fosssim_num::{interval::Interval, number_serde::WrittenNumbers, polynomial::Polynomial};
 use serde::Serialize;
 
 /// The version of the JSON document's form.
@@ -153,10 +153,10 @@ impl Detect<'_> {
             }
         }
         text += &format!("\n{}\n", style.paint(Look::Strong, "Decision"));
-        text += &format!("  all positive: {}\n", format_intervals(&study.answer.positive, number));
+        text += &format!("  all positive: {}\n", format_intervals(&study.answer.positive_intervals, number));
         let look = if study.answer.decision.collides() { Look::Notice } else { Look::Good };
         text += &format!("  {}\n", style.paint(look, &self.decision(|time| format_tidy(time, number))));
-        text += match study.certain {
+        text += match study.certain_decision {
             Some(certain) if certain == study.answer.decision.collides() => "  certain: round-off can't change this\n",
             Some(_) => "  the true answer is the other one: the root finder is misled by rounding\n",
             None => "  borderline: a correct program with other round-off may decide otherwise\n",
@@ -178,7 +178,7 @@ impl Detect<'_> {
             motion: (&study.motion).into(),
             polynomials: study.curves.iter().map(CurveView::from).collect(),
             answer: (&study.answer).into(),
-            certain: study.certain,
+            certain: study.certain_decision,
             right_approach: study
                 .right_approach
                 .as_ref()
@@ -203,7 +203,7 @@ fn compare_polynomials(role: &str, expected: &[f64], own: &[f64], style: Style) 
         return format!("  {role}: {}\n", style.paint(Look::Bad, "missing"));
     }
     let factor = find_factor(expected, own);
-    let wrong = differing_powers(expected, own, factor);
+    let wrong = find_differing_powers(expected, own, factor);
     let same = expected == own;
     let (look, mark) = match wrong.is_empty() {
         true if same => (Look::Good, "the same".to_owned()),
@@ -299,7 +299,7 @@ fn polynomial_lines(name: &str, curve: &Curve, number: ShownNumber, style: Style
     if complex > 0 {
         zeros += &format!(" ({complex} complex)");
     }
-    text += &format!("    zeros: {zeros}\n    positive: {}\n", format_intervals(&curve.positive, number));
+    text += &format!("    zeros: {zeros}\n    positive: {}\n", format_intervals(&curve.positive_intervals, number));
     text
 }
 
@@ -388,7 +388,7 @@ view! {
         /// The lists that the trace logs for the detection call, in the order of `polynomials`. A missing list is empty
         /// here, and if all are missing, there are no lists. Null for the reference's own run, and if the trace logs
         /// another number of polynomials in the pass, because its lists can't be assigned to calls then.
-        logged: Option<Vec<Vec<Number>>> = match place.logged {
+        logged: Option<Vec<Vec<WrittenNumber>>> = match place.logged {
             CallLog::These(logged) => Some(logged.iter().map(|list| numbers(list)).collect()),
             CallLog::Nothing if place.trace.is_some() && place.pass.is_some() => Some(Vec::new()),
             CallLog::Nothing | CallLog::Unknown => None,
@@ -404,7 +404,7 @@ struct MotionView {
     /// particle's center and the edge's endpoints; for a particle and a half-plane, the particle's center.
     points: Vec<PointView>,
     /// The radii of the bodies, in their order. A half-plane has no radius.
-    radii: Vec<Number>,
+    radii: Vec<WrittenNumber>,
     /// The half-plane; null if the pair has none.
     #[serde(skip_serializing_if = "Option::is_none")]
     half_plane: Option<HalfPlaneView>,
@@ -415,9 +415,9 @@ struct MotionView {
 #[schemars(deny_unknown_fields)]
 struct PointView {
     /// The position of the point at the start of the step.
-    start: [Number; 2],
+    start: [WrittenNumber; 2],
     /// The displacement of the point within the step.
-    displacement: [Number; 2],
+    displacement: [WrittenNumber; 2],
 }
 
 /// A half-plane of the scene.
@@ -425,9 +425,9 @@ struct PointView {
 #[schemars(deny_unknown_fields)]
 struct HalfPlaneView {
     /// A point on the boundary of the half-plane.
-    point: [Number; 2],
+    point: [WrittenNumber; 2],
     /// The normal vector of the half-plane.
-    normal: [Number; 2],
+    normal: [WrittenNumber; 2],
 }
 
 view! {
@@ -443,11 +443,11 @@ view! {
         untrimmed: Polynomial = curve.untrimmed,
         /// The zeros, each as its real and its imaginary part, in the order in which the reference's root finder
         /// returns them.
-        zeros: Vec<[Number; 2]> =
-            curve.zeros.iter().map(|&(real, imaginary)| [Number(real), Number(imaginary)]).collect(),
+        zeros: Vec<[WrittenNumber; 2]> =
+            curve.zeros.iter().map(|&(real, imaginary)| [WrittenNumber(real), WrittenNumber(imaginary)]).collect(),
         /// The time intervals in which the polynomial is positive, sorted and disjoint. They are not limited to the
         /// step. An interval may be a single time.
-        positive: Vec<[Number; 2]> = to_pairs(&curve.positive),
+        positive: Vec<[WrittenNumber; 2]> = to_pairs(&curve.positive_intervals),
     }
 }
 
@@ -456,13 +456,13 @@ view! {
     #[schemars(deny_unknown_fields)]
     struct AnswerView from answer: Answer {
         /// The time intervals in which all polynomials are positive at once, sorted and disjoint.
-        positive: Vec<[Number; 2]> = to_pairs(&answer.positive),
+        positive: Vec<[WrittenNumber; 2]> = to_pairs(&answer.positive_intervals),
         /// Whether the pair collides in the step.
         collides: bool = answer.decision.collides(),
         /// The earliest time from which all polynomials are positive; inf if there is no such time.
-        time: Number = Number(answer.decision.time()),
+        time: WrittenNumber = WrittenNumber(answer.decision.time()),
         /// The vector from the first object to the second, not normalized; null if the pair does not collide.
-        normal: Option<[Number; 2]> = match answer.decision {
+        normal: Option<[WrittenNumber; 2]> = match answer.decision {
             Decision::Hit { normal, .. } => Some(normal.write()),
             Decision::Miss { .. } => None,
         },
@@ -479,7 +479,7 @@ struct RightApproachView {
     answer: AnswerView,
 }
 
-fn to_pairs(list: &[Interval]) -> Vec<[Number; 2]> {
+fn to_pairs(list: &[Interval]) -> Vec<[WrittenNumber; 2]> {
     list.iter().map(|interval| [interval.lo, interval.hi].write()).collect()
 }
 
@@ -516,7 +516,7 @@ mod tests {
     fn sets_of_times_are_written_as_in_books() {
         let set = |lo, hi| Interval { lo, hi };
         assert_eq!(format_intervals(&[], format_exact), "nowhere");
-        assert_eq!(format_intervals(&[Interval::EVERYTHING], format_exact), "always");
+        assert_eq!(format_intervals(&[Interval::ALL_TIMES], format_exact), "always");
         assert_eq!(
             format_intervals(&[set(f64::NEG_INFINITY, 0.25), set(0.5, 0.5)], format_exact),
             "(-inf, 0.25) and at 0.5 (intervals touch)"

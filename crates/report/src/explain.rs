@@ -181,12 +181,12 @@ view! {
         /// The values from which the example is computed.
         pub given: Vec<ExampleValue> = example.given.clone(),
         /// The result that a correct program computes.
-        #[serde(with = "fosssim_num::written")]
-        #[schemars(with = "Vec<crate::view::Number>")]
+        #[serde(with = "fosssim_num::number_serde")]
+        #[schemars(with = "Vec<crate::view::WrittenNumber>")]
         pub expected: Vec<f64> = example.expected.clone(),
         /// The result that this program computes.
-        #[serde(with = "fosssim_num::written")]
-        #[schemars(with = "Vec<crate::view::Number>")]
+        #[serde(with = "fosssim_num::number_serde")]
+        #[schemars(with = "Vec<crate::view::WrittenNumber>")]
         pub actual: Vec<f64> = example.actual.clone(),
     }
 }
@@ -197,7 +197,7 @@ pub(crate) mod tests {
     use fosssim_findings::Hints;
     use fosssim_judge::Role;
     use fosssim_mistakes::diagnose::{Detail, OfPolynomials, PolynomialDetail, Weight, explain, formula_in};
-    use fosssim_mistakes::together::told::cut;
+    use fosssim_mistakes::together::disclosure::limit_explanations;
     use fosssim_model::{
         scene::original,
         sim::{Pair, PairKind},
@@ -299,7 +299,7 @@ pub(crate) mod tests {
 
     #[test]
     fn hints_decide_what_is_there_to_be_shown() {
-        let told = |hints: Hints| lines(&cut(hints, explanations()), Style::Plain);
+        let told = |hints: Hints| lines(&limit_explanations(hints, explanations()), Style::Plain);
         assert!(told(Hints::Where).is_empty());
         let what = told(Hints::What);
         assert_eq!(what.len(), 2);
@@ -323,7 +323,7 @@ pub(crate) mod tests {
         for row in CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong) {
             let trace =
                 student::record_trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
-            for one in cut(Hints::What, explain(&scene, &trace)) {
+            for one in limit_explanations(Hints::What, explain(&scene, &trace)) {
                 let others = one.same_as.iter().map(|key| find(key).expect("a known mistake").sentence());
                 for sentence in others.chain([describe(&one)]) {
                     assert_eq!(formula_in(&sentence), None, "{}: {one:?}", row.id);

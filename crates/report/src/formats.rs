@@ -5,7 +5,7 @@ use crate::{
     style::Style,
 };
 use fosssim_findings::{Grade, SkippedEntry};
-use fosssim_mistakes::together::{for_students, told_to_students};
+use fosssim_mistakes::together::{disclosed_grade, immediate_grade};
 use std::borrow::Cow;
 
 /// The warning in a report for students that leaves groups out.
@@ -127,11 +127,11 @@ impl Format {
     pub fn visible_part(self, grade: &Grade, reader: Audience, platform_hides: bool) -> Cow<'_, Grade> {
         match (self, reader) {
             // These formats are always for students. The platforms and the page hide the hidden groups themselves.
-            (Self::Gradescope | Self::Prairielearn, _) | (Self::Html, Audience::Student) => told_to_students(grade),
+            (Self::Gradescope | Self::Prairielearn, _) | (Self::Html, Audience::Student) => disclosed_grade(grade),
             (_, Audience::Staff) => Cow::Borrowed(grade),
-            (_, Audience::Student) if platform_hides => told_to_students(grade),
+            (_, Audience::Student) if platform_hides => disclosed_grade(grade),
             (_, Audience::Student) => {
-                let mut shown = for_students(grade);
+                let mut shown = immediate_grade(grade);
                 if shown.groups.len() < grade.groups.len() {
                     shown.to_mut().warnings.push(HIDDEN_GROUPS_WARNING.to_owned());
                 }

@@ -3,12 +3,12 @@
 //!
 //! The functions are pure.
 
-pub use fosssim_num::printed::format_g;
+pub use fosssim_num::number_format::format_g;
 
 /// Formats a number as the shortest text that reads back as the same number. A zero has no sign.
 #[must_use]
 pub fn format_exact(value: f64) -> String {
-    fosssim_num::printed::format_exact(value + 0.0)
+    fosssim_num::number_format::format_exact(value + 0.0)
 }
 
 /// Formats a number as a short fraction such as `1/3`. Returns `None` if it differs from the fraction by more than a

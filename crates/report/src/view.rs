@@ -9,8 +9,8 @@ use fosssim_model::{
     sim::Pass,
     trace::{ImpulsePair, LoggedImpulse},
 };
+pub use fosssim_num::number_serde::WrittenNumber;
 use fosssim_num::polynomial::Polynomial;
-pub use fosssim_num::written::Number;
 use serde::Serialize;
 
 /// Declares a value of a report that is made from another value. Each field has its description, its type, and the
@@ -56,8 +56,8 @@ pub(crate) fn to_document(value: &impl Serialize) -> String {
 
 /// Converts several numbers for JSON.
 #[must_use]
-pub fn numbers(values: &[f64]) -> Vec<Number> {
-    values.iter().copied().map(Number).collect()
+pub fn numbers(values: &[f64]) -> Vec<WrittenNumber> {
+    values.iter().copied().map(WrittenNumber).collect()
 }
 
 /// A polynomial of a step, and the reference's counterpart.
@@ -80,13 +80,13 @@ pub struct PolynomialView {
 #[serde(untagged)]
 pub enum Value {
     /// A floating-point number.
-    Number(Number),
+    Number(WrittenNumber),
     /// A number of occurrences.
     Count(usize),
     /// A vector with two components.
     Point(
-        #[serde(with = "fosssim_num::written")]
-        #[schemars(with = "[Number; 2]")]
+        #[serde(with = "fosssim_num::number_serde")]
+        #[schemars(with = "[WrittenNumber; 2]")]
         [f64; 2],
     ),
     /// The coefficients of a polynomial.
@@ -119,10 +119,10 @@ pub struct FindingView {
     /// The trace's value, in the same form as `expected`.
     pub actual: Option<Value>,
     /// The distance between the two values, if it is defined.
-    pub residual: Option<Number>,
+    pub residual: Option<WrittenNumber>,
     /// The largest distance that is accepted. For coefficients, it applies after rescaling. Null for the fair rules,
     /// whose bounds depend on the values.
-    pub tolerance: Option<Number>,
+    pub tolerance: Option<WrittenNumber>,
     /// The coefficient in the form in which the original compares it.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub rescaled: Option<RescaledCoefficient>,
@@ -133,11 +133,11 @@ pub struct FindingView {
 /// Returns the largest distance that the original accepts for this kind of finding; `None` if the kind has no distance.
 #[must_use]
 pub const fn tolerance(kind: FindingKind) -> Option<f64> {
-    use fosssim_num::tolerances::{PARITY_COEFFICIENT, PARITY_MAXIMUM, PARITY_NORMAL};
+    use fosssim_num::tolerances::{PARITY_COEFFICIENT_DIFFERENCE, PARITY_MAX_RESIDUAL, PARITY_NORMAL_DISTANCE};
     match kind {
-        FindingKind::WrongNormal => Some(PARITY_NORMAL),
-        FindingKind::Coefficient => Some(PARITY_COEFFICIENT),
-        FindingKind::Position | FindingKind::Velocity => Some(PARITY_MAXIMUM),
+        FindingKind::WrongNormal => Some(PARITY_NORMAL_DISTANCE),
+        FindingKind::Coefficient => Some(PARITY_COEFFICIENT_DIFFERENCE),
+        FindingKind::Position | FindingKind::Velocity => Some(PARITY_MAX_RESIDUAL),
         _ => None,
     }
 }
@@ -171,8 +171,8 @@ impl FindingView {
             coefficient,
             expected,
             actual,
-            residual: residual.map(Number),
-            tolerance: tolerance(kind).filter(|_| book == Book::Parity).map(Number),
+            residual: residual.map(WrittenNumber),
+            tolerance: tolerance(kind).filter(|_| book == Book::Parity).map(WrittenNumber),
             rescaled,
             text: finding.what().to_string(),
         }
@@ -208,7 +208,7 @@ fn compare_values(detail: &FindingDetail) -> (Option<Value>, Option<Value>, Opti
             both(Value::Collision(expected.into()), Value::Collision(actual), None)
         }
         FindingDetail::TrimmedTime { expected, actual, .. } => {
-            both(Value::Number(Number(expected)), Value::Number(Number(actual)), None)
+            both(Value::Number(WrittenNumber(expected)), Value::Number(WrittenNumber(actual)), None)
         }
         FindingDetail::BeyondReach { position, .. } => (None, Some(Value::Point(position)), None),
         FindingDetail::PolynomialCount { expected, actual, .. } | FindingDetail::PassCount { expected, actual, .. } => {
@@ -221,7 +221,7 @@ fn compare_values(detail: &FindingDetail) -> (Option<Value>, Option<Value>, Opti
             both(Value::Polynomial(expected), Value::Polynomial(actual), None)
         }
         FindingDetail::Coefficient { expected, actual, residual, .. } => {
-            both(Value::Number(Number(expected)), Value::Number(Number(actual)), Some(residual))
+            both(Value::Number(WrittenNumber(expected)), Value::Number(WrittenNumber(actual)), Some(residual))
         }
         FindingDetail::Position { expected, actual, residual, .. }
         | FindingDetail::Velocity { expected, actual, residual, .. } => {

@@ -15,7 +15,7 @@ use fosssim_findings::{
     },
 };
 use fosssim_judge::{FindingKind, PairWords, ReadFailure};
-use fosssim_mistakes::together::likely_mistakes;
+use fosssim_mistakes::together::find_likely_mistakes;
 use fosssim_model::assignments::Assignment;
 
 /// The text about a trace that lacks the lists that its scene requires.
@@ -112,7 +112,7 @@ fn describe_milestone(other: Assignment) -> String {
 /// written.
 fn describe_unwritten(grade: &Grade) -> String {
     let scenes = format_count(grade.scenes().count() as u64, "scene");
-    let missing = match likely_mistakes(grade).first() {
+    let missing = match find_likely_mistakes(grade).first() {
         Some((likely, _)) if likely.is_unfinished() => explanation::describe(likely),
         _ => "Not written yet: the detection.".to_owned(),
     };

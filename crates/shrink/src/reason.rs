@@ -93,7 +93,7 @@ fn find_reason(scene: &Scene, seen: &Observation) -> Option<(WrongReason, Option
     if let Some(end) = WrongReason::from_end(&seen.ended) {
         return Some((end, None));
     }
-    let options = Options { threads: 1, fair: true, ..Options::default() };
+    let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     let outcome = judge(scene, &seen.trace[..], &options, &mut ());
     // A judgement that takes too much work stops as well, and is no fault of the trace.
     let is_unreadable = matches!(outcome.stop, Some(Stop::Trace { .. }));

@@ -129,7 +129,8 @@ fn a_judgement_that_stops_is_no_broken_trace() {
     let (far, between) = (posts(100.0, 0), posts(0.0, 1));
     let initial = trace(&Scene { duration: 0.0, ..far.clone() }).len();
     let trace = [&trace(&far)[..initial], &trace(&between)[initial..]].concat();
-    let outcome = judge(&far, &trace[..], &Options { threads: 1, fair: true, ..Options::default() }, &mut ());
+    let outcome =
+        judge(&far, &trace[..], &Options { threads: 1, uses_fair_rules: true, ..Options::default() }, &mut ());
     assert!(matches!(outcome.stop, Some(Stop::Step(_))), "{:?}", outcome.stop);
     let reason = WrongReason::first_reason(&far, &from_trace(trace));
     assert!(reason.is_some() && reason != Some(WrongReason::BrokenTrace), "{reason:?}");

@@ -9,7 +9,7 @@ use crate::{
     evidence::{self, Evidence, ExaminedTrace, KeptPart, examine},
     judge::{
         Outcome, Stop,
-        replay::{self, BothObservers},
+        replay::{self, ObserverPair},
     },
     report::{
         self,
@@ -35,7 +35,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let (shown, lasts) = (ShownParts::from_arguments(arguments), is_rereadable(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
     let mut bar = console::Bar::new(scene.scene.step_count());
-    let (options, heard) = (replay_options(arguments), &mut BothObservers(&mut bar, &mut wrong));
+    let (options, heard) = (replay_options(arguments), &mut ObserverPair(&mut bar, &mut wrong));
     let examined = examine(&scene.scene, &mut trace.reader, shown.keep(lasts), &options, heard);
     drop(bar);
     let outcome = &examined.outcome;
@@ -114,7 +114,7 @@ fn replay_options(arguments: &CheckArguments) -> replay::Options {
     replay::Options {
         threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
         root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::OnDemand },
-        fair: arguments.rules.ask_fair(),
+        uses_fair_rules: arguments.rules.ask_fair(),
         ..replay::Options::default()
     }
 }

@@ -10,7 +10,7 @@ use crate::{
         console, exit, input,
         output::Output,
     },
-    judge::kept::MAX_KEPT_BYTES,
+    judge::kept_trace::MAX_KEPT_BYTES,
     report::{case::Case, diagnosis::Diagnosis, page::Card},
     suite::smallest::QUICK_LIMITS,
 };

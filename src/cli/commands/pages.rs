@@ -125,7 +125,7 @@ pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<Stri
     }
     if recorded {
         let again = catch_panic(|| {
-            let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
+            let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
             examine(judged.scene, judged.trace, KeptPart::Nothing, &options, &mut ())
         });
         // A failure of drawing must not cost points.

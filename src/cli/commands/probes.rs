@@ -6,7 +6,7 @@ use crate::{
     diagnose::{self, Explanation},
     evidence::{KeptPart, examine},
     files::Place,
-    judge::{Rules, fair::FairVerdict, kept::MAX_KEPT_BYTES, replay::Options},
+    judge::{Rules, fair::FairVerdict, kept_trace::MAX_KEPT_BYTES, replay::Options},
     report::{
         case::Case,
         check::describe_stop,
@@ -27,7 +27,7 @@ use crate::{
         plan::{self, Plan},
         smallest::shorten_limits,
     },
-    together::told::cut,
+    together::disclosure::limit_explanations,
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -184,7 +184,7 @@ impl ProgramUnderTest {
         }
         let (common, refuted) = find_likely(self.assignment, &cases, &tasks);
         for case in &mut cases {
-            case.explanations = diagnose::settle_trace(&case.explanations, &common, &refuted).explanations;
+            case.explanations = diagnose::correct_trace(&case.explanations, &common, &refuted).explanations;
         }
         let located = locate_failures(&tasks, &ends);
         Ok(Some(ExaminedProgram {
@@ -206,7 +206,7 @@ pub(super) fn case(
     drawing: Drawing,
 ) -> (Case, Option<Card>, u32) {
     let Drawing { hints, has_pictures } = drawing;
-    let options = Options { fair: true, ..Options::default() };
+    let options = Options { uses_fair_rules: true, ..Options::default() };
     let examined = examine(scene, bytes, KeptPart::All, &options, &mut ());
     let outcome = &examined.outcome;
     // If the program did not end well, its end explains more than the end of its trace.
@@ -218,7 +218,7 @@ pub(super) fn case(
     let is_explained = fair.verdict != FairVerdict::Accepted && is_wrong && hints.explains();
     let explanations = if is_explained { examined.explain() } else { Vec::new() };
     let first = fair.findings.first_divergence.as_ref().and_then(|first| hints.finding(first));
-    let explanations = cut(hints, explanations);
+    let explanations = limit_explanations(hints, explanations);
     let draws = has_pictures && !accepted;
     let card = draws.then(|| {
         let judged = JudgedTrace {

@@ -26,7 +26,7 @@ use crate::{
             MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, group_causes, shorten_limits,
         },
     },
-    together::told::cut,
+    together::disclosure::limit_explanations,
 };
 use anyhow::{Result, bail};
 use std::{path::Path, time::Duration};
@@ -129,7 +129,7 @@ pub(super) fn describe(
         note,
         first,
         explanations: match reason {
-            WrongReason::Mistake(cause) => cut(drawing.hints, vec![with_example(cause, explanations)]),
+            WrongReason::Mistake(cause) => limit_explanations(drawing.hints, vec![with_example(cause, explanations)]),
             _ => explanations,
         },
         ..SmallestScene::default()
@@ -168,7 +168,7 @@ fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
 fn list_differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);
-    let options = replay::Options { threads: 1, fair: true, ..replay::Options::default() };
+    let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
     let outcome = &replay::judge(scene, &small.seen.trace[..], &options, &mut steps);
     let (audit, tables, looks_like, rules, steps) = (false, false, None, Rules::Fair, &steps);
     let (scene, trace, explanations) = ("small.xml", "small.bin", &[][..]);

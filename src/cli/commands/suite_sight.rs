@@ -1,6 +1,6 @@
 //! The option `suite check --mistakes`: the known mistakes that no scene of a suite shows.
 use crate::{
-    diagnose::{can_show, is_written},
+    diagnose::{is_written_by_student, may_change_trace},
     scene::Scene,
     student::{self, Area, Row, RowKind, Student, all_rows},
     suite::plan::Plan,
@@ -41,12 +41,13 @@ pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     // Begin with small scenes, because most mistakes show in the first scenes.
     scenes.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
-    let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written(row, scene.assignment()));
+    let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written_by_student(row, scene.assignment()));
     let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_theirs).collect();
     let logs_polynomials = scenes.iter().any(|scene| Layout::for_scene(scene).has_polynomials);
     // Most mistakes in writing a trace concern lists, which traces of states do not have.
-    let concerns =
-        |row: &Row| (logs_polynomials || row.area != Area::Trace) && scenes.iter().any(|scene| can_show(scene, row));
+    let concerns = |row: &Row| {
+        (logs_polynomials || row.area != Area::Trace) && scenes.iter().any(|scene| may_change_trace(scene, row))
+    };
     let seen: Vec<usize> = rows
         .par_iter()
         .map(|row| {

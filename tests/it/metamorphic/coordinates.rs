@@ -13,7 +13,7 @@ use super::{
 use fosssim_oracle::{
     num::{
         bounded::BoundedValue,
-        decision::{Certainty, decide},
+        decision::{HitCertainty, decide},
         polynomial::Polynomial,
         vector::{Vec2, length},
     },
@@ -193,9 +193,9 @@ fn is_doubtful(polynomials: &[Polynomial]) -> bool {
     // The time of a contact that hardly touches moves by the root of a rounding.
     let is_loose = certified.time.is_some_and(|[from, to]| to - from > 1e-9);
     let is_alone = |list: &Vec<BoundedValue>| list.len() < 2 || list[1..].iter().all(|c| c.value == 0.0);
-    certified.certainty == Certainty::Borderline
+    certified.certainty == HitCertainty::Borderline
         || is_loose
-        || certified.certainty == Certainty::Yes && lists.iter().any(is_alone)
+        || certified.certainty == HitCertainty::Hits && lists.iter().any(is_alone)
 }
 
 /// One way to write the same scene.

@@ -4,8 +4,8 @@ use fosssim_oracle::{
     num::{
         bounded::BoundedValue,
         decision::{
-            Certainty, decide,
-            exact::{ExactAnswer, exact_first},
+            HitCertainty, decide,
+            exact::{ExactAnswer, find_exact_first_time},
         },
         polynomial::Polynomial,
         tolerances::FAIR_UNITS,
@@ -55,18 +55,18 @@ impl Observer for Tally {
         let certainty = decide(&slices, FAIR_UNITS).certainty;
         // Integers take long; what is near, what hits and a few others are enough.
         let number = self.same + self.borderline;
-        if is_hit || certainty != Certainty::No || number.is_multiple_of(64) {
+        if is_hit || certainty != HitCertainty::Misses || number.is_multiple_of(64) {
             self.exact += 1;
             let slices: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
-            let exact = matches!(exact_first(&slices), ExactAnswer::First { .. });
-            if certainty == Certainty::Yes && !exact || certainty == Certainty::No && exact {
+            let exact = matches!(find_exact_first_time(&slices), ExactAnswer::First { .. });
+            if certainty == HitCertainty::Hits && !exact || certainty == HitCertainty::Misses && exact {
                 self.contradictions.push(format!("{:?} {slices:?}", detection.pair));
             }
         }
         match certainty {
-            Certainty::Borderline => self.borderline += 1,
-            certainty if (certainty == Certainty::Yes) == is_hit => self.same += 1,
-            Certainty::Yes if polynomials.iter().any(is_alone) => self.alone += 1,
+            HitCertainty::Borderline => self.borderline += 1,
+            certainty if (certainty == HitCertainty::Hits) == is_hit => self.same += 1,
+            HitCertainty::Hits if polynomials.iter().any(is_alone) => self.alone += 1,
             certainty => {
                 let lists: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
                 self.unexplained.push(format!("{:?} {certainty:?} {:?} {lists:?}", detection.pair, detection.decision));

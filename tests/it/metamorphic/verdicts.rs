@@ -57,7 +57,7 @@ fn maps() -> [Map; 5] {
 fn is_accepted(scene: &Scene, id: Option<&str>) -> bool {
     let mistake = id.map(|id| student::find(id).expect("a row of the catalogue").mistake);
     let Ok(trace) = student::record_trace(scene, Student::new(mistake)) else { return false };
-    let options = Options { threads: 1, fair: true, ..Options::default() };
+    let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     let fair = judge(scene, &trace[..], &options, &mut ()).fair.expect("the fair rules were asked");
     fair.verdict == FairVerdict::Accepted
 }

@@ -22,10 +22,10 @@ const HUNDREDS: [(&str, usize); 22] = [
     // A course's own words on mistakes and groups.
     ("grading", 49),
     ("intake", 5),
-    ("judge", 45),
+    ("judge", 46),
     ("lab", 15),
     // The worth of a mistake, and the smallest scenes that students see; nothing was removed for them here.
-    ("mistakes", 62),
+    ("mistakes", 64),
     // The least work of Newton's iterations; the search for near pairs without a contest went.
     ("model", 91),
     ("num", 37),

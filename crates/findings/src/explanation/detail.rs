@@ -31,7 +31,7 @@ pub enum PolynomialDetail {
         of: usize,
     },
     /// The polynomials are right up to an error. The value is the error, relative to the size of their terms.
-    RightUpTo(#[serde(with = "fosssim_num::written")] f64),
+    RightUpTo(#[serde(with = "fosssim_num::number_serde")] f64),
     /// A coefficient differs in some samples.
     Differs {
         /// The polynomial; `None` if the detection has only one.
@@ -44,9 +44,9 @@ pub enum PolynomialDetail {
         of: usize,
     },
     /// The list of coefficients contains only this number.
-    Holds(#[serde(with = "fosssim_num::written")] f64),
+    Holds(#[serde(with = "fosssim_num::number_serde")] f64),
     /// Every coefficient is the same number.
-    Every(#[serde(with = "fosssim_num::written")] f64),
+    Every(#[serde(with = "fosssim_num::number_serde")] f64),
     /// Every coefficient is rounded to single precision.
     SinglePrecision,
     /// One polynomial of the pair is used instead of another.
@@ -66,7 +66,7 @@ pub enum PolynomialDetail {
     /// Only this number of coefficients is logged, and they are the first ones of the list.
     FirstOnly(usize),
     /// Every displacement is multiplied by this factor.
-    Displacements(#[serde(with = "fosssim_num::written")] f64),
+    Displacements(#[serde(with = "fosssim_num::number_serde")] f64),
     /// The formula is changed in a way that has a name.
     Named {
         /// The key of the change in the assignment's data.
@@ -88,7 +88,7 @@ pub enum PolynomialDetail {
         /// The power of t that the coefficient belongs to.
         power: usize,
         /// The factor by which the right coefficient is multiplied.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         factor: f64,
     },
     /// A coefficient is wrong in a way that no simple change explains.
@@ -106,7 +106,7 @@ pub enum PolynomialDetail {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum Substitute {
     /// The letter itself, multiplied by this factor.
-    Scaled(#[serde(with = "fosssim_num::written")] f64),
+    Scaled(#[serde(with = "fosssim_num::number_serde")] f64),
     /// A different letter of the same formula.
     Letter(Cow<'static, str>),
     /// A dot product of two vectors that the detection uses.
@@ -130,10 +130,10 @@ pub struct Weight {
     /// The names of the product's letters.
     pub letters: Vec<Cow<'static, str>>,
     /// The weight that the product should have.
-    #[serde(with = "fosssim_num::written")]
+    #[serde(with = "fosssim_num::number_serde")]
     pub expected: f64,
     /// The weight that the product has in the submission.
-    #[serde(with = "fosssim_num::written")]
+    #[serde(with = "fosssim_num::number_serde")]
     pub actual: f64,
 }
 
@@ -143,7 +143,7 @@ pub enum StageDetail {
     /// The pairs are checked in another order than they should be.
     Order,
     /// All changes are multiplied by the same factor.
-    Factor(#[serde(with = "fosssim_num::written")] f64),
+    Factor(#[serde(with = "fosssim_num::number_serde")] f64),
     /// The range of the times of impact, as fractions of the step.
     Impacts {
         /// Whether the range is that of contacts whose responses are right.
@@ -151,20 +151,20 @@ pub enum StageDetail {
         /// The number of contacts in the range.
         count: usize,
         /// The earliest time of impact.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         low: f64,
         /// The latest time of impact.
-        #[serde(with = "fosssim_num::written")]
+        #[serde(with = "fosssim_num::number_serde")]
         high: f64,
     },
     /// The lengths of contact vectors along the right vectors, divided by the lengths of the right ones.
     Vectors(Ratios),
     /// The largest error of a contact vector, relative to its length.
-    VectorsOff(#[serde(with = "fosssim_num::written")] f64),
+    VectorsOff(#[serde(with = "fosssim_num::number_serde")] f64),
     /// The times of impact, divided by the right ones.
     Times(Ratios),
     /// The largest error of a time of impact, as a fraction of the step.
-    TimesOff(#[serde(with = "fosssim_num::written")] f64),
+    TimesOff(#[serde(with = "fosssim_num::number_serde")] f64),
     /// The times of impact are right, but are not used as they should be.
     TimesUsed,
     /// The number of detection passes in the impulse rounds is wrong.
@@ -223,7 +223,7 @@ pub enum Amount {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 pub enum Ratios {
     /// All ratios are this number, up to round-off.
-    All(#[serde(with = "fosssim_num::written")] f64),
+    All(#[serde(with = "fosssim_num::number_serde")] f64),
     /// The ratios are between these two numbers.
-    Between(#[serde(with = "fosssim_num::written")] f64, #[serde(with = "fosssim_num::written")] f64),
+    Between(#[serde(with = "fosssim_num::number_serde")] f64, #[serde(with = "fosssim_num::number_serde")] f64),
 }

@@ -14,10 +14,10 @@ pub struct Example {
     /// The values from which the example is computed, in the assignment's notation.
     pub given: Vec<ExampleValue>,
     /// The result that a correct program computes.
-    #[serde(with = "fosssim_num::written")]
+    #[serde(with = "fosssim_num::number_serde")]
     pub expected: Vec<f64>,
     /// The result that this program computes.
-    #[serde(with = "fosssim_num::written")]
+    #[serde(with = "fosssim_num::number_serde")]
     pub actual: Vec<f64>,
 }
 
@@ -87,7 +87,7 @@ pub struct ExampleValue {
     #[serde(rename = "name")]
     pub input: Input,
     /// The components of the value: one for a number, two for a vector.
-    #[serde(with = "fosssim_num::written")]
-    #[schemars(with = "Vec<fosssim_num::written::Number>")]
+    #[serde(with = "fosssim_num::number_serde")]
+    #[schemars(with = "Vec<fosssim_num::number_serde::WrittenNumber>")]
     pub value: Vec<f64>,
 }

@@ -10,7 +10,7 @@ use crate::{
     verdict::Verdict,
 };
 use fosssim_judge::{FindingDetail, Rules, fair::Cause};
-use fosssim_mistakes::together::told_to_students;
+use fosssim_mistakes::together::disclosed_grade;
 use fosssim_sandbox::Job;
 use std::{path::Path, time::Duration};
 
@@ -121,7 +121,7 @@ fn equal_programs_of_a_class_are_run_once_and_shown_to_staff_alone() {
         for grades in [&grades, &grade()] {
             let same: Vec<_> = grades.iter().map(|grade| grade.same_program.as_slice()).collect();
             assert_eq!(same, [&["bob".to_owned()][..], &["ada".to_owned()], &[]]);
-            assert!(grades.iter().all(|grade| told_to_students(grade).same_program.is_empty()));
+            assert!(grades.iter().all(|grade| disclosed_grade(grade).same_program.is_empty()));
         }
     }
 }
@@ -261,8 +261,8 @@ fn a_program_that_crashes_in_the_failsafe_is_told_so() {
     let Reason::Program(reached) = crashed[0].reason else { panic!("{:?}", crashed[0].reason) };
     assert_eq!((&located.first, located.step), (&crashed[0].scene, reached.steps));
     let silent = stage.grade_by(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);
-    assert!(silent.located.is_some() && told_to_students(&grade).located.is_some(), "staff is told everything");
-    assert_eq!(told_to_students(&silent).located, None, "hints tell students less");
+    assert!(silent.located.is_some() && disclosed_grade(&grade).located.is_some(), "staff is told everything");
+    assert_eq!(disclosed_grade(&silent).located, None, "hints tell students less");
     assert_eq!(stage.grade_by(&suite("what"), &["right"]).remove(0).located, None);
 }
 

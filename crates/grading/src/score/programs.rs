@@ -16,7 +16,7 @@ use crate::{
 };
 use fosssim_mistakes::{
     diagnose::Explanation,
-    together::{likely_mistakes, reconcile_explanations},
+    together::{find_likely_mistakes, reconcile_explanations},
 };
 use fosssim_model::assignments::Assignment;
 
@@ -88,7 +88,7 @@ impl SubmissionGrading<'_> {
             let groups = grade.groups.iter().filter(|group| group.visibility == Visibility::Visible);
             groups.flat_map(|group| &group.scenes).any(|scene| scene.scene == name)
         };
-        let likely: Vec<Explanation> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
+        let likely: Vec<Explanation> = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
         let wrong = grade.scenes().zip(plan.scenes()).filter(|(scene, _)| is_wrong(scene));
         let wrong: Vec<WrongScene<'_>> = wrong
             .filter_map(|(scene, task)| {

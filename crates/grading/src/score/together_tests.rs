@@ -9,7 +9,7 @@ use fosssim_findings::{
     Rules,
     explanation::{About, Explanation, NanStage, NotFinite},
 };
-use fosssim_mistakes::together::{likely_mistakes, reconcile_explanations, worth};
+use fosssim_mistakes::together::{find_likely_mistakes, mistake_points, reconcile_explanations};
 use std::time::Duration;
 
 fn explanation(key: &str, about: About, reproduced: u64) -> Explanation {
@@ -87,7 +87,7 @@ fn each_scene_says_what_all_together_say() {
         vec![end(5, NanStage::Responses)],
     ]);
     let heads: Vec<(String, usize)> =
-        likely_mistakes(&grade).into_iter().map(|(one, count)| (one.key, count)).collect();
+        find_likely_mistakes(&grade).into_iter().map(|(one, count)| (one.key, count)).collect();
     assert_eq!(heads, [("loop-one-fewer".to_owned(), 3), (Explanation::NOT_FINITE.to_owned(), 2)]);
     let said: Vec<Vec<&str>> =
         grade.scenes().map(|scene| scene.settled.iter().map(|one| one.key.as_str()).collect()).collect();
@@ -114,7 +114,8 @@ fn where_numbers_end_comes_last() {
         )
     };
     let short = |reproduced| Explanation { samples: 4, ..explanation("loop-one-fewer", About::Mistake, reproduced) };
-    let first = |scenes| likely_mistakes(&grade(scenes)).into_iter().next().map(|(one, _)| one.key).expect("a head");
+    let first =
+        |scenes| find_likely_mistakes(&grade(scenes)).into_iter().next().map(|(one, _)| one.key).expect("a head");
     assert_eq!(first(vec![vec![end()], vec![end()]]), Explanation::NOT_FINITE);
     assert_eq!(first(vec![vec![end()], vec![end()], vec![short(4)]]), "loop-one-fewer");
     assert_eq!(first(vec![vec![short(4), end()], vec![short(4), end()]]), "loop-one-fewer");
@@ -129,11 +130,11 @@ fn a_mistake_is_worth_the_points_that_it_alone_costs() {
     let part = Explanation { samples: 5, ..one("loop-one-fewer") };
     let scenes = vec![vec![one("loop-one-fewer")], vec![one("loop-one-fewer"), one("pp-no-two")], vec![part], vec![]];
     let mut grade = grade(scenes);
-    assert_eq!([one("loop-one-fewer"), one("pp-no-two")].map(|mistake| worth(&grade, &mistake)), [0.25, 0.0]);
+    assert_eq!([one("loop-one-fewer"), one("pp-no-two")].map(|mistake| mistake_points(&grade, &mistake)), [0.25, 0.0]);
     grade.groups[0].all_or_nothing = true;
-    assert_eq!(worth(&grade, &one("loop-one-fewer")), 0.0, "other scenes stay wrong");
+    assert_eq!(mistake_points(&grade, &one("loop-one-fewer")), 0.0, "other scenes stay wrong");
     grade.groups[0].scenes.truncate(1);
-    assert_eq!(worth(&grade, &one("loop-one-fewer")), 0.25);
+    assert_eq!(mistake_points(&grade, &one("loop-one-fewer")), 0.25);
     grade.groups[0].extra = true;
-    assert_eq!(worth(&grade, &one("loop-one-fewer")), 0.0);
+    assert_eq!(mistake_points(&grade, &one("loop-one-fewer")), 0.0);
 }

@@ -13,14 +13,14 @@ use fosssim_model::{assignments::CollisionType, sim::PairKind};
 pub fn find_cause(outcome: &Outcome) -> Option<Cause> {
     let fair = outcome.fair.as_deref()?;
     match (outcome.parity.overall, fair.verdict) {
-        (Overall::Failed, FairVerdict::Accepted) => Some(too_strict(outcome, fair)),
-        (Overall::Passed, FairVerdict::Rejected) => Some(too_lax(outcome, fair)),
+        (Overall::Failed, FairVerdict::Accepted) => Some(explain_strictness(outcome, fair)),
+        (Overall::Passed, FairVerdict::Rejected) => Some(explain_laxness(outcome, fair)),
         _ => None,
     }
 }
 
 /// Returns the reason why parity rejects a trace that fair accepts.
-fn too_strict(outcome: &Outcome, fair: &Judgement) -> Cause {
+fn explain_strictness(outcome: &Outcome, fair: &Judgement) -> Cause {
     let Some(first) = &outcome.parity.findings.first_divergence else { return Cause::AccumulatedResiduals };
     // Only some borderline decisions are kept as examples, so this one may be missing.
     let is_borderline = fair.borderline > fair.borderline_examples.len() as u64
@@ -51,7 +51,7 @@ const fn is_approach_of_edge(role: Role, kind: PairKind) -> bool {
 }
 
 /// Returns the reason why parity accepts a trace that fair rejects.
-fn too_lax(outcome: &Outcome, fair: &Judgement) -> Cause {
+fn explain_laxness(outcome: &Outcome, fair: &Judgement) -> Cause {
     match fair.refusal {
         Some(FairRefusal::Damaged) => return Cause::Damage,
         Some(FairRefusal::TrailingBytes) if fair.findings.counts.total() == 0 => return Cause::TrailingBytes,
@@ -96,7 +96,7 @@ fn is_mid_record(finding: &Finding, outcome: &Outcome) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::samples::{self, BOUNCE_SCENE, relog};
+    use crate::samples::{self, BOUNCE_SCENE, replace_polynomials};
     use fosssim_model::trace::Frame;
 
     fn judge_by_both(trace: &[u8]) -> Outcome {
@@ -105,13 +105,13 @@ mod tests {
 
     /// Returns the reference trace with changed frames.
     fn changed_trace(change: impl FnOnce(&mut Vec<Frame>)) -> Vec<u8> {
-        samples::changed_trace(&samples::scene(BOUNCE_SCENE), change)
+        samples::change_trace(&samples::scene(BOUNCE_SCENE), change)
     }
 
     /// Multiplies every coefficient.
     fn scaled(frames: &mut [Frame], factor: f64) {
         for frame in frames {
-            relog(frame, |_, coefficients| coefficients.iter().map(|c| factor * c).collect());
+            replace_polynomials(frame, |_, coefficients| coefficients.iter().map(|c| factor * c).collect());
         }
     }
 

@@ -3,7 +3,7 @@ use super::formulas::BoundedCoefficients;
 use fosssim_num::{
     bounded::{BoundedValue, UNIT_ROUNDOFF},
     polynomial::MAX_COEFFICIENTS,
-    tolerances::{FAIR_CLEAR, FAIR_LOSS, FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
+    tolerances::{FAIR_CLEAR_SHARE, FAIR_LOSS_FACTOR, FAIR_NORM_UNITS, FAIR_UNITS, MIN_LEADING_COEFFICIENT},
 };
 
 fosssim_model::drops_leading!();
@@ -15,7 +15,7 @@ pub struct Match {
     pub scale: Option<f64>,
     /// The largest share of its tolerance that a coefficient uses, 0 to 1. For a polynomial that is accepted early this
     /// is an upper bound of at most a quarter.
-    pub share: f64,
+    pub tolerance_share: f64,
 }
 
 /// The fault of a wrong polynomial.
@@ -47,7 +47,7 @@ pub enum Mismatch {
 pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     match match_if_clear(expected, actual).or_else(|| match_if_right(expected, actual)) {
         Some(found) => Ok(found),
-        None => compare_closely(expected, actual, hints),
+        None => compare_any_kind(expected, actual, hints),
     }
 }
 
@@ -61,11 +61,11 @@ pub(crate) struct Similarity {
     /// The sum of the expected coefficients' moduli.
     pub sum: f64,
     /// The sum of the logged coefficients' moduli.
-    pub logged: f64,
+    pub logged_sum: f64,
     /// The factor of the logged coefficients.
     pub scale: f64,
     /// The largest deviation of a coefficient.
-    pub worst: f64,
+    pub worst_deviation: f64,
 }
 
 /// The minimum sum of coefficients that neither overflows nor underflows in the computation. Outside this range, bounds
@@ -75,7 +75,7 @@ pub(super) const MAX_SAFE_SUM: f64 = 1e100;
 
 impl Similarity {
     /// The value for polynomials that are not compared.
-    pub const NONE: Self = Self { sum: 0.0, logged: 0.0, scale: 0.0, worst: 0.0 };
+    pub const NOT_COMPARED: Self = Self { sum: 0.0, logged_sum: 0.0, scale: 0.0, worst_deviation: 0.0 };
 
     /// Compares the expected coefficients `own` with `logged`, which has the same length.
     #[inline(always)]
@@ -94,7 +94,7 @@ impl Similarity {
     fn compare_lists<const LENGTH: usize>(own: &[f64], logged: &[f64]) -> Self {
         match (own.first_chunk::<LENGTH>(), logged.first_chunk::<LENGTH>()) {
             (Some(own), Some(logged)) => Self::from_lists(own, logged),
-            _ => Self::NONE,
+            _ => Self::NOT_COMPARED,
         }
     }
 
@@ -108,19 +108,19 @@ impl Similarity {
         let scale = logged / sum;
         let both = own.iter().zip(theirs);
         let worst = both.fold(0.0_f64, |worst, (own, theirs)| worst.max((theirs - scale * own).abs()));
-        Self { sum, logged, scale, worst }
+        Self { sum, logged_sum: logged, scale, worst_deviation: worst }
     }
 
     /// Returns the match of two polynomials that agree.
     #[inline(always)]
     pub fn as_match(&self) -> Match {
-        Match { scale: Some(self.scale), share: self.worst / self.tolerance() }
+        Match { scale: Some(self.scale), tolerance_share: self.worst_deviation / self.tolerance() }
     }
 
     /// Returns the smallest tolerance of a coefficient.
     #[inline(always)]
     fn tolerance(&self) -> f64 {
-        FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged
+        FAIR_NORM_UNITS * UNIT_ROUNDOFF * self.logged_sum
     }
 
     /// Returns whether the coefficients are clearly right. If both lists have lost coefficients, the lost ones are
@@ -129,26 +129,26 @@ impl Similarity {
     pub fn is_clear(&self, is_whole: bool) -> bool {
         let is_moderate = |sum: f64| (MIN_SAFE_SUM..MAX_SAFE_SUM).contains(&sum);
         is_moderate(self.sum)
-            & is_moderate(self.logged)
-            & (is_whole | (self.scale <= FAIR_LOSS))
-            & (self.worst <= FAIR_CLEAR * self.tolerance())
+            & is_moderate(self.logged_sum)
+            & (is_whole | (self.scale <= FAIR_LOSS_FACTOR))
+            & (self.worst_deviation <= FAIR_CLEAR_SHARE * self.tolerance())
     }
 }
 
 /// Compares like [`compare`] if no bounds of the coefficients are needed; `None` if the comparison needs them.
 fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
-    let lost = expected.iter().take_while(|r| r.value.abs() < LEADING_COEFFICIENT).count();
+    let lost = expected.iter().take_while(|r| r.value.abs() < MIN_LEADING_COEFFICIENT).count();
     let kept = &expected[lost..];
     if kept.len() != actual.len() {
         return None;
     }
     if kept.is_empty() {
-        return Some(Match { scale: None, share: 0.0 });
+        return Some(Match { scale: None, tolerance_share: 0.0 });
     }
     let mut values = [0.0; MAX_COEFFICIENTS];
     values.iter_mut().zip(kept).for_each(|(value, own)| *value = own.value);
     let similarity = Similarity::measure(values.get(..kept.len())?, actual);
-    let is_right = similarity.is_clear(lost == 0) && norm(expected).is_finite() && !is_round_off(expected);
+    let is_right = similarity.is_clear(lost == 0) && bound_sum(expected).is_finite() && !is_round_off(expected);
     is_right.then(|| similarity.as_match())
 }
 
@@ -159,7 +159,7 @@ fn match_if_clear(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
 /// deviates by less than `MAX_DEVIATION` units of all bounds together. The tolerances of six coefficients are at most 2
 /// `FAIR_UNITS` of the sum of bounds and six times `FAIR_NORM_UNITS` of it; values that are compared instead have less.
 /// Each time therefore allows an interval of factors, and if two of these are disjoint there is no factor.
-pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
+pub fn is_wrong_with_every_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     /// The maximum deviation: all tolerances, and the rounding errors of this computation.
     const MAX_DEVIATION: f64 = 2.0 * FAIR_UNITS + 6.0 * FAIR_NORM_UNITS + 32.0;
     let Some(missing) = expected.len().checked_sub(actual.len()).filter(|_| expected.len() <= MAX_COEFFICIENTS) else {
@@ -170,7 +170,7 @@ pub fn fits_with_no_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
     let rounding = 32.0 * UNIT_ROUNDOFF * actual.iter().map(|s| s.abs()).sum::<f64>();
     // Coefficients below the limit may be missing with any factor. If both polynomials lack them, they may have been
     // slightly larger.
-    let logged_room = rounding + missing as f64 * FAIR_LOSS * LEADING_COEFFICIENT;
+    let logged_room = rounding + missing as f64 * FAIR_LOSS_FACTOR * MIN_LEADING_COEFFICIENT;
     if !(room.is_finite() && logged_room.is_finite()) {
         return false;
     }
@@ -194,7 +194,7 @@ fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     if expected.len() != actual.len() || expected.len() > MAX_COEFFICIENTS {
         return None;
     }
-    let norm = norm(expected);
+    let norm = bound_sum(expected);
     // A single coefficient that is NaN or infinite makes the sums NaN or infinite.
     if !(norm > 0.0 && norm.is_finite() && sum_of_moduli(expected).is_finite()) || is_round_off(expected) {
         return None;
@@ -202,7 +202,7 @@ fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
     let scale = fit_factor(expected, actual, 0).filter(|scale| *scale > 0.0)?;
     let mut share = 0.0_f64;
     for (r, s) in expected.iter().zip(actual) {
-        let tolerance = UNIT_ROUNDOFF * scale * units(r, norm);
+        let tolerance = UNIT_ROUNDOFF * scale * allowed_units(r, norm);
         let residual = (s - scale * r.value).abs();
         if !(residual <= tolerance) {
             return None;
@@ -212,11 +212,11 @@ fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
             share = share.max(residual / tolerance);
         }
     }
-    Some(Match { scale: Some(scale), share })
+    Some(Match { scale: Some(scale), tolerance_share: share })
 }
 
 /// Compares like [`compare`], for polynomials of every kind.
-fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
+fn compare_any_kind(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Result<Match, Mismatch> {
     let degree = expected.len().max(actual.len()).max(1) - 1;
     if actual.len() > MAX_COEFFICIENTS {
         return Err(Mismatch::TooLong);
@@ -229,23 +229,28 @@ fn compare_closely(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> 
     let (right, logged) = (&right[MAX_COEFFICIENTS - whole..], &logged[MAX_COEFFICIENTS - whole..]);
     let missing = whole.saturating_sub(actual.len());
     if !right.iter().all(|r| r.value.is_finite() && r.bound.is_finite()) {
-        return check_numbers_where(|r| r.value.is_finite(), right, logged);
+        return check_non_finite_positions(|r| r.value.is_finite(), right, logged);
     }
-    if norm(right) == 0.0 && logged.iter().any(|s| *s != 0.0) {
+    if bound_sum(right) == 0.0 && logged.iter().any(|s| *s != 0.0) {
         // Nothing moves, so every formula gives exactly zero.
-        return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
+        return judge_with_scale(right, logged, missing, 1.0)
+            .map(|share| Match { scale: None, tolerance_share: share });
     }
     if is_round_off(right) {
-        return check_numbers_where(|_| true, right, logged);
+        return check_non_finite_positions(|_| true, right, logged);
     }
-    let matched = |scale: f64| judge(right, logged, missing, scale).map(|share| Match { scale: Some(scale), share });
+    let matched = |scale: f64| {
+        judge_with_scale(right, logged, missing, scale)
+            .map(|share| Match { scale: Some(scale), tolerance_share: share })
+    };
     let hinted = || {
-        let mut matches = hints.iter().map(|&hint| judge(right, logged, missing, hint));
-        matches.find_map(Result::ok).map(|share| Match { scale: None, share })
+        let mut matches = hints.iter().map(|&hint| judge_with_scale(right, logged, missing, hint));
+        matches.find_map(Result::ok).map(|share| Match { scale: None, tolerance_share: share })
     };
     let Some(fitted) = fit_factor(right, logged, missing) else {
         // The remaining coefficients show no factor, so the factor is 1 for this polynomial.
-        return judge(right, logged, missing, 1.0).map(|share| Match { scale: None, share });
+        return judge_with_scale(right, logged, missing, 1.0)
+            .map(|share| Match { scale: None, tolerance_share: share });
     };
     let first = matched(fitted);
     if first.is_ok() {
@@ -276,24 +281,24 @@ pub(super) fn compare_with_one(expected: &[BoundedValue], actual: &[f64]) -> Res
     let Some(missing) = expected.len().checked_sub(actual.len()) else { return Err(Mismatch::TooLong) };
     let mut logged = [0.0; MAX_COEFFICIENTS];
     logged[missing..expected.len()].copy_from_slice(actual);
-    judge(expected, &logged[..expected.len()], missing, 1.0).map(|_| ())
+    judge_with_scale(expected, &logged[..expected.len()], missing, 1.0).map(|_| ())
 }
 
 /// Checks that NaN and infinity are in the same places.
-fn check_numbers_where(
+fn check_non_finite_positions(
     should: fn(&BoundedValue) -> bool,
     right: &[BoundedValue],
     logged: &[f64],
 ) -> Result<Match, Mismatch> {
     let wrong = right.iter().zip(logged).position(|(r, s)| should(r) != s.is_finite());
-    let Some(k) = wrong else { return Ok(Match { scale: None, share: 0.0 }) };
+    let Some(k) = wrong else { return Ok(Match { scale: None, tolerance_share: 0.0 }) };
     let (expected, actual) = (right[k].value, logged[k]);
     Err(Mismatch::Coefficient { power: right.len() - 1 - k, expected, actual, tolerance: f64::NAN })
 }
 
 /// Returns whether a polynomial is zero on the whole step except for round-off.
 pub fn is_round_off(expected: &[BoundedValue]) -> bool {
-    sum_of_moduli(expected) <= FAIR_UNITS * UNIT_ROUNDOFF * norm(expected) || !expected.iter().any(is_significant)
+    sum_of_moduli(expected) <= FAIR_UNITS * UNIT_ROUNDOFF * bound_sum(expected) || !expected.iter().any(is_significant)
 }
 
 /// Returns the sum of all values' moduli.
@@ -309,11 +314,11 @@ fn is_significant(r: &BoundedValue) -> bool {
 /// Returns the best factor, each coefficient weighted by its precision; `None` if all are round-off. If the factor is
 /// not positive or not finite, the polynomial is wrong.
 fn fit_factor(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<f64> {
-    let norm = norm(right);
+    let norm = bound_sum(right);
     let (mut products, mut squares) = (0.0, 0.0);
     for (r, s) in right.iter().zip(logged).skip(missing) {
         if is_significant(r) {
-            let weight = r.value / units(r, norm);
+            let weight = r.value / allowed_units(r, norm);
             products += weight * (s / r.value) * weight;
             squares += weight * weight;
         }
@@ -324,30 +329,30 @@ fn fit_factor(right: &[BoundedValue], logged: &[f64], missing: usize) -> Option<
 /// Returns the allowed deviation of a coefficient, in units of the roundoff. Both sides are rounded. A coefficient that
 /// is small compared with the others may have the rounding errors of all of them: some correct programs interpolate,
 /// which changes no decision on [0, 1].
-fn units(r: &BoundedValue, norm: f64) -> f64 {
+fn allowed_units(r: &BoundedValue, norm: f64) -> f64 {
     f64::max(2.0 * FAIR_UNITS * r.bound, FAIR_NORM_UNITS * norm)
 }
 
 /// Returns the used share of the tolerance, or the tolerance that is exceeded. A factor that is not positive always
 /// fails.
-fn check(r: &BoundedValue, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result<f64, f64> {
+fn check_coefficient(r: &BoundedValue, s: f64, norm: f64, is_missing: bool, scale: f64) -> Result<f64, f64> {
     if !(scale > 0.0) {
         return Err(f64::NAN);
     }
-    let tolerance = UNIT_ROUNDOFF * scale * units(r, norm);
+    let tolerance = UNIT_ROUNDOFF * scale * allowed_units(r, norm);
     let residual = (s - scale * r.value).abs();
     if residual <= tolerance {
         return Ok(if residual == 0.0 { 0.0 } else { residual / tolerance });
     }
     // The course's library drops small leading coefficients at any scale.
-    if is_missing && residual < LEADING_COEFFICIENT + tolerance {
+    if is_missing && residual < MIN_LEADING_COEFFICIENT + tolerance {
         return Ok(0.0);
     }
     Err(tolerance)
 }
 
 /// Returns the sum of all bounds.
-fn norm(right: &[BoundedValue]) -> f64 {
+fn bound_sum(right: &[BoundedValue]) -> f64 {
     right.iter().map(|c| c.bound).sum()
 }
 
@@ -363,7 +368,7 @@ pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f6
     let needed =
         held.iter().zip(actual).map(|(r, s)| if *s == 0.0 { 0.0 } else { s.abs() / (DOUBLE_TOLERANCE * r.bound) });
     let least = needed.fold(0.0, |most: f64, factor| if factor <= most { most } else { factor });
-    let most = most_factor(dropped);
+    let most = max_factor(dropped);
     (least.is_finite() && least <= most).then_some([least, most])
 }
 
@@ -371,8 +376,9 @@ pub fn possible_factors(expected: &[BoundedValue], actual: &[f64]) -> Option<[f6
 const DOUBLE_TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
 /// Returns the largest factor with which the course's library drops all of `dropped`.
-fn most_factor(dropped: &[BoundedValue]) -> f64 {
-    LEADING_COEFFICIENT / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - DOUBLE_TOLERANCE * r.bound))
+fn max_factor(dropped: &[BoundedValue]) -> f64 {
+    MIN_LEADING_COEFFICIENT
+        / dropped.iter().fold(0.0_f64, |most, r| most.max(r.value.abs() - DOUBLE_TOLERANCE * r.bound))
 }
 
 /// Returns whether at least two coefficients of a right polynomial agree on its factor, so that no other polynomial has
@@ -388,11 +394,11 @@ pub fn shows_factor(expected: &[BoundedValue], actual: &[f64]) -> bool {
 pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) -> Option<[f64; 2]> {
     let missing = expected.len().checked_sub(actual.len())?;
     let (dropped, held) = expected.split_at(missing);
-    if most_factor(dropped) >= 1.0 || shows_factor(expected, actual) {
+    if max_factor(dropped) >= 1.0 || shows_factor(expected, actual) {
         return None;
     }
     let known = held.iter().find(|r| is_significant(r))?;
-    let room = UNIT_ROUNDOFF * units(known, norm(expected)) / known.value.abs();
+    let room = UNIT_ROUNDOFF * allowed_units(known, bound_sum(expected)) / known.value.abs();
     Some([scale * (1.0 - room), scale * (1.0 + room)])
 }
 
@@ -401,11 +407,11 @@ pub fn claimed_factors(expected: &[BoundedValue], actual: &[f64], scale: f64) ->
 /// divide polynomials.
 pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64> {
     let missing = expected.len().checked_sub(actual.len())?;
-    let norm = norm(expected);
+    let norm = bound_sum(expected);
     if !(norm > 0.0 && norm.is_finite()) || !is_round_off(expected) {
         return None;
     }
-    let share = |(r, s): (&BoundedValue, &f64)| s.abs() / (2.0 * UNIT_ROUNDOFF * units(r, norm));
+    let share = |(r, s): (&BoundedValue, &f64)| s.abs() / (2.0 * UNIT_ROUNDOFF * allowed_units(r, norm));
     let least = expected[missing..].iter().zip(actual).map(share).fold(0.0, f64::max);
     let largest = actual.iter().fold(0.0_f64, |most, s| most.max(s.abs()));
     let squares = actual.iter().map(|s| s * s).sum::<f64>();
@@ -415,17 +421,17 @@ pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64
 
 /// Returns the number of coefficients that are wrong with `scale` as the factor.
 fn count_wrong(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> usize {
-    let norm = norm(right);
+    let norm = bound_sum(right);
     let all = right.iter().zip(logged).enumerate();
-    all.filter(|&(k, (r, &s))| check(r, s, norm, k < missing, scale).is_err()).count()
+    all.filter(|&(k, (r, &s))| check_coefficient(r, s, norm, k < missing, scale).is_err()).count()
 }
 
 /// Returns the largest used share of the tolerance with `scale` as the factor, or the first wrong coefficient.
-fn judge(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Result<f64, Mismatch> {
-    let norm = norm(right);
+fn judge_with_scale(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Result<f64, Mismatch> {
+    let norm = bound_sum(right);
     let mut share = 0.0_f64;
     for (k, (r, &s)) in right.iter().zip(logged).enumerate() {
-        match check(r, s, norm, k < missing, scale) {
+        match check_coefficient(r, s, norm, k < missing, scale) {
             Ok(used) => share = share.max(used),
             Err(tolerance) => {
                 if let Some(share) = share_within_step(right, logged, missing, scale) {
@@ -445,7 +451,7 @@ fn judge(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> 
 fn share_within_step(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Option<f64> {
     /// The number of sample times, evenly spread: a polynomial of degree five is hardly larger between them.
     const SAMPLE_TIMES: u8 = 16;
-    let norm = norm(right);
+    let norm = bound_sum(right);
     if !(scale > 0.0) {
         return None;
     }
@@ -454,7 +460,7 @@ fn share_within_step(right: &[BoundedValue], logged: &[f64], missing: usize, sca
     for time in 0..=SAMPLE_TIMES {
         let t = f64::from(time) / f64::from(SAMPLE_TIMES);
         let residual = right.iter().zip(logged).enumerate().fold(0.0, |sum, (k, (r, &s))| {
-            let is_dropped = k < missing && check(r, s, norm, true, scale).is_ok();
+            let is_dropped = k < missing && check_coefficient(r, s, norm, true, scale).is_ok();
             sum * t + if is_dropped { 0.0 } else { s - scale * r.value }
         });
         if !(residual.abs() <= tolerance) {

@@ -2,7 +2,7 @@
 use super::{
     context::{Context, Records},
     formulas::{BoundedPairMotion, ExpectedPolynomials},
-    ordinary::largest,
+    ordinary_range::largest_size,
     step_judgement::StepJudgement,
 };
 use crate::finding::{Finding, FindingDetail};
@@ -14,12 +14,12 @@ use fosssim_model::{
 use fosssim_num::{
     bounded::{BoundedValue, UNIT_ROUNDOFF},
     certificate::excludes_unit_interval,
-    decision::{Certainty, decide},
+    decision::{HitCertainty, decide},
     first_time::first_time,
     polynomial::{MAX_COEFFICIENTS, Polynomial},
     tolerances::{
-        FAIR_LOSS, FAIR_ROOT_UNITS, FAIR_SENSITIVITY, FAIR_TIME, FAIR_UNITS, LEADING_COEFFICIENT,
-        SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
+        FAIR_LOSS_FACTOR, FAIR_ROOT_UNITS, FAIR_SENSITIVITY_FACTOR, FAIR_TIME_SHARE, FAIR_UNITS,
+        MIN_LEADING_COEFFICIENT, SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
     },
     vector::{Vec2, length, vector_at},
 };
@@ -27,7 +27,7 @@ use fosssim_num::{
 fosssim_model::drops_leading!();
 
 /// Returns a polynomial's value at time `t` and the tolerance of the value, both computed from bounded coefficients.
-fn value(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
+fn evaluate(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let (mut value, mut bound) = (0.0, 0.0);
     for c in polynomial {
         value = value * t + c.value;
@@ -36,20 +36,20 @@ fn value(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     (value, FAIR_ROOT_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// Returns the value like [`value`], but leading coefficients that the course's library drops with a factor near 1 may
-/// be missing.
-fn value_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
+/// Returns the value like [`evaluate`], but leading coefficients that the course's library drops with a factor near 1
+/// may be missing.
+fn evaluate_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let moduli = polynomial.iter().map(|c| c.value.abs());
-    let missing: f64 = moduli.take_while(|c| *c < FAIR_LOSS * LEADING_COEFFICIENT).sum();
-    let (value, tolerance) = value(polynomial, t);
+    let missing: f64 = moduli.take_while(|c| *c < FAIR_LOSS_FACTOR * MIN_LEADING_COEFFICIENT).sum();
+    let (value, tolerance) = evaluate(polynomial, t);
     (value, tolerance + missing)
 }
 
 /// A polynomial's value at a time, and the tolerance of that value.
-type Value = fn(&[BoundedValue], f64) -> (f64, f64);
+type EvaluateFn = fn(&[BoundedValue], f64) -> (f64, f64);
 
 /// Returns whether a pair may come into contact at time `t`: one polynomial becomes positive, and none is negative.
-fn is_possible(expected: &ExpectedPolynomials, t: f64, value: Value) -> bool {
+fn is_possible(expected: &ExpectedPolynomials, t: f64, value: EvaluateFn) -> bool {
     if !(0.0..=1.0).contains(&t) {
         return false;
     }
@@ -60,7 +60,7 @@ fn is_possible(expected: &ExpectedPolynomials, t: f64, value: Value) -> bool {
 
 /// Returns whether a pair may first be in contact at time `t`: contact is possible then, and the polynomials were not
 /// all positive between `t` and the reference's time.
-fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: Value) -> bool {
+fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: EvaluateFn) -> bool {
     // If a collision is certain between the two times, neither time is the first.
     let undecided = || {
         [0.25, 0.5, 0.75].into_iter().all(|part| {
@@ -71,19 +71,19 @@ fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: Value) -> 
             })
         })
     };
-    let is_near = (0.0..=1.0).contains(&t) && (own - t).abs() <= FAIR_TIME;
+    let is_near = (0.0..=1.0).contains(&t) && (own - t).abs() <= FAIR_TIME_SHARE;
     is_near || is_possible(expected, t, value) && undecided()
 }
 
 /// Returns whether a time of impact is right. It may be the reference's, whose polynomials may have lost coefficients,
 /// or follow from the complete polynomials.
-pub(super) fn is_time_without_losses(expected: &ExpectedPolynomials, own: f64, t: f64) -> bool {
-    let is_near = (own - t).abs() <= FAIR_TIME;
-    is_near || time_fits(expected, possible_time(expected), t, value_without_losses)
+pub(super) fn is_right_time_without_losses(expected: &ExpectedPolynomials, own: f64, t: f64) -> bool {
+    let is_near = (own - t).abs() <= FAIR_TIME_SHARE;
+    is_near || time_fits(expected, possible_time(expected), t, evaluate_without_losses)
 }
 
 /// Compares a logged contact with the reference's, for a step from the context's state.
-pub(super) fn hit(
+pub(super) fn compare_hit(
     before: &State,
     known: Option<&(BoundedPairMotion, ExpectedPolynomials)>,
     own: Impulse,
@@ -91,7 +91,7 @@ pub(super) fn hit(
     judged: &mut StepJudgement,
 ) -> Option<FindingDetail> {
     if actual.time != own.time {
-        let fits = known.is_some_and(|(_, expected)| time_fits(expected, own.time, actual.time, value));
+        let fits = known.is_some_and(|(_, expected)| time_fits(expected, own.time, actual.time, evaluate));
         if !fits {
             return Some(FindingDetail::ContactTime { expected: own, actual: *actual });
         }
@@ -104,7 +104,7 @@ pub(super) fn hit(
 }
 
 /// Compares a logged contact with the expected one, for a pair whose collision is uncertain.
-pub(super) fn possible_hit(
+pub(super) fn compare_possible_hit(
     context: &Context<'_>,
     records: &Records<'_>,
     known: Option<&(BoundedPairMotion, ExpectedPolynomials)>,
@@ -121,7 +121,7 @@ pub(super) fn possible_hit(
         }
         return compare_normal(expected, simple_tolerance(records.before), actual, judged);
     };
-    if !is_possible(expected, actual.time, value) {
+    if !is_possible(expected, actual.time, evaluate) {
         let time = possible_time(expected);
         let (normal, _) = normal(motion, time);
         return Some(FindingDetail::ContactTime { expected: Impulse { pair, normal, time }, actual: *actual });
@@ -137,13 +137,13 @@ fn normal(motion: &BoundedPairMotion, t: f64) -> (Vec2, f64) {
     let normal = motion.normal(t);
     let bound = length(Vec2::new(normal.x.bound, normal.y.bound));
     let value = Vec2::new(normal.x.value, normal.y.value);
-    (value, FAIR_UNITS * UNIT_ROUNDOFF * bound + length(motion.to_nearest(t) - value))
+    (value, FAIR_UNITS * UNIT_ROUNDOFF * bound + length(motion.vector_to_nearest_point(t) - value))
 }
 
 /// Returns the tolerance of contact normals that are computed directly from positions; its rounding errors have the
 /// size of the largest position.
 fn simple_tolerance(before: &State) -> f64 {
-    FAIR_UNITS * UNIT_ROUNDOFF * largest(&before.positions)
+    FAIR_UNITS * UNIT_ROUNDOFF * largest_size(&before.positions)
 }
 
 fn compare_normal(
@@ -164,7 +164,7 @@ fn compare_normal(
 
 /// Returns the vector from a pair's first object to the nearest point of the second at `positions` (collisions.md 6).
 fn overlap_normal(context: &Context<'_>, pair: Pair, positions: &[f64]) -> Vec2 {
-    BoundedPairMotion::for_pair(context.scene, pair, positions, positions).to_nearest(1.0)
+    BoundedPairMotion::for_pair(context.scene, pair, positions, positions).vector_to_nearest_point(1.0)
 }
 
 /// The tolerances of the state at the end of a step.
@@ -178,8 +178,8 @@ impl<'a> Tolerances<'a> {
     /// Returns the tolerances around the reference's state `own`.
     pub fn from_context(context: &Context<'_>, own: &State, sensitivity: Option<&'a State>) -> Self {
         let roundings = FAIR_UNITS * UNIT_ROUNDOFF;
-        let size = largest(&own.positions);
-        let speed = largest(&own.velocities);
+        let size = largest_size(&own.positions);
+        let speed = largest_size(&own.velocities);
         // If contacts have responses, velocities are computed from displacements over the time step.
         let from_positions = match context.scene.collision {
             Collision::ContinuousTime { .. } | Collision::Hybrid { .. } => size / context.scene.time_step,
@@ -200,7 +200,7 @@ impl<'a> Tolerances<'a> {
 
     fn add_sensitivity(&self, floor: f64, particle: usize, of: fn(&State) -> &Vec<f64>) -> f64 {
         let known = self.sensitivity.map_or(0.0, |known| length(vector_at(of(known), particle)));
-        floor + FAIR_SENSITIVITY * known
+        floor + FAIR_SENSITIVITY_FACTOR * known
     }
 }
 
@@ -271,7 +271,7 @@ fn is_ordinary(c: f64) -> bool {
 
 /// Returns the time of impact of `polynomials`, infinite if there is certainly no impact; `None` if the root finder
 /// does not end.
-pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
+pub(super) fn find_time(polynomials: &[Polynomial]) -> Option<f64> {
     if excludes_unit_interval(polynomials) {
         return Some(f64::INFINITY);
     }
@@ -282,7 +282,7 @@ pub(super) fn time_of(polynomials: &[Polynomial]) -> Option<f64> {
 ///
 /// If a parabola's inputs have few digits, every way to evaluate the formulas is exact. Then no decision depends on
 /// round-off, and even a contact at the very end of the step is certain.
-pub fn decides(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> Option<bool> {
+pub fn certain_decision(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> Option<bool> {
     let polynomials = expected.polynomials();
     if !polynomials.iter().copied().flatten().all(|c| is_ordinary(c.value)) {
         // With such extreme numbers no program is reliable, and proving certainty would take long.
@@ -290,9 +290,9 @@ pub fn decides(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> Op
     }
     let units = if motion.is_exact(EXACT_BITS) { 0.0 } else { FAIR_UNITS };
     match decide(&polynomials[..expected.count()], units).certainty {
-        Certainty::Yes => Some(true),
-        Certainty::No => Some(false),
-        Certainty::Borderline => None,
+        HitCertainty::Hits => Some(true),
+        HitCertainty::Misses => Some(false),
+        HitCertainty::Borderline => None,
     }
 }
 
@@ -302,7 +302,7 @@ const EXACT_BITS: u32 = 6;
 
 /// Returns whether round-off may change the decision.
 pub(super) fn is_borderline(motion: &BoundedPairMotion, expected: &ExpectedPolynomials) -> bool {
-    decides(motion, expected).is_none()
+    certain_decision(motion, expected).is_none()
 }
 
 /// Returns a time of impact for a pair whose collision is uncertain.

@@ -1,5 +1,5 @@
 //! The data for judging a step: the scene, and the trace's records.
-use super::ordinary::OrdinaryRange;
+use super::ordinary_range::OrdinaryRange;
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{Decision, Pair, PairKind, PairKindMap, Pass, State, pairs},
@@ -12,17 +12,17 @@ pub(crate) struct Context<'a> {
     /// The scene that is judged.
     pub scene: &'a Scene,
     /// The number of polynomials of one detection pass over all pairs (trace-format.md 2).
-    pub per_pass: usize,
+    pub polynomials_per_pass: usize,
     /// The number of pairs of one detection pass.
-    pub pairs: usize,
+    pub pair_count: usize,
     /// The number of calls of each kind in a pass.
-    pub of_kinds: PairKindMap<u64>,
+    pub calls_by_kind: PairKindMap<u64>,
     /// The number of records of one step.
     pub records_per_step: u32,
     /// The range of states that need no comparison with the reference's own run.
-    pub ordinary: OrdinaryRange,
+    pub ordinary_range: OrdinaryRange,
     /// Whether bounds are computed for every polynomial, including the clearly right ones.
-    pub looks_closely: bool,
+    pub computes_all_bounds: bool,
 }
 
 impl<'a> Context<'a> {
@@ -35,12 +35,12 @@ impl<'a> Context<'a> {
         let records_per_step = Layout::for_scene(scene).records_per_step();
         Self {
             scene,
-            per_pass,
-            pairs,
-            of_kinds,
+            polynomials_per_pass: per_pass,
+            pair_count: pairs,
+            calls_by_kind: of_kinds,
             records_per_step,
-            ordinary: OrdinaryRange::for_scene(scene),
-            looks_closely: false,
+            ordinary_range: OrdinaryRange::for_scene(scene),
+            computes_all_bounds: false,
         }
     }
 
@@ -60,10 +60,11 @@ impl<'a> Context<'a> {
 
 impl Records<'_> {
     /// Returns whether the step starts from ordinary states; the geometric part starts from the mid record.
-    pub fn start_ordinarily(&self, context: &Context<'_>) -> bool {
+    pub fn starts_from_ordinary_states(&self, context: &Context<'_>) -> bool {
         let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
         let mid = self.mid.filter(|_| is_hybrid);
-        context.ordinary.contains(self.before) && mid.is_none_or(|mid| context.ordinary.contains(&mid.state))
+        context.ordinary_range.contains(self.before)
+            && mid.is_none_or(|mid| context.ordinary_range.contains(&mid.state))
     }
 
     /// Returns the start, mid and end states of the step.

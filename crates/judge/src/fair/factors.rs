@@ -1,6 +1,6 @@
 //! The factors that a trace's polynomials show.
 use fosssim_model::sim::{PairKind, PairKindMap};
-use fosssim_num::tolerances::FAIR_OUTLIER;
+use fosssim_num::tolerances::FAIR_OUTLIER_DEVIATIONS;
 
 /// The factors that polynomials of one kind of pair and number show: the smallest, the largest, and their distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -16,7 +16,7 @@ pub struct Factors {
 }
 
 /// The factors of all kinds of pairs and numbers of polynomials.
-pub type Scales = PairKindMap<[Factors; PairKind::MAX_POLYNOMIALS]>;
+pub type FactorsByPolynomial = PairKindMap<[Factors; PairKind::MAX_POLYNOMIALS]>;
 
 impl Default for Factors {
     fn default() -> Self {
@@ -27,7 +27,7 @@ impl Default for Factors {
 impl Factors {
     /// Adds a positive, finite factor.
     #[inline]
-    pub(super) fn take(&mut self, factor: f64) {
+    pub(super) fn add_factor(&mut self, factor: f64) {
         let exponent = (factor.to_bits() >> 52).cast_signed() - 1023;
         (self.least, self.greatest) = (self.least.min(factor), self.greatest.max(factor));
         self.last = factor;
@@ -68,12 +68,12 @@ impl Factors {
 
     /// Returns the usual factors: the whole range except outliers, which prove nothing about missing polynomials.
     /// `None` without factors.
-    pub(super) fn usual(&self) -> Option<[f64; 2]> {
+    pub(super) fn usual_range(&self) -> Option<[f64; 2]> {
         let [least, greatest] = self.range()?;
         let of_all = |sum: i64| sum as f64 / self.count as f64;
         let mean = of_all(self.exponents);
         let spread = (of_all(self.squares) - mean * mean).max(0.0).sqrt();
-        let reach = 1.0 + FAIR_OUTLIER * spread;
+        let reach = 1.0 + FAIR_OUTLIER_DEVIATIONS * spread;
         Some([least.max(power_of_two(mean - reach)), greatest.min(power_of_two(mean + reach + 1.0))])
     }
 }
@@ -97,14 +97,15 @@ mod tests {
 
     fn factors_from(factors: impl IntoIterator<Item = f64>) -> Factors {
         let mut all = Factors::default();
-        factors.into_iter().for_each(|factor| all.take(factor));
+        factors.into_iter().for_each(|factor| all.add_factor(factor));
         all
     }
 
     #[test]
     fn one_among_dozens_vouches_for_nothing() {
-        let with =
-            |others: usize| factors_from(std::iter::repeat_n(1.0, others).chain([1e-13])).usual().expect("factors");
+        let with = |others: usize| {
+            factors_from(std::iter::repeat_n(1.0, others).chain([1e-13])).usual_range().expect("factors")
+        };
         assert_eq!(with(5), [1e-13, 1.0]);
         let [least, greatest] = with(30);
         assert!(least > 1e-9 && greatest == 1.0, "{least}");
@@ -112,15 +113,18 @@ mod tests {
 
     #[test]
     fn what_many_tell_is_usual() {
-        assert_eq!(factors_from([3.0, 3.0, 3.0]).usual(), Some([3.0; 2]));
-        assert_eq!(factors_from((0..300).map(|n| if n % 5 == 0 { 1e-6 } else { 2.0 })).usual(), Some([1e-6, 2.0]));
+        assert_eq!(factors_from([3.0, 3.0, 3.0]).usual_range(), Some([3.0; 2]));
+        assert_eq!(
+            factors_from((0..300).map(|n| if n % 5 == 0 { 1e-6 } else { 2.0 })).usual_range(),
+            Some([1e-6, 2.0])
+        );
         // Divided by their sizes.
         let sizes = factors_from((1..500).map(|n| 1.0 / f64::from(n)));
-        assert_eq!(sizes.usual().map(|[least, _]| least), Some(1.0 / 499.0));
+        assert_eq!(sizes.usual_range().map(|[least, _]| least), Some(1.0 / 499.0));
         for factor in [5e-324, 1e-300, 1.0, 1e300, f64::MAX] {
-            assert_eq!(factors_from([factor; 9]).usual(), Some([factor; 2]));
+            assert_eq!(factors_from([factor; 9]).usual_range(), Some([factor; 2]));
         }
-        assert_eq!(Factors::default().usual(), None);
+        assert_eq!(Factors::default().usual_range(), None);
     }
 
     #[test]

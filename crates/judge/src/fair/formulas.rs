@@ -12,9 +12,9 @@ use fosssim_model::{
 };
 use fosssim_num::{
     bounded::{BoundedValue, BoundedVector, UNIT_ROUNDOFF},
-    decision::all_exact,
+    decision::are_short,
     polynomial::MAX_COEFFICIENTS,
-    tolerances::{FAIR_MOMENT, FAIR_SENSITIVITY, FAIR_UNITS},
+    tolerances::{FAIR_MOMENT_ROUNDINGS, FAIR_SENSITIVITY_FACTOR, FAIR_UNITS},
     vector::{Vec2, vector_at},
 };
 
@@ -30,9 +30,9 @@ pub struct BoundedPointMotion {
 impl BoundedPointMotion {
     /// Returns the motion between two points. The coordinates may deviate by rounding errors of `size`, because a
     /// program may use rotated or shifted axes. A point that certainly rests does not deviate.
-    fn between([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
-        let start_place = within(start, size);
-        let shift = if rests { BoundedVector::default() } else { within(end, size) - start_place };
+    fn from_positions([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
+        let start_place = with_component_errors(start, size);
+        let shift = if rests { BoundedVector::default() } else { with_component_errors(end, size) - start_place };
         Self { start: start_place, shift }
     }
 }
@@ -107,9 +107,9 @@ impl BoundedPairMotion {
         };
         let way = |particle, size| {
             let [start, end] = places(particle);
-            BoundedPointMotion::between([start, end], size, scene.particles[particle].fixed && start == end)
+            BoundedPointMotion::from_positions([start, end], size, scene.particles[particle].fixed && start == end)
         };
-        let radius = |particle: usize| BoundedValue::exact(scene.particles[particle].radius);
+        let radius = |particle: usize| BoundedValue::from_exact(scene.particles[particle].radius);
         match pair.kind {
             PairKind::ParticleParticle => {
                 let size = size(&[first, second]);
@@ -121,7 +121,7 @@ impl BoundedPairMotion {
                 let size = size(&particles);
                 Self::Edge(
                     particles.map(|particle| way(particle, size)),
-                    radius(first) + BoundedValue::exact(edge.radius),
+                    radius(first) + BoundedValue::from_exact(edge.radius),
                 )
             }
             PairKind::ParticleHalfPlane => {
@@ -141,7 +141,7 @@ impl BoundedPairMotion {
                 return;
             }
             // The unit is the running error bound; the tolerance is twice FAIR_UNITS of it.
-            let units = FAIR_SENSITIVITY / (2.0 * FAIR_UNITS * UNIT_ROUNDOFF);
+            let units = FAIR_SENSITIVITY_FACTOR / (2.0 * FAIR_UNITS * UNIT_ROUNDOFF);
             way.shift.x.bound += units * deviations[2 * particle];
             way.shift.y.bound += units * deviations[2 * particle + 1];
         };
@@ -164,11 +164,11 @@ impl BoundedPairMotion {
         match self {
             Self::Particles([one, two], radii) => {
                 let [a, b, c, d] = [one.start, one.shift, two.start, two.shift].map(parts);
-                all_exact(&[a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1], radii.value], bits)
+                are_short(&[a[0], a[1], b[0], b[1], c[0], c[1], d[0], d[1], radii.value], bits)
             }
             Self::HalfPlane(way, radius, point, q) => {
                 let [a, b] = [way.start, way.shift].map(parts);
-                all_exact(&[a[0], a[1], b[0], b[1], point.x, point.y, q.x, q.y, radius.value], bits)
+                are_short(&[a[0], a[1], b[0], b[1], point.x, point.y, q.x, q.y, radius.value], bits)
             }
             Self::Edge(..) => false,
         }
@@ -195,7 +195,7 @@ impl BoundedPairMotion {
                 expected.right_approach = Some(right);
             }
             Self::HalfPlane(way, radius, point, q) => {
-                let (q, point) = (turn(q), turn(point));
+                let (q, point) = (rotate_axes(q), rotate_axes(point));
                 let (overlap, approach) = particle_half_plane(way.start, way.shift, radius, point, q, q.dot(q));
                 expected.set(0, &overlap);
                 expected.set(1, &approach);
@@ -206,7 +206,7 @@ impl BoundedPairMotion {
 
     /// Returns whether two times within the step are the same moment: the points have the same positions, up to a few
     /// rounding errors of the positions' size.
-    pub fn is_moment(&self, one: f64, other: f64) -> bool {
+    pub fn is_same_moment(&self, one: f64, other: f64) -> bool {
         let ways = match self {
             Self::Particles(ways, _) => &ways[..],
             Self::Edge(ways, _) => &ways[..],
@@ -215,16 +215,16 @@ impl BoundedPairMotion {
         let is_so = |way: &BoundedPointMotion| {
             let (start, shift) = (way.start, way.shift);
             let [x, y] = [shift.x, shift.y].map(|shift| (one - other).abs() * shift.value.abs());
-            x.max(y) <= FAIR_MOMENT * UNIT_ROUNDOFF * start.x.bound.min(start.y.bound)
+            x.max(y) <= FAIR_MOMENT_ROUNDINGS * UNIT_ROUNDOFF * start.x.bound.min(start.y.bound)
         };
         one <= 1.0 && other <= 1.0 && ways.iter().all(is_so)
     }
 
     /// Returns the vector to the nearest point of the second object at time `t`. Beyond the ends of an edge it differs
     /// from [`Self::normal`]. Round-off may move a particle that arrives at an end beyond it.
-    pub fn to_nearest(&self, t: f64) -> Vec2 {
+    pub fn vector_to_nearest_point(&self, t: f64) -> Vec2 {
         let place = |way: &BoundedPointMotion| {
-            let place = way.start + BoundedValue::exact(t) * way.shift;
+            let place = way.start + BoundedValue::from_exact(t) * way.shift;
             Vec2::new(place.x.value, place.y.value)
         };
         let Self::Edge(ways, _) = self else {
@@ -238,7 +238,7 @@ impl BoundedPairMotion {
 
     /// Returns the contact normal at time `t`, not normalized.
     pub fn normal(&self, t: f64) -> BoundedVector {
-        let t = BoundedValue::exact(t);
+        let t = BoundedValue::from_exact(t);
         let place = |way: &BoundedPointMotion| way.start + t * way.shift;
         match self {
             Self::Particles([one, two], _) => place(two) - place(one),
@@ -248,8 +248,8 @@ impl BoundedPairMotion {
                 x2 + (a.dot(b) / b.dot(b)) * b - x1
             }
             Self::HalfPlane(way, _, point, q) => {
-                let q = turn(*q);
-                let w = turn(*point) - place(way);
+                let q = rotate_axes(*q);
+                let w = rotate_axes(*point) - place(way);
                 (w.dot(q) / q.dot(q)) * q
             }
         }
@@ -257,14 +257,14 @@ impl BoundedPairMotion {
 }
 
 /// Returns a vector whose components may each deviate by a rounding error of `size`.
-fn within(v: Vec2, size: f64) -> BoundedVector {
+fn with_component_errors(v: Vec2, size: f64) -> BoundedVector {
     let component = |value| BoundedValue { value, bound: size };
     BoundedVector { x: component(v.x), y: component(v.y) }
 }
 
 /// Returns a vector of the scene in axes of any direction.
-fn turn(v: Vec2) -> BoundedVector {
-    within(v, extent(v))
+fn rotate_axes(v: Vec2) -> BoundedVector {
+    with_component_errors(v, extent(v))
 }
 
 /// Returns the size of a vector's rounding errors in axes of any direction. It is between the vector's length and √2
@@ -281,13 +281,13 @@ mod tests {
     #[test]
     fn a_moment_is_as_long_as_nothing_moves() {
         let point =
-            |x: f64, dx: f64| BoundedPointMotion::between([Vec2::new(x, 1.0), Vec2::new(x + dx, 1.0)], x, false);
-        let slow = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 0.0)], BoundedValue::exact(0.5));
-        let fast = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 2.0)], BoundedValue::exact(0.5));
+            |x: f64, dx: f64| BoundedPointMotion::from_positions([Vec2::new(x, 1.0), Vec2::new(x + dx, 1.0)], x, false);
+        let slow = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 0.0)], BoundedValue::from_exact(0.5));
+        let fast = BoundedPairMotion::Particles([point(2.0, 1e-3), point(3.0, 2.0)], BoundedValue::from_exact(0.5));
         let (time, other) = (0.5, 0.5 + 1e-13);
-        assert!(slow.is_moment(time, other) && !fast.is_moment(time, other));
-        assert!(fast.is_moment(time, 0.5 + 1e-15));
-        assert!(!slow.is_moment(1.0, 1.0 + f64::EPSILON) && !slow.is_moment(0.5, f64::NAN));
+        assert!(slow.is_same_moment(time, other) && !fast.is_same_moment(time, other));
+        assert!(fast.is_same_moment(time, 0.5 + 1e-15));
+        assert!(!slow.is_same_moment(1.0, 1.0 + f64::EPSILON) && !slow.is_same_moment(0.5, f64::NAN));
     }
     use fosssim_model::{scene::original, sim::Simulation};
 

@@ -12,8 +12,8 @@
 //!    bound. A small leading coefficient may be missing, because the course's library drops it, if the factor makes it
 //!    small: one that two coefficients show, or that is usual in the trace, which only the whole trace shows. NaN
 //!    fails.
-//! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; if that is too little, by [`FAIR_SENSITIVITY`]
-//!    times the effect of such roundings of the step's input on its result.
+//! 3. States may be off by [`FAIR_UNITS`] roundings of the scene's size; if that is too little, by
+//! [`FAIR_SENSITIVITY_FACTOR`]    times the effect of such roundings of the step's input on its result.
 //! 4. A decision that such roundings can change is borderline: it is followed and noted, never counted as wrong.
 //!    However, the place and the time of a collision must be right. Coefficients that were lost because of a factor do
 //!    not count as round-off: decisions and times of impact are compared with those of the whole polynomials.
@@ -24,10 +24,10 @@
 //! 6. A step from or to a state without a result is never right.
 //!
 //! A step with records identical to the reference's needs none of this. Polynomials that are clearly right
-//! (`follow::clearly_right`) need no bounds.
+//! (`follower::quick_matches`) need no bounds.
 //!
 //! [`FAIR_UNITS`]: fosssim_num::tolerances::FAIR_UNITS
-//! [`FAIR_SENSITIVITY`]: fosssim_num::tolerances::FAIR_SENSITIVITY
+//! [`FAIR_SENSITIVITY_FACTOR`]: fosssim_num::tolerances::FAIR_SENSITIVITY_FACTOR
 
 mod borderline;
 mod cause;
@@ -35,11 +35,11 @@ pub mod compare;
 mod contact;
 mod context;
 mod factors;
-mod follow;
+mod follower;
 pub mod formulas;
 mod judgement;
-mod ordinary;
-mod pending;
+mod ordinary_range;
+mod pending_polynomials;
 mod polynomial;
 mod probe;
 mod reach;
@@ -47,19 +47,19 @@ mod step;
 mod step_judgement;
 #[cfg(test)]
 mod tests;
-mod unapplied;
+mod unapplied_pairs;
 
 pub use borderline::find_borderline;
 pub use cause::find_cause;
-pub use contact::decides;
+pub use contact::certain_decision;
 pub(super) use context::{Context, Records};
 pub use fosssim_findings::{
     Cause,
     fair::{Borderline, FairRefusal, FairVerdict, Form, Judgement, Shares},
 };
-pub(super) use judgement::Judging;
+pub(super) use judgement::JudgementBuilder;
 pub(super) use probe::{PERTURBED_RUNS, perturb};
 pub(super) use reach::Reach;
 pub(super) use step::{judge, judge_initial};
 pub(super) use step_judgement::StepJudgement;
-pub use unapplied::count_applications;
+pub use unapplied_pairs::count_applications;

@@ -2,11 +2,11 @@
 //! and everything that depends on the factors of other polynomials.
 use super::{
     compare::{
-        Match, Mismatch, claimed_factors, compare, compare_with_one, fits_with_no_factor, possible_factors,
+        Match, Mismatch, claimed_factors, compare, compare_with_one, is_wrong_with_every_factor, possible_factors,
         round_off_factor,
     },
     formulas::ExpectedPolynomials,
-    pending::{NO_FACTORS, Pending, PendingCause},
+    pending_polynomials::{NO_FACTORS, PendingCause, PendingPolynomials},
     step_judgement::StepJudgement,
 };
 use crate::finding::{Finding, FindingDetail, PolynomialPlace};
@@ -27,7 +27,7 @@ pub(super) struct LoggedPolynomial<'a> {
     /// The polynomial's number within its pair.
     pub number: usize,
     /// The polynomial's coefficients, highest power first.
-    pub list: &'a [f64],
+    pub coefficients: &'a [f64],
 }
 
 /// The judgement of a logged polynomial.
@@ -51,23 +51,23 @@ pub(super) fn compare_first(
 ) -> Result<Match, Mismatch> {
     let own = expected.polynomial(logged.number);
     // If there is another form, the fault in the first form does not matter.
-    if expected.other_form(logged.number).is_some() && fits_with_no_factor(own, logged.list) {
+    if expected.other_form(logged.number).is_some() && is_wrong_with_every_factor(own, logged.coefficients) {
         return Err(Mismatch::TooLong);
     }
-    compare(own, logged.list, &judged.hints(logged.place.pair.kind, logged.number))
+    compare(own, logged.coefficients, &judged.likely_factors(logged.place.pair.kind, logged.number))
 }
 
 impl StepJudgement {
     /// Notes the evidence of a polynomial; `first` is its comparison with the course's form. A polynomial that depends
     /// on factors is kept for later if its positions are known (`is_known`).
-    pub(super) fn note(
+    pub(super) fn note_evidence(
         &mut self,
         expected: &ExpectedPolynomials,
         logged: &LoggedPolynomial<'_>,
         first: Result<Match, Mismatch>,
         is_known: bool,
     ) -> PolynomialJudgement {
-        let LoggedPolynomial { place, number, list } = *logged;
+        let LoggedPolynomial { place, number, coefficients: list } = *logged;
         let own = expected.polynomial(number);
         let add_pending = |judged: &mut Self, form: Form, expected: &[BoundedValue], factors: Option<[f64; 2]>| {
             if is_known {
@@ -88,12 +88,12 @@ impl StepJudgement {
         let tells_nothing = first.is_ok() && self.course_form.is_some();
         let Some(right) = expected.other_form(number).filter(|_| !tells_nothing) else {
             return match first.map_err(|mismatch| (mismatch, possible_factors(own, list))) {
-                Ok(found) => self.take(logged, own, found, is_known),
+                Ok(found) => self.note_factor(logged, own, found, is_known),
                 Err((_, factors @ Some(_))) => add_pending(self, Form::Either, own, factors),
                 Err((mismatch, None)) => PolynomialJudgement::Wrong(mismatch),
             };
         };
-        let other = compare(right, list, &self.hints(place.pair.kind, number));
+        let other = compare(right, list, &self.likely_factors(place.pair.kind, number));
         match (first, other) {
             (Ok(found), other) => {
                 // A polynomial that does not show its factor cannot show the form.
@@ -102,12 +102,12 @@ impl StepJudgement {
                 } else if other.is_err() {
                     add_pending(self, Form::Right, right, possible_factors(right, list));
                 }
-                self.take(logged, own, found, is_known)
+                self.note_factor(logged, own, found, is_known)
             }
             (Err(_), Ok(found)) => match possible_factors(own, list) {
                 None if found.scale.is_some() => {
                     self.right_form = self.right_form.or(Some(place));
-                    self.take(logged, right, found, is_known);
+                    self.note_factor(logged, right, found, is_known);
                     PolynomialJudgement::RightForm
                 }
                 factors => add_pending(self, Form::Course, own, factors),
@@ -124,18 +124,18 @@ impl StepJudgement {
 
     /// Notes the factor of a right polynomial. A polynomial with a single coefficient that lacks others, which the
     /// course's library would keep with the factor 1, only claims a factor. Other polynomials must confirm it.
-    fn take(
+    fn note_factor(
         &mut self,
         logged: &LoggedPolynomial<'_>,
         expected: &[BoundedValue],
         found: Match,
         is_known: bool,
     ) -> PolynomialJudgement {
-        let claims = found.scale.and_then(|scale| claimed_factors(expected, logged.list, scale));
+        let claims = found.scale.and_then(|scale| claimed_factors(expected, logged.coefficients, scale));
         match claims {
-            None => self.take_share_and_factor(logged.place.pair.kind, logged.number, &found),
+            None => self.add_share_and_factor(logged.place.pair.kind, logged.number, &found),
             Some(factors) => {
-                self.shares.coefficient = self.shares.coefficient.max(found.share);
+                self.shares.coefficient = self.shares.coefficient.max(found.tolerance_share);
                 if is_known {
                     self.add_pending(logged, (Form::Either, PendingCause::Claim), expected, factors);
                 }
@@ -146,10 +146,10 @@ impl StepJudgement {
 
     /// Notes the used share of the tolerance of a right polynomial, and its factor, if it shows one.
     #[inline]
-    pub(super) fn take_share_and_factor(&mut self, kind: PairKind, number: usize, found: &Match) {
-        self.shares.coefficient = self.shares.coefficient.max(found.share);
+    pub(super) fn add_share_and_factor(&mut self, kind: PairKind, number: usize, found: &Match) {
+        self.shares.coefficient = self.shares.coefficient.max(found.tolerance_share);
         if let Some(scale) = found.scale {
-            self.scales[kind][number].take(scale);
+            self.factors[kind][number].add_factor(scale);
         }
     }
 
@@ -157,9 +157,9 @@ impl StepJudgement {
     pub(super) fn note_course_form(&mut self, expected: &ExpectedPolynomials, logged: &LoggedPolynomial<'_>) {
         let Some(right) = expected.other_form(logged.number) else { return };
         let is_of_course = || {
-            compare(right, logged.list, &[1.0]).is_err()
-                && possible_factors(right, logged.list).is_none()
-                && compare(expected.polynomial(logged.number), logged.list, &[1.0])
+            compare(right, logged.coefficients, &[1.0]).is_err()
+                && possible_factors(right, logged.coefficients).is_none()
+                && compare(expected.polynomial(logged.number), logged.coefficients, &[1.0])
                     .is_ok_and(|found| found.scale.is_some())
         };
         if self.course_form.is_none() && is_of_course() {
@@ -177,39 +177,46 @@ impl StepJudgement {
     ) {
         let place = (logged.place.pair.kind, logged.number);
         let finding = || {
-            let mismatch = compare_with_one(expected, logged.list).err().unwrap_or(Mismatch::TooLong);
-            let detail = wrong_polynomial(logged, expected, mismatch);
+            let mismatch = compare_with_one(expected, logged.coefficients).err().unwrap_or(Mismatch::TooLong);
+            let detail = wrong_polynomial_finding(logged, expected, mismatch);
             Finding { step: self.step, frame: self.frame, detail }
         };
-        let is_like = |known: &Pending| (known.place, known.form, known.cause) == (place, form, cause);
+        let is_like = |known: &PendingPolynomials| (known.place, known.form, known.cause) == (place, form, cause);
         let Some(known) = self.pending.iter().position(is_like) else {
             let finding = finding();
             let (least, most) = ((least, finding), (most, finding));
-            self.pending.push(Pending { place, form, cause, count: 1, least, most });
+            self.pending.push(PendingPolynomials {
+                place,
+                form,
+                cause,
+                count: 1,
+                least_factor: least,
+                greatest_factor: most,
+            });
             return;
         };
-        let Pending { least: (of_all, _), most: (to_all, _), .. } = self.pending[known];
+        let PendingPolynomials { least_factor: (of_all, _), greatest_factor: (to_all, _), .. } = self.pending[known];
         let new = (least > of_all || most < to_all).then(finding);
         let known = &mut self.pending[known];
         known.count += 1;
         if let Some(new) = new {
             if least > of_all {
-                known.least = (least, new);
+                known.least_factor = (least, new);
             }
             if most < to_all {
-                known.most = (most, new);
+                known.greatest_factor = (most, new);
             }
         }
     }
 }
 
 /// Returns the finding about a wrong polynomial.
-pub(super) fn wrong_polynomial(
+pub(super) fn wrong_polynomial_finding(
     logged: &LoggedPolynomial<'_>,
     expected: &[BoundedValue],
     mismatch: Mismatch,
 ) -> FindingDetail {
-    let &LoggedPolynomial { place, list, .. } = logged;
+    let &LoggedPolynomial { place, coefficients: list, .. } = logged;
     let right: Vec<f64> = expected.iter().map(|c| c.value).collect();
     let (right, shown) =
         (Polynomial::trimmed(&right), Polynomial::untrimmed(&list[..list.len().min(MAX_COEFFICIENTS)]));
@@ -244,8 +251,8 @@ mod tests {
         let place = PolynomialPlace { pass, pair, role: Role::Overlap, index: 0 };
         let mut judged = StepJudgement::default();
         for factors in bounds {
-            let expected = [1e-14, 1.0, 2.0].map(BoundedValue::exact);
-            let logged = LoggedPolynomial { place, number: 0, list: &[1.0, 2.0] };
+            let expected = [1e-14, 1.0, 2.0].map(BoundedValue::from_exact);
+            let logged = LoggedPolynomial { place, number: 0, coefficients: &[1.0, 2.0] };
             judged.add_pending(&logged, (Form::Either, PendingCause::Missing), &expected, *factors);
         }
         judged.pending.iter().all(|pending| pending.finding([factor, factor]).is_none())

@@ -14,7 +14,7 @@ use fosssim_model::sim::{
 use fosssim_num::{
     bounded::UNIT_ROUNDOFF,
     polynomial::Polynomial,
-    tolerances::{FAIR_TIME, FAIR_UNITS},
+    tolerances::{FAIR_TIME_SHARE, FAIR_UNITS},
     vector::Vec2,
 };
 
@@ -31,7 +31,7 @@ pub(super) struct Sensitivity {
     /// The sensitivity of the state at the end.
     pub end: State,
     /// Calls whose decisions flip.
-    pub flipped: Vec<usize>,
+    pub flipped_decisions: Vec<usize>,
 }
 
 /// Repeats a step whose decisions are known. If the reference's own polynomials can't be solved from this state, the
@@ -44,7 +44,8 @@ pub(super) fn probe(
 ) -> Sensitivity {
     let zeros = vec![0.0; records.before.positions.len()];
     let still = State { positions: zeros.clone(), velocities: zeros };
-    let mut sensitivity = Sensitivity { passes: Vec::new(), mid: still.clone(), end: still, flipped: Vec::new() };
+    let mut sensitivity =
+        Sensitivity { passes: Vec::new(), mid: still.clone(), end: still, flipped_decisions: Vec::new() };
     let Some(base) = run(context, simulation, records, decisions, 0) else { return sensitivity };
     sensitivity.passes = base.passes.iter().map(|q| vec![0.0; q.len()]).collect();
     for seed in 1..=PERTURBED_RUNS {
@@ -55,8 +56,8 @@ pub(super) fn probe(
             widen(own, base, other);
         }
         for (call, (base, other)) in base.hits.iter().zip(&other.hits).enumerate() {
-            if base != other && !sensitivity.flipped.contains(&call) {
-                sensitivity.flipped.push(call);
+            if base != other && !sensitivity.flipped_decisions.contains(&call) {
+                sensitivity.flipped_decisions.push(call);
             }
         }
     }
@@ -79,7 +80,7 @@ fn widen_state(own: &mut State, base: &State, other: &State) {
 
 /// The result of one repetition. Without a synchronization point its mid state is empty and has no deviations.
 #[derive(Default)]
-struct Run {
+struct ProbeRun {
     passes: Vec<Vec<f64>>,
     mid: State,
     end: State,
@@ -92,14 +93,14 @@ fn run(
     records: &Records<'_>,
     decisions: &[FollowedDecision],
     seed: u64,
-) -> Option<Run> {
+) -> Option<ProbeRun> {
     simulation.state_mut().clone_from(records.before);
     perturb(simulation.state_mut(), seed);
     simulation.set_steps_done(records.step - 1);
-    let run = Run::default();
-    let mut probe = PerturbedRun { records, decisions, seed, run, stale: true, pass: 0, motion: None, context };
+    let run = ProbeRun::default();
+    let mut probe = PerturbedRun { records, decisions, seed, run, is_stale: true, pass: 0, motion: None, context };
     simulation.step(&mut probe).ok()?;
-    Some(Run { end: simulation.state().clone(), ..probe.run })
+    Some(ProbeRun { end: simulation.state().clone(), ..probe.run })
 }
 
 /// Moves every component by up to [`FAIR_UNITS`] rounding errors, up or down; seed 0 moves nothing.
@@ -107,16 +108,16 @@ pub(crate) fn perturb(state: &mut State, seed: u64) {
     if seed == 0 {
         return;
     }
-    let mut signs = Signs::from_seed(seed);
+    let mut signs = SignSequence::from_seed(seed);
     for value in state.positions.iter_mut().chain(&mut state.velocities) {
         *value += signs.next() * FAIR_UNITS * UNIT_ROUNDOFF * *value;
     }
 }
 
 /// A sequence of random signs, determined by the seed.
-struct Signs(u64);
+struct SignSequence(u64);
 
-impl Signs {
+impl SignSequence {
     fn from_seed(seed: u64) -> Self {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }
@@ -134,16 +135,16 @@ impl Signs {
 impl PerturbedRun<'_> {
     /// Returns the decision for a slightly later or earlier time, with either vector at an edge's end, because no root
     /// finder is exact.
-    fn decide_nearby(&self, time: f64) -> Option<Decision> {
+    fn decide_at_shifted_time(&self, time: f64) -> Option<Decision> {
         let motion = self.motion.as_ref()?;
         let time = match self.seed {
             0 => return None,
-            seed if seed % 2 == 0 => time + FAIR_TIME,
-            _ => time - FAIR_TIME,
+            seed if seed % 2 == 0 => time + FAIR_TIME_SHARE,
+            _ => time - FAIR_TIME_SHARE,
         };
         let normal = motion.normal(time);
         let to_line = Vec2::new(normal.x.value, normal.y.value);
-        let normal = if self.seed % 4 < 2 { to_line } else { motion.to_nearest(time) };
+        let normal = if self.seed % 4 < 2 { to_line } else { motion.vector_to_nearest_point(time) };
         Some(Decision::Hit { time, normal })
     }
 }
@@ -153,9 +154,9 @@ struct PerturbedRun<'a> {
     records: &'a Records<'a>,
     decisions: &'a [FollowedDecision],
     seed: u64,
-    run: Run,
+    run: ProbeRun,
     /// Whether the positions of the next pass must still be stored.
-    stale: bool,
+    is_stale: bool,
     pass: usize,
     /// The motion of the examined pair.
     motion: Option<BoundedPairMotion>,
@@ -165,17 +166,17 @@ struct PerturbedRun<'a> {
 impl Observer for PerturbedRun<'_> {
     fn begin_pass(&mut self, pass: Pass) {
         self.pass = pass.index as usize;
-        self.stale = true;
+        self.is_stale = true;
     }
 
     fn observe_detection(&mut self, detection: &Detection<'_>) {
-        if self.stale {
+        if self.is_stale {
             self.run.passes.resize(self.pass + 1, Vec::new());
             self.run.passes[self.pass].clear();
             self.run.passes[self.pass].extend_from_slice(detection.q_end);
-            self.stale = false;
+            self.is_stale = false;
         }
-        self.stale |= detection.decision.collides();
+        self.is_stale |= detection.decision.collides();
     }
 
     fn as_controller(&mut self) -> Option<&mut dyn StepController> {
@@ -193,7 +194,7 @@ impl StepController for PerturbedRun<'_> {
     fn observe_system(&mut self, matrix: &mut [f64]) {
         let squares: f64 = matrix.iter().map(|entry| entry * entry).sum();
         let size = (squares / (matrix.len() as f64).sqrt()).sqrt();
-        let mut signs = Signs::from_seed(self.seed);
+        let mut signs = SignSequence::from_seed(self.seed);
         for entry in matrix.iter_mut().filter(|entry| self.seed > 0 && **entry != 0.0) {
             *entry += signs.next() * FAIR_UNITS * UNIT_ROUNDOFF * size;
         }
@@ -207,7 +208,7 @@ impl StepController for PerturbedRun<'_> {
             (Decision::Hit { .. }, Decision::Hit { time, .. })
                 if matches!(known.pass.stage, Stage::Impulses { .. } | Stage::Geometric { .. }) =>
             {
-                self.decide_nearby(time).unwrap_or(decision)
+                self.decide_at_shifted_time(time).unwrap_or(decision)
             }
             (Decision::Hit { .. }, _) => known.decision,
             (Decision::Miss { .. }, Decision::Hit { time, .. }) => Decision::Miss { time: ImpactTime::Found(time) },
@@ -234,7 +235,7 @@ mod tests {
     #[test]
     fn signs_are_mixed() {
         let of = |seed| {
-            let mut signs = Signs::from_seed(seed);
+            let mut signs = SignSequence::from_seed(seed);
             std::array::from_fn::<_, 100, _>(|_| signs.next() > 0.0)
         };
         for seed in 1..=PERTURBED_RUNS {

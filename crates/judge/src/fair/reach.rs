@@ -5,7 +5,7 @@
 //! Such steps are never right, unless the reference itself reaches such a state from the scene's start.
 use super::{
     context::{Context, Records},
-    ordinary::OrdinaryRange,
+    ordinary_range::OrdinaryRange,
     step::judge,
     step_judgement::StepJudgement,
 };
@@ -22,14 +22,14 @@ use fosssim_num::vector::vector_at;
 pub(crate) struct Reach<'a> {
     scene: &'a Scene,
     range: OrdinaryRange,
-    run: Option<Run>,
+    run: Option<ReferenceRun>,
     /// The simulation for judging steps that are extraordinary in the reference's own run, too.
-    other: Option<Simulation>,
+    second_simulation: Option<Simulation>,
 }
 
 /// The reference's own run so far.
 #[derive(Debug)]
-struct Run {
+struct ReferenceRun {
     simulation: Simulation,
     steps: u32,
     /// Whether the run has reached a state that is not finite, or an error.
@@ -39,7 +39,7 @@ struct Run {
 impl<'a> Reach<'a> {
     /// Creates the reach of a scene.
     pub fn new(scene: &'a Scene) -> Self {
-        Self { scene, range: OrdinaryRange::for_scene(scene), run: None, other: None }
+        Self { scene, range: OrdinaryRange::for_scene(scene), run: None, second_simulation: None }
     }
 
     /// Judges a step with an extraordinary state. `known` is its judgement, if it starts from ordinary states;
@@ -55,13 +55,14 @@ impl<'a> Reach<'a> {
     ) -> (StepJudgement, u64) {
         self.run_to(records.step);
         let is_lost = self.run.as_ref().is_some_and(|run| run.is_lost);
-        let found = (!is_lost).then(|| self.beyond_reach(&records)).flatten();
+        let found = (!is_lost).then(|| self.find_unreachable(&records)).flatten();
         match (known, found) {
             (Some(judged), Some(detail)) if judged.total() == 0 => (judged.with_finding(records, detail), 0),
             (Some(judged), _) => (judged, 0),
             (None, Some(detail)) => (StepJudgement::default().with_finding(records, detail), 0),
             (None, None) => {
-                let simulation = self.other.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::OnDemand));
+                let simulation =
+                    self.second_simulation.get_or_insert_with(|| Simulation::new(self.scene, RootSearch::OnDemand));
                 let begin = simulation.work();
                 simulation.limit_work(begin.saturating_add(most_work));
                 let judged = judge(context, simulation, records, identical);
@@ -77,7 +78,7 @@ impl<'a> Reach<'a> {
     }
 
     /// Returns the first particle at a position that the reference never approaches.
-    fn beyond_reach(&self, records: &Records<'_>) -> Option<FindingDetail> {
+    fn find_unreachable(&self, records: &Records<'_>) -> Option<FindingDetail> {
         records.states().find_map(|state| {
             let particle = self.range.find_outside(state)?;
             let (position, velocity) = (vector_at(&state.positions, particle), vector_at(&state.velocities, particle));
@@ -87,7 +88,7 @@ impl<'a> Reach<'a> {
 
     /// Simulates the reference's own run up to the end of a step.
     fn run_to(&mut self, step: u32) {
-        let run = self.run.get_or_insert_with(|| Run {
+        let run = self.run.get_or_insert_with(|| ReferenceRun {
             simulation: Simulation::new(self.scene, RootSearch::OnDemand),
             steps: 0,
             is_lost: false,

@@ -3,7 +3,7 @@
 use super::{
     contact::{self, Tolerances},
     context::{Context, Records},
-    follow::Follower,
+    follower::Follower,
     probe::{Sensitivity, probe},
     step_judgement::StepJudgement,
 };
@@ -13,7 +13,7 @@ use fosssim_model::{
     sim::{Simulation, State, StepError},
     trace::LenientFrame,
 };
-use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::same_bits};
+use fosssim_num::{polynomial::MAX_COEFFICIENTS, vector::has_same_bits};
 
 /// The maximum number of borderline decisions of a hybrid step whose alternatives are tried, in all combinations.
 const MAX_FLIPS: usize = 4;
@@ -28,7 +28,7 @@ pub(crate) fn judge(
     identical: bool,
 ) -> StepJudgement {
     let mut judged = if identical {
-        StepJudgement::identical(context, records.step, records.end.polynomials.len())
+        StepJudgement::from_identical_records(context, records.step, records.end.polynomials.len())
     } else {
         follow(context, simulation, records)
             .unwrap_or_else(|error| StepJudgement::default().with_finding(records, FindingDetail::NoResult { error }))
@@ -59,12 +59,12 @@ fn follow(
         simulation.set_steps_done(records.step - 1);
         simulation.step(&mut follower)?;
         follower.finish(simulation.state());
-        Ok::<_, StepError>((follower.judged, follower.decisions, follower.borderline, follower.has_disputes))
+        Ok::<_, StepError>((follower.judgement, follower.decisions, follower.borderline_calls, follower.has_disputes))
     };
     let attempt = |simulation: &mut Simulation, sensitivity: Option<&Sensitivity>, flips: &[usize]| {
         run(simulation, Follower::new(context, records, sensitivity, flips))
     };
-    let follower = Follower::new(context, records, None, &[]).preferring_own();
+    let follower = Follower::new(context, records, None, &[]).prefer_own();
     let (mut first, mut decisions, _, has_disputes) = run(simulation, follower)?;
     if has_disputes && first.total() > 0 {
         // The submission may also have the decisions that the root finder finds for right polynomials.
@@ -106,7 +106,7 @@ fn compare_records(context: &Context<'_>, records: Records<'_>, judged: &mut Ste
     let count = mid.polynomials.len();
     let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
     let whole = if is_hybrid { count <= end.polynomials.len() } else { count == end.polynomials.len() };
-    let same = whole && (0..count).all(|index| same_bits(mid.polynomials.get(index), end.polynomials.get(index)));
+    let same = whole && (0..count).all(|index| has_same_bits(mid.polynomials.get(index), end.polynomials.get(index)));
     if !same {
         charge(FindingDetail::RecordsDiffer { part: RecordPart::Polynomials });
     }

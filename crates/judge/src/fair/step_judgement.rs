@@ -1,8 +1,8 @@
 //! The result of judging one step.
 use super::{
     context::{Context, Records},
-    factors::Scales,
-    pending::Pending,
+    factors::FactorsByPolynomial,
+    pending_polynomials::PendingPolynomials,
 };
 use fosssim_findings::{
     Finding, FindingCounts, FindingDetail, FindingKind, PolynomialPlace,
@@ -20,17 +20,17 @@ pub(crate) struct StepJudgement {
     /// The first finding of each kind, in the order in which they were made.
     pub findings: Vec<Finding>,
     /// The number of further findings of each kind.
-    pub more: FindingCounts,
+    pub further_counts: FindingCounts,
     /// The number of decisions about pairs.
     pub decisions: u64,
     /// Borderline decisions that were followed.
     pub borderline: Vec<Borderline>,
     /// Factors of polynomials that differ from the reference's.
-    pub scales: Scales,
+    pub factors: FactorsByPolynomial,
     /// The number of calls of each kind that logged polynomials identical to the reference's.
-    pub same: PairKindMap<u64>,
+    pub identical_polynomials: PairKindMap<u64>,
     /// The number of polynomials that lack other small coefficients than the reference's.
-    pub lost: u64,
+    pub lost_decisions: u64,
     /// The used shares of tolerances.
     pub shares: Shares,
     /// The first polynomial that has the course's form and not the right form.
@@ -38,26 +38,32 @@ pub(crate) struct StepJudgement {
     /// The first polynomial that has the right form and not the course's.
     pub right_form: Option<PolynomialPlace>,
     /// Polynomials that are right only with some factors. The whole trace shows whether the program uses such a factor.
-    pub pending: Vec<Pending>,
+    pub pending: Vec<PendingPolynomials>,
     /// Whether a finding is about polynomials at positions that have the round-off of a response or the failsafe.
-    pub hangs: bool,
+    pub has_endless_search: bool,
 }
 
 impl StepJudgement {
     /// Creates the judgement of a step whose records are identical to the reference's, with `polynomials` polynomials
     /// in the end record.
-    pub fn identical(context: &Context<'_>, step: u32, polynomials: usize) -> Self {
+    pub fn from_identical_records(context: &Context<'_>, step: u32, polynomials: usize) -> Self {
         let frame = u64::from(step) * u64::from(context.records_per_step);
-        let passes = polynomials.checked_div(context.per_pass).unwrap_or(0);
+        let passes = polynomials.checked_div(context.polynomials_per_pass).unwrap_or(0);
         let passes = passes as u64;
-        let same = PairKindMap::from_fn(|kind| passes * context.of_kinds[kind]);
-        Self { step, frame, decisions: passes * context.pairs as u64, same, ..Self::default() }
+        let same = PairKindMap::from_fn(|kind| passes * context.calls_by_kind[kind]);
+        Self {
+            step,
+            frame,
+            decisions: passes * context.pair_count as u64,
+            identical_polynomials: same,
+            ..Self::default()
+        }
     }
 
     /// Adds a finding to the judgement.
     pub(super) fn add_finding(&mut self, finding: Finding) {
         if self.findings.iter().any(|first| first.kind() == finding.kind()) {
-            self.more.add(finding.kind(), 1);
+            self.further_counts.add(finding.kind(), 1);
         } else {
             self.findings.push(finding);
         }
@@ -72,8 +78,8 @@ impl StepJudgement {
 
     /// Returns likely factors of a polynomial whose coefficients show it only roughly: the factor of the same
     /// polynomial of another pair of its kind, and 1. Factors of other polynomials prove nothing.
-    pub(super) fn hints(&self, kind: PairKind, number: usize) -> [f64; 2] {
-        [self.scales[kind][number].last(), 1.0]
+    pub(super) fn likely_factors(&self, kind: PairKind, number: usize) -> [f64; 2] {
+        [self.factors[kind][number].last(), 1.0]
     }
 
     /// Returns the number of polynomials that depend on factors.
@@ -88,13 +94,13 @@ impl StepJudgement {
 
     /// Returns the number of findings.
     pub(super) fn total(&self) -> u64 {
-        self.findings.len() as u64 + self.more.total()
+        self.findings.len() as u64 + self.further_counts.total()
     }
 
     /// Returns whether the step has findings that its sensitivity could excuse. Findings about polynomials at known
     /// positions depend only on the polynomials' own bounds.
     pub(super) fn may_be_round_off(&self) -> bool {
-        self.hangs
+        self.has_endless_search
             || self.findings.iter().any(|finding| {
                 !matches!(
                     finding.kind(),
@@ -112,7 +118,7 @@ impl StepJudgement {
     /// Returns whether the step has findings that a different decision could explain, because it moves bodies
     /// differently.
     pub(super) fn may_follow_decisions(&self) -> bool {
-        self.hangs
+        self.has_endless_search
             || self.findings.iter().any(|finding| {
                 matches!(
                     finding.kind(),

@@ -3,7 +3,7 @@ use super::{Batch, StepRules, StepSlot};
 use crate::{
     fair::{self, Records},
     options::Options,
-    tally::{Buffers, Tally},
+    tally::{Tally, TallyBuffers},
 };
 use fosssim_model::{
     scene::Scene,
@@ -17,16 +17,16 @@ const MAX_THREADS: usize = 8;
 /// The data that one thread needs to judge a step.
 struct Worker {
     simulation: Simulation,
-    buffers: Buffers,
+    buffers: TallyBuffers,
     /// Root searches of the reference.
-    searches: SearchCounts,
+    search_counts: SearchCounts,
 }
 
 /// The threads that judge steps, and their data. They are started on demand.
 pub(super) struct Workers<'a> {
     scene: &'a Scene,
     root_search: RootSearch,
-    one_by_one: bool,
+    judges_individually: bool,
     /// The number of requested threads; 0 chooses by the number of cores.
     threads: usize,
     list: Vec<Worker>,
@@ -35,8 +35,15 @@ pub(super) struct Workers<'a> {
 
 impl<'a> Workers<'a> {
     pub(super) fn new(scene: &'a Scene, options: &Options) -> Self {
-        let Options { threads, root_search, one_by_one, .. } = *options;
-        Self { scene, root_search, one_by_one, threads: threads.min(MAX_THREADS), list: Vec::new(), pool: None }
+        let Options { threads, root_search, judges_individually: one_by_one, .. } = *options;
+        Self {
+            scene,
+            root_search,
+            judges_individually: one_by_one,
+            threads: threads.min(MAX_THREADS),
+            list: Vec::new(),
+            pool: None,
+        }
     }
 
     /// Starts all threads, and returns whether there is more than one.
@@ -55,10 +62,10 @@ impl<'a> Workers<'a> {
     fn grow_to(&mut self, workers: usize) {
         let worker = || {
             let mut simulation = Simulation::new(self.scene, self.root_search);
-            if self.one_by_one {
+            if self.judges_individually {
                 simulation.disable_lanes();
             }
-            Worker { simulation, buffers: Buffers::new(self.scene), searches: SearchCounts::default() }
+            Worker { simulation, buffers: TallyBuffers::new(self.scene), search_counts: SearchCounts::default() }
         };
         self.list.resize_with(workers.max(self.list.len()), worker);
     }
@@ -69,12 +76,12 @@ impl<'a> Workers<'a> {
             self.grow_to(1);
             judge_batch(batch, &mut self.list[..1], shape, rest);
         } else {
-            self.judge_beside(batch, shape, rest, || ());
+            self.judge_while(batch, shape, rest, || ());
         }
     }
 
     /// Judges a batch on all threads, and runs `other` at the same time.
-    pub(super) fn judge_beside(
+    pub(super) fn judge_while(
         &mut self,
         batch: &Batch,
         shape: &StepRules<'_>,
@@ -87,9 +94,9 @@ impl<'a> Workers<'a> {
     }
 
     /// Counts of root searches of the reference.
-    pub(super) fn searches(&self) -> SearchCounts {
+    pub(super) fn search_counts(&self) -> SearchCounts {
         let mut sum = SearchCounts::default();
-        self.list.iter().for_each(|worker| sum += worker.searches);
+        self.list.iter().for_each(|worker| sum += worker.search_counts);
         sum
     }
 }
@@ -109,19 +116,19 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [re
             let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
             // Every index is used once, so the lock is always free.
             let mut slot = slot.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
-            if !slot.is_done {
+            if !slot.is_judged {
                 let begin = worker.simulation.work();
                 worker.simulation.limit_work(begin.saturating_add(rest));
                 judge_step(&mut slot, worker, shape);
                 slot.work = worker.simulation.work() - begin;
-                slot.is_done = slot.work <= rest;
+                slot.is_judged = slot.work <= rest;
             }
-            if is_asked && slot.is_done && !slot.is_done_fairly {
+            if is_asked && slot.is_judged && !slot.is_fairly_judged {
                 let begin = worker.simulation.work();
                 worker.simulation.limit_work(begin.saturating_add(fair_rest));
                 judge_fairly(&mut slot, worker, shape);
                 slot.fair_work = worker.simulation.work() - begin;
-                slot.is_done_fairly = slot.fair_work <= fair_rest;
+                slot.is_fairly_judged = slot.fair_work <= fair_rest;
             }
             work.fetch_add(slot.work, Ordering::Relaxed);
             fair_work.fetch_add(slot.fair_work, Ordering::Relaxed);
@@ -141,8 +148,8 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [re
 /// Judges a step by the original's rules.
 fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
     let step = slot.step;
-    let StepSlot { before, order, mid, end, result, error, beyond_limit, .. } = slot;
-    let Worker { simulation, buffers, searches } = worker;
+    let StepSlot { before, order, mid, end, result, error, is_beyond_limit: beyond_limit, .. } = slot;
+    let Worker { simulation, buffers, search_counts: searches } = worker;
     simulation.state_mut().clone_from(before);
     if let Some(pairs) = simulation.penalty_pairs() {
         pairs.set_order(order);
@@ -158,7 +165,7 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
     *searches += simulation.search_counts() - begin;
     match end_of_step {
         Ok(()) => {
-            *beyond_limit = layout.has_polynomials && tally.needs_more();
+            *beyond_limit = layout.has_polynomials && tally.has_equal_lists();
             tally.finish(simulation.state(), layout.has_impulses, layout.has_polynomials);
         }
         Err(cause) => *error = Some(cause),
@@ -167,13 +174,13 @@ fn judge_step(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
 
 /// Judges a step that has a result by the fair rules.
 fn judge_fairly(slot: &mut StepSlot, worker: &mut Worker, shape: &StepRules<'_>) {
-    let StepSlot { step, before, mid, end, result, fair: judged, is_extraordinary, is_deferred, .. } = slot;
-    if let (Some(context), None, false) = (&shape.fair, &slot.error, slot.beyond_limit) {
+    let StepSlot { step, before, mid, end, result, fair_judgement: judged, is_extraordinary, is_deferred, .. } = slot;
+    if let (Some(context), None, false) = (&shape.fair, &slot.error, slot.is_beyond_limit) {
         let frame = shape.layout.end_record(*step);
         let mid = shape.layout.has_polynomials.then_some(&*mid);
         let records = Records { step: *step, frame, before, mid, end };
-        *is_extraordinary = !records.states().all(|state| context.ordinary.contains(state));
-        *is_deferred = *is_extraordinary && !records.start_ordinarily(context);
+        *is_extraordinary = !records.states().all(|state| context.ordinary_range.contains(state));
+        *is_deferred = *is_extraordinary && !records.starts_from_ordinary_states(context);
         if !*is_deferred {
             *judged = fair::judge(context, &mut worker.simulation, records, result.identical);
         }

@@ -3,21 +3,21 @@ use super::{StepResult, sum_of_moduli};
 use crate::{
     finding::{Finding, FindingDetail, FindingKind, PolynomialPlace, RescaledCoefficient},
     progress::Remark,
-    wrong_coefficients::{differing_powers, find_factor},
+    wrong_coefficients::{find_differing_powers, find_factor},
 };
 use fosssim_num::{
     polynomial::{MAX_COEFFICIENTS, Polynomial},
-    tolerances::{PARITY_COEFFICIENT, PARITY_ZERO_POLYNOMIAL},
+    tolerances::{PARITY_COEFFICIENT_DIFFERENCE, PARITY_ZERO_COEFFICIENT_SUM},
 };
 
 /// The findings about polynomials, which count only if the two lists have the same length.
 #[derive(Debug, Default)]
-pub(crate) struct Pending {
+pub(crate) struct PendingFindings {
     runs: Vec<(FindingKind, u32)>,
     firsts: Vec<Finding>,
 }
 
-impl Pending {
+impl PendingFindings {
     /// Removes all findings.
     pub(crate) fn clear(&mut self) {
         self.runs.clear();
@@ -53,10 +53,10 @@ impl Pending {
             return;
         }
         let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
-        if sum_actual < PARITY_ZERO_POLYNOMIAL && sum_own < PARITY_ZERO_POLYNOMIAL {
+        if sum_actual < PARITY_ZERO_COEFFICIENT_SUM && sum_own < PARITY_ZERO_COEFFICIENT_SUM {
             return;
         }
-        if sum_own < PARITY_ZERO_POLYNOMIAL {
+        if sum_own < PARITY_ZERO_COEFFICIENT_SUM {
             self.record(FindingKind::VanishingPolynomial, || {
                 finding(FindingDetail::VanishingPolynomial { place: place(), expected: *expected, actual: shown })
             });
@@ -66,7 +66,7 @@ impl Pending {
             let rescaled = (own_coefficient * sum_actual) / sum_own;
             let residual = (coefficient - rescaled).abs();
             // In the original NaN passes, because it tests whether the distance is larger than the bound.
-            if residual > PARITY_COEFFICIENT {
+            if residual > PARITY_COEFFICIENT_DIFFERENCE {
                 self.record(FindingKind::Coefficient, || {
                     let power = own.len() - 1 - number;
                     let rescaled = RescaledCoefficient { power, expected: rescaled, actual: coefficient, residual };
@@ -77,12 +77,12 @@ impl Pending {
     }
 
     /// Delivers all findings, if the lists have the same length.
-    pub(crate) fn settle(&mut self, result: &mut StepResult) {
+    pub(crate) fn deliver(&mut self, result: &mut StepResult) {
         for &(kind, count) in &self.runs {
             result.remarks.push(Remark::Polynomials(kind, count));
             result.counts.add(kind, u64::from(count));
         }
-        result.firsts.append(&mut self.firsts);
+        result.first_findings.append(&mut self.firsts);
     }
 }
 
@@ -96,7 +96,7 @@ fn wrong_coefficient(
     let (own, logged) = (expected.coefficients(), actual.coefficients());
     let factor = find_factor(own, logged);
     // If only the original's bound rejects a coefficient, its power is the original's.
-    let power = differing_powers(own, logged, factor).first().copied().unwrap_or(rescaled.power);
+    let power = find_differing_powers(own, logged, factor).first().copied().unwrap_or(rescaled.power);
     let of = |coefficients: &[f64]| coefficients.iter().rev().nth(power).copied().unwrap_or(0.0);
     let (right, wrong) = (factor * of(own), of(logged));
     FindingDetail::Coefficient {

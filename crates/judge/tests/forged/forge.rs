@@ -139,7 +139,8 @@ impl Stage {
 
     fn judged(&self, trace: &[u8]) -> Result<Judgement, String> {
         let [quick, slow] = [false, true].map(|one_by_one| {
-            let options = Options { fair: true, threads: 1, one_by_one, ..Options::default() };
+            let options =
+                Options { uses_fair_rules: true, threads: 1, judges_individually: one_by_one, ..Options::default() };
             replay::judge(&self.scene, trace, &options, &mut ())
         });
         if format!("{quick:?}") != format!("{slow:?}") {

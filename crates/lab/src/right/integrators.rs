@@ -4,7 +4,7 @@ use super::{
     forces::{ForceTerms, mass},
 };
 use fosssim_model::scene::{Integrator, Scene};
-use fosssim_num::tolerances::NEWTON_UPDATE;
+use fosssim_num::tolerances::NEWTON_UPDATE_NORM;
 use fosssim_oracle::student::State;
 use nalgebra::{DMatrix, DVector};
 
@@ -57,7 +57,7 @@ pub(super) fn advance(
                 let change = solve(arithmetic.solver, forces.system(&x, &v)?, clear_fixed(scene, right))?;
                 v.iter_mut().zip(&change).for_each(|(v, change)| *v += change);
                 let squares: f64 = change.iter().map(|change| change * change).sum();
-                if !(squares.sqrt() >= NEWTON_UPDATE) {
+                if !(squares.sqrt() >= NEWTON_UPDATE_NORM) {
                     converged = true;
                     break;
                 }

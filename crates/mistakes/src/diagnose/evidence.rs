@@ -7,9 +7,9 @@
 use super::{
     Detail, Explanation, Guess, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
-    explain::is_formula,
-    naming::{alternatives, as_row},
-    polynomial::form_claim,
+    explain::is_formula_area,
+    naming::{alternative_statements, explain_by_row},
+    polynomial::claim_of_form,
 };
 use fosssim_student::find;
 use std::collections::{BTreeMap, BTreeSet};
@@ -18,8 +18,8 @@ use std::collections::{BTreeMap, BTreeSet};
 /// it.
 #[derive(Clone)]
 pub(super) struct Symptom {
-    pub(super) one: Explanation,
-    pub(super) allowed: BTreeMap<String, bool>,
+    pub(super) explanation: Explanation,
+    pub(super) allowed_statements: BTreeMap<String, bool>,
 }
 
 /// A trace, and the part of it that is not explained yet.
@@ -31,17 +31,17 @@ pub(super) struct OpenTrace {
 
 impl OpenTrace {
     pub(super) fn allows_statement(&self, said: &str) -> bool {
-        self.symptoms.iter().any(|symptom| symptom.allowed.contains_key(said))
+        self.symptoms.iter().any(|symptom| symptom.allowed_statements.contains_key(said))
     }
 
-    pub(super) fn allows_wholly(&self, said: &str) -> bool {
-        self.symptoms.iter().any(|symptom| symptom.allowed.get(said) == Some(&true))
+    pub(super) fn allows_complete_statement(&self, said: &str) -> bool {
+        self.symptoms.iter().any(|symptom| symptom.allowed_statements.get(said) == Some(&true))
     }
 
     /// Returns whether the trace needs this mistake in addition to others: they reproduce it together, but not
     /// separately.
     pub(super) fn requires_statement(&self, said: &str) -> bool {
-        self.symptoms.iter().any(|symptom| symptom.one.is_complete() && symptom.one.key == said)
+        self.symptoms.iter().any(|symptom| symptom.explanation.is_complete() && symptom.explanation.key == said)
     }
 }
 
@@ -51,19 +51,19 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
         if is_refuted(&one.key) && find(&one.key).is_none() {
             return None;
         }
-        let mut allowed = alternatives(one);
+        let mut allowed = alternative_statements(one);
         allowed.retain(|word, _| !is_refuted(word));
         let mut same_as: Vec<String> = one.same_as.iter().filter(|key| !is_refuted(key)).cloned().collect();
         let is_told = allowed.contains_key(&one.statement());
         let one = match same_as.iter().position(|key| find(key).is_some()) {
             _ if is_told => Explanation { same_as, ..one.clone() },
-            Some(place) => as_row(one, find(&same_as.remove(place))?, same_as),
+            Some(place) => explain_by_row(one, find(&same_as.remove(place))?, same_as),
             None => {
                 let row = allowed.keys().find_map(|word| find(word))?;
-                as_row(one, row, same_as)
+                explain_by_row(one, row, same_as)
             }
         };
-        Some(Symptom { one, allowed })
+        Some(Symptom { explanation: one, allowed_statements: allowed })
     };
     list.iter().filter(|one| one.is_vote() || !one.claims.is_empty()).filter_map(of_one).collect()
 }
@@ -74,15 +74,15 @@ struct Support<'a> {
     /// The symptoms that allow the statement: the trace, and the index in its list.
     symptoms: BTreeSet<(usize, usize)>,
     traces: usize,
-    complete: usize,
+    complete_traces: usize,
     /// The number of traces whose first explanation is the statement.
-    first: usize,
+    first_trace: usize,
     /// The number of traces in which the same quantity is wrong, in any way.
-    kin: usize,
+    related_traces: usize,
     /// The number of traces in which the same polynomials are wrong in another way.
-    against: usize,
+    contradicting_traces: usize,
     /// The most detailed explanation with this statement.
-    told: Option<&'a Explanation>,
+    reported: Option<&'a Explanation>,
     /// Whether the statement is a known formula, which is tried on every trace.
     is_known: bool,
 }
@@ -91,30 +91,31 @@ impl Support<'_> {
     /// Returns whether at least as many traces contradict a guess about polynomials as support it. A known formula is
     /// tried on every trace, so half as many are enough.
     fn is_denied(&self) -> bool {
-        self.against > 0 && self.against * if self.is_known { 2 } else { 1 } >= self.complete
+        self.contradicting_traces > 0
+            && self.contradicting_traces * if self.is_known { 2 } else { 1 } >= self.complete_traces
     }
 
     /// Returns the weight of an explanation. Every symptom of a stage shows that the stage is wrong; the most frequent
     /// symptoms show in which way.
     fn weight(&self) -> (usize, usize, usize) {
-        (self.complete.max(self.kin), self.traces.max(self.kin), self.complete)
+        (self.complete_traces.max(self.related_traces), self.traces.max(self.related_traces), self.complete_traces)
     }
 }
 
 fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     let mut all: BTreeMap<&str, Support<'_>> = BTreeMap::new();
     for (number, trace) in open.iter().enumerate() {
-        for (place, symptom) in trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.one.is_vote()) {
-            let said = symptom.one.statement();
-            for word in symptom.allowed.keys() {
+        for (place, symptom) in trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.explanation.is_vote()) {
+            let said = symptom.explanation.statement();
+            for word in symptom.allowed_statements.keys() {
                 let evidence = all.entry(word.as_str()).or_default();
                 evidence.symptoms.insert((number, place));
-                evidence.first += usize::from(place == 0 && *word == said);
+                evidence.first_trace += usize::from(place == 0 && *word == said);
                 // Of several explanations with the same statement, the one with the longest exact form is used.
                 let rank_of = |one: &Explanation| (one.is_settled(), !one.details.is_empty());
-                let says_more = |told: &Explanation| rank_of(told) < rank_of(&symptom.one);
-                if *word == said && evidence.told.is_none_or(says_more) {
-                    evidence.told = Some(&symptom.one);
+                let says_more = |told: &Explanation| rank_of(told) < rank_of(&symptom.explanation);
+                if *word == said && evidence.reported.is_none_or(says_more) {
+                    evidence.reported = Some(&symptom.explanation);
                 }
             }
         }
@@ -124,22 +125,23 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
         let is_named = |told: &Explanation| {
             matches!(&told.about, About::Polynomials { found: OfPolynomials::Guess(Guess::Named(_)), .. })
         };
-        evidence.is_known = row.is_some() || evidence.told.is_some_and(is_named);
+        evidence.is_known = row.is_some() || evidence.reported.is_some_and(is_named);
         let place = evidence.symptoms.first().copied();
-        let first = place.map(|(trace, place)| &open[trace].symptoms[place].one);
-        let as_told = row.zip(first).map(|(row, first)| as_row(first, row, Vec::new()));
+        let first = place.map(|(trace, place)| &open[trace].symptoms[place].explanation);
+        let as_told = row.zip(first).map(|(row, first)| explain_by_row(first, row, Vec::new()));
         for trace in open {
-            let told = evidence.told;
-            let is_kin = |one: &&Explanation| trace.symptoms.iter().any(|other| other.one.key == one.key);
-            evidence.kin += usize::from(told.filter(|told| told.is_of_stage()).is_some_and(|told| is_kin(&told)));
-            evidence.complete += usize::from(trace.allows_wholly(word));
+            let told = evidence.reported;
+            let is_kin = |one: &&Explanation| trace.symptoms.iter().any(|other| other.explanation.key == one.key);
+            evidence.related_traces +=
+                usize::from(told.filter(|told| told.is_of_stage()).is_some_and(|told| is_kin(&told)));
+            evidence.complete_traces += usize::from(trace.allows_complete_statement(word));
             if trace.allows_statement(word) {
                 evidence.traces += 1;
             } else if told
                 .or(as_told.as_ref())
-                .is_some_and(|told| trace.symptoms.iter().any(|one| contradicts(&one.one, told)))
+                .is_some_and(|told| trace.symptoms.iter().any(|one| contradicts(&one.explanation, told)))
             {
-                evidence.against += 1;
+                evidence.contradicting_traces += 1;
             }
         }
     }
@@ -151,7 +153,7 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
 fn contradicts(one: &Explanation, told: &Explanation) -> bool {
     let is_of_formula = match &told.about {
         About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
-        About::Mistake => find(&told.key).is_some_and(|row| row.kind_of_pair().is_some() && is_formula(row.area)),
+        About::Mistake => find(&told.key).is_some_and(|row| row.kind_of_pair().is_some() && is_formula_area(row.area)),
         _ => false,
     };
     let subjects = told.subjects();
@@ -164,22 +166,23 @@ fn contradicts(one: &Explanation, told: &Explanation) -> bool {
 pub(super) fn find_likeliest(open: &[OpenTrace]) -> Option<Explanation> {
     let all = collect_evidence(open);
     let is_known = |word: &str| find(word).is_some();
-    let is_likely = |(word, one): &(&&str, &Support<'_>)| !one.is_denied() && (one.told.is_some() || is_known(word));
+    let is_likely =
+        |(word, one): &(&&str, &Support<'_>)| !one.is_denied() && (one.reported.is_some() || is_known(word));
     let (&word, best) = all.iter().filter(is_likely).max_by(|(word, a), (other, b)| {
         let known = is_known(word).cmp(&is_known(other));
         let order = b.symptoms.first().cmp(&a.symptoms.first());
-        a.weight().cmp(&b.weight()).then(known).then(a.first.cmp(&b.first)).then(order)
+        a.weight().cmp(&b.weight()).then(known).then(a.first_trace.cmp(&b.first_trace)).then(order)
     })?;
     // Statements that the same symptoms allow cannot be distinguished.
     let is_rival = |(other, rival): &(&&str, &Support<'_>)| {
         **other != word && is_known(other) && rival.symptoms == best.symptoms && rival.weight() == best.weight()
     };
     let mut rivals: Vec<(&&str, &Support<'_>)> = all.iter().filter(is_rival).collect();
-    rivals.sort_by_key(|(_, rival)| std::cmp::Reverse(rival.first));
+    rivals.sort_by_key(|(_, rival)| std::cmp::Reverse(rival.first_trace));
     let same_as = rivals.into_iter().map(|(other, _)| (*other).to_owned()).collect();
-    let Some(told) = best.told else {
+    let Some(told) = best.reported else {
         let &(trace, place) = best.symptoms.first()?;
-        return Some(as_row(&open[trace].symptoms[place].one, find(word)?, same_as));
+        return Some(explain_by_row(&open[trace].symptoms[place].explanation, find(word)?, same_as));
     };
     Some(Explanation { same_as, ..merge_explanations(told, open) })
 }
@@ -191,23 +194,28 @@ fn merge_explanations(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let said = told.statement();
     // Nothing of a contradicting trace is reproduced.
     let against = open.iter().filter(|trace| !trace.allows_statement(&said)).flat_map(|trace| &trace.symptoms);
-    told.samples +=
-        against.filter(|symptom| contradicts(&symptom.one, &told)).map(|symptom| symptom.one.samples).sum::<u64>();
+    told.samples += against
+        .filter(|symptom| contradicts(&symptom.explanation, &told))
+        .map(|symptom| symptom.explanation.samples)
+        .sum::<u64>();
     let About::Polynomials { subjects, found } = &mut told.about else { return told };
-    let agreeing: Vec<&Symptom> =
-        open.iter().flat_map(|trace| &trace.symptoms).filter(|one| one.allowed.contains_key(&said)).collect();
-    for symptom in agreeing.iter().filter(|symptom| symptom.one.statement() == said) {
-        if let About::Polynomials { subjects: theirs, .. } = &symptom.one.about {
+    let agreeing: Vec<&Symptom> = open
+        .iter()
+        .flat_map(|trace| &trace.symptoms)
+        .filter(|one| one.allowed_statements.contains_key(&said))
+        .collect();
+    for symptom in agreeing.iter().filter(|symptom| symptom.explanation.statement() == said) {
+        if let About::Polynomials { subjects: theirs, .. } = &symptom.explanation.about {
             subjects.extend(theirs);
         }
     }
     subjects.sort_unstable();
     subjects.dedup();
     if let ([subject], OfPolynomials::Guess(guess)) = (&subjects[..], found) {
-        let forms = other_forms(&told.details);
+        let forms = alternative_forms(&told.details);
         let is_allowed = |form: &Vec<PolynomialDetail>| {
-            let word = form_claim(*subject, guess, form);
-            agreeing.iter().all(|symptom| symptom.allowed.contains_key(&word))
+            let word = claim_of_form(*subject, guess, form);
+            agreeing.iter().all(|symptom| symptom.allowed_statements.contains_key(&word))
         };
         let mut keep = forms.iter().map(is_allowed);
         told.details.retain(|detail| !is_alternative(detail) || keep.next() == Some(true));
@@ -220,7 +228,7 @@ const fn is_alternative(detail: &Detail) -> bool {
 }
 
 /// Returns the whole exact form once for each of its alternatives.
-fn other_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
+fn alternative_forms(details: &[Detail]) -> Vec<Vec<PolynomialDetail>> {
     let polynomial = |detail: &Detail| match detail {
         Detail::Polynomial(detail) => Some(detail.clone()),
         _ => None,

@@ -1,7 +1,7 @@
 //! Finds mistakes that a program does not make, although its wrong traces suggest them.
 use super::{
-    Explanation, about::About, heads::explain_together, known::mistake_is_visible_within, naming::alternatives,
-    not_finite::find_in_trace, sampling::Source, written::is_written,
+    Explanation, about::About, joint_explanation::explain_together, known::mistake_is_visible_within,
+    naming::alternative_statements, non_finite::explain_source, sampling::Source, student_code::is_written_by_student,
 };
 use fosssim_model::{assignments::Assignment, scene::Scene};
 use fosssim_student::{Area, Student, find, trace_within};
@@ -17,9 +17,9 @@ const MAX_STEP_POLYNOMIALS: usize = 200_000;
 fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<String> {
     let mut named: BTreeMap<String, bool> = BTreeMap::new();
     for (_, list) in wrong {
-        for key in list.iter().flat_map(|one| alternatives(one).into_keys().chain([one.key.clone()])) {
+        for key in list.iter().flat_map(|one| alternative_statements(one).into_keys().chain([one.key.clone()])) {
             let is_own = match find(&key) {
-                Some(row) => is_written(row, whose),
+                Some(row) => is_written_by_student(row, whose),
                 None => continue,
             };
             *named.entry(key).or_default() |= is_own;
@@ -30,11 +30,11 @@ fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<S
 
 /// Returns whether, for each trace with values that are not finite, one of the likely mistakes alone leads to such
 /// values.
-fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
+fn explain_non_finite_values(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
     let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
     let ends = |scene: &Scene, student: Student| match trace_within(scene, student, MAX_STEP_POLYNOMIALS) {
-        Ok(trace) | Err((trace, _)) => !find_in_trace(scene, Source::whole(&trace)).is_empty(),
+        Ok(trace) | Err((trace, _)) => !explain_source(scene, Source::from_trace(&trace)).is_empty(),
     };
     let mut of_end = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_TRACES);
     of_end.all(|(scene, _)| students.iter().any(|student| ends(scene, *student)))
@@ -50,7 +50,7 @@ fn make_its_end(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> b
 pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])], right: &[&Scene]) -> Vec<String> {
     let traces = || wrong.iter().map(|(_, list)| *list);
     let is_asked = |scene: &Scene, key: &str| {
-        let is_named = |list: &[Explanation]| list.iter().any(|one| alternatives(one).contains_key(key));
+        let is_named = |list: &[Explanation]| list.iter().any(|one| alternative_statements(one).contains_key(key));
         find(key).is_none_or(|row| row.area != Area::Integrator)
             || wrong.iter().any(|(other, list)| other.integrator == scene.integrator && is_named(list))
     };
@@ -69,7 +69,7 @@ pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])
                 let work = Cell::new(0);
                 let rivals = likely.iter().filter(|one| one.about == About::Mistake).flat_map(|one| &one.same_as);
                 refuted.extend(rivals.filter(|key| is_denied(key, &work)).cloned().collect::<Vec<_>>());
-                if likely.iter().any(Explanation::is_not_finite) && make_its_end(&likely, wrong) {
+                if likely.iter().any(Explanation::is_not_finite) && explain_non_finite_values(&likely, wrong) {
                     refuted.push(Explanation::NOT_FINITE.to_owned());
                 }
                 return refuted;

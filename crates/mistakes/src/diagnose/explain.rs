@@ -2,13 +2,13 @@
 use super::{
     Detail, Explanation,
     about::About,
-    known::{KnownMistakes, is_empty_stage, known_or_open},
+    known::{KnownMistakes, explain_kept_steps, is_empty_stage},
     naming::is_in_other_words,
-    near, not_finite, polynomial,
+    near_pairs, non_finite, polynomial,
     sampling::{KeptStep, Source, TraceSamples, sample_trace},
     stages,
 };
-use fosssim_judge::kept::KeptTrace;
+use fosssim_judge::kept_trace::KeptTrace;
 use fosssim_model::{
     assignments::Assignment,
     scene::Scene,
@@ -32,25 +32,26 @@ const MAX_PAIRS: usize = 400_000;
 /// scene yields only the question whether it belongs to this one ([`Explanation::is_other_scene`]).
 #[must_use]
 pub fn explain(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
-    explain_source(scene, Source::whole(trace))
+    explain_source(scene, Source::from_trace(trace))
 }
 
 /// Explains the kept part of a trace, like [`explain`].
 #[must_use]
-pub fn explain_kept(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
+pub fn explain_kept_trace(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
     explain_source(scene, trace.into())
 }
 
 /// Explains a trace like [`explain`], with records from any source.
 fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     if Layout::for_scene(scene).has_polynomials && pairs(scene).count() > MAX_PAIRS {
-        return not_finite::find_in_trace(scene, source);
+        return non_finite::explain_source(scene, source);
     }
     let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);
     // In the contest, students write only the search for near pairs.
     let is_contest = scene.assignment() == Assignment::T2M3;
-    let pairs = if is_contest { near::explain(&mut reference, scene, &scan) } else { None };
-    let KnownMistakes { explanations: mut known, open, denies } = known_or_open(&mut reference, scene, scan);
+    let pairs = if is_contest { near_pairs::explain(&mut reference, scene, &scan) } else { None };
+    let KnownMistakes { explanations: mut known, unexplained: open, contradicted_keys: denies } =
+        explain_kept_steps(&mut reference, scene, scan);
     if known.iter().any(Explanation::is_other_scene) {
         return known;
     }
@@ -59,7 +60,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         polynomials.retain(|one| !one.is_of_missing());
     }
     for explanation in &mut known {
-        let of_kind = find(&explanation.key).filter(|row| is_formula(row.area)).map(|row| row.kind_of_pair());
+        let of_kind = find(&explanation.key).filter(|row| is_formula_area(row.area)).map(|row| row.kind_of_pair());
         if let Some(kind) = of_kind {
             let is_of_kind = |claim: &&String| {
                 let kinds = PairKind::ALL.into_iter().filter(|one| kind.is_none_or(|kind| kind == *one));
@@ -70,7 +71,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         }
     }
     if let [explanation] = &mut known[..]
-        && find(&explanation.key).is_some_and(|row| is_formula(row.area))
+        && find(&explanation.key).is_some_and(|row| is_formula_area(row.area))
         && explanation.is_complete()
     {
         // A guess about all polynomials is the same mistake in other words, so its terms and its example are added.
@@ -98,7 +99,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let open = open.filter(|_| !is_contest);
     let stage = open.and_then(|scan| {
         let is_of_numbers = |kept: &&KeptStep| kept.records.is_finite();
-        stages::explain(&mut reference, scene, scan.wrong.iter().chain(&scan.right).filter(is_of_numbers))
+        stages::explain(&mut reference, scene, scan.wrong_steps.iter().chain(&scan.right_steps).filter(is_of_numbers))
     });
     if stage.as_ref().is_some_and(|stage| stage.key == Explanation::ORDER) {
         // If pairs are in another order, their polynomials cannot be compared.
@@ -107,7 +108,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let mut all = known;
     all.append(&mut polynomials);
     all.extend(pairs);
-    all.iter_mut().for_each(explain_letters);
+    all.iter_mut().for_each(add_letter_note);
     all.extend(stage);
     // The sort is stable, so a known mistake stays before equally good guesses.
     all.sort_by_key(|one| (one.is_unexplained(), !one.is_complete()));
@@ -117,7 +118,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
 }
 
 /// Adds a note, once, after an explanation's formulas, that the report must explain their letters.
-fn explain_letters(explanation: &mut Explanation) {
+fn add_letter_note(explanation: &mut Explanation) {
     if explanation.is_unexplained() {
         return;
     }
@@ -134,6 +135,6 @@ fn explain_letters(explanation: &mut Explanation) {
 }
 
 /// Returns whether mistakes in an area of the assignment are mistakes of polynomials.
-pub(super) const fn is_formula(area: Area) -> bool {
+pub(super) const fn is_formula_area(area: Area) -> bool {
     matches!(area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane | Area::Handover)
 }

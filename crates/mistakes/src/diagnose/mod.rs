@@ -5,22 +5,23 @@
 //! sentences.
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
+mod corrected_trace;
 mod evidence;
 mod excluded_mistakes;
 mod explain;
-mod heads;
+mod joint_explanation;
 mod known;
 mod naming;
-mod near;
-mod not_finite;
+mod near_pairs;
+mod non_finite;
 pub mod polynomial;
 mod sampling;
-mod settled_trace;
 mod stages;
-mod written;
+mod student_code;
 
+pub use corrected_trace::{CorrectedTrace, correct_trace};
 pub use excluded_mistakes::refuted_keys;
-pub use explain::{explain, explain_kept};
+pub use explain::{explain, explain_kept_trace};
 pub use fosssim_findings::explanation::{
     About, Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Detail, Example,
     ExamplePlace, ExampleValue, Explanation, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PairCounts,
@@ -30,13 +31,12 @@ pub use fosssim_findings::explanation::{
 };
 use fosssim_findings::explanation::{about, fault, guess};
 pub use fosssim_student::{assignments::probe_scenes, plain::formula_in};
-pub use heads::explain_together;
-pub use known::{can_show, find_known, mistake_is_visible, reproduces};
+pub use joint_explanation::explain_together;
+pub use known::{find_known, may_change_trace, mistake_is_visible, reproduces};
 pub use naming::is_named_in;
-pub use near::{PairTrait, pair_traits};
-pub use not_finite::not_finite;
-pub use settled_trace::{SettledTrace, settle_trace};
-pub use written::{is_written, milestone};
+pub use near_pairs::{PairTrait, pair_traits};
+pub use non_finite::explain_not_finite;
+pub use student_code::{find_milestone, is_written_by_student};
 
 #[cfg(test)]
 mod tests;

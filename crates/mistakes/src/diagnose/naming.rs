@@ -5,7 +5,7 @@ use fosssim_student::{Row, all_rows, find};
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Returns the explanation of the same steps by a known mistake instead.
-pub(super) fn as_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Explanation {
+pub(super) fn explain_by_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Explanation {
     let of_row = |detail: &Detail| match detail {
         Detail::Term(_) => Detail::Term(row.id.into()),
         Detail::Look(_) => Detail::Look(row.area),
@@ -34,13 +34,13 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
         return explanations.iter().any(|one| is_about(one) && says_so(one));
     }
     let said = mistake.statement();
-    explanations.iter().any(|one| alternatives(one).contains_key(&said))
+    explanations.iter().any(|one| alternative_statements(one).contains_key(&said))
 }
 
 /// Returns the statements ([`Explanation::statement`]) that explain as much as this explanation of a trace: its own,
 /// those that it cannot distinguish, and all that would give the same polynomials. Each comes with whether it explains
 /// everything that this explanation is about.
-pub(super) fn alternatives(one: &Explanation) -> BTreeMap<String, bool> {
+pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool> {
     let is_known = |key: &&String| find(key).is_some();
     let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.statement(), one.is_settled())]);
     all.extend(one.same_as.iter().filter(is_known).map(|key| (key.clone(), one.is_settled())));

@@ -1,6 +1,7 @@
 //! Finds the likely mistakes of one submission from all its scenes together.
 
-use crate::diagnose::{explain_together, is_named_in, settle_trace};
+use crate::diagnose::{correct_trace, explain_together, is_named_in};
+use disclosure::{limit_result, limit_smallest_scene};
 use fosssim_findings::{
     Hints, Visibility,
     explanation::Explanation,
@@ -8,43 +9,42 @@ use fosssim_findings::{
     smallest::SmallestScene,
 };
 use std::{borrow::Cow, time::Duration};
-use told::{cut_result, cut_smallest};
 
-pub mod told;
+pub mod disclosure;
 
 /// Returns the grade with only the scene details that hints allow for students, and without information about other
 /// submissions. Groups that students do not see are included.
 #[must_use]
-pub fn told_to_students(grade: &Grade) -> Cow<'_, Grade> {
-    let is_all_told = grade.groups.iter().all(|group| group.hints == Hints::Full);
-    if is_all_told && grade.same_program.is_empty() && grade.smallest.is_empty() {
+pub fn disclosed_grade(grade: &Grade) -> Cow<'_, Grade> {
+    let is_all_disclosed = grade.groups.iter().all(|group| group.hints == Hints::Full);
+    if is_all_disclosed && grade.same_program.is_empty() && grade.smallest.is_empty() {
         return Cow::Borrowed(grade);
     }
-    let mut told = Grade { same_program: Vec::new(), smallest: visible_smallest(grade), ..grade.clone() };
-    if is_all_told {
-        return Cow::Owned(told);
+    let mut disclosed = Grade { same_program: Vec::new(), smallest: visible_smallest_scenes(grade), ..grade.clone() };
+    if is_all_disclosed {
+        return Cow::Owned(disclosed);
     }
-    for group in &mut told.groups {
+    for group in &mut disclosed.groups {
         for scene in &mut group.scenes {
-            cut_result(group.hints, &mut scene.result);
+            limit_result(group.hints, &mut scene.result);
         }
     }
-    if !told.groups.iter().all(|group| group.hints.explains()) {
-        told.located = None;
+    if !disclosed.groups.iter().all(|group| group.hints.explains()) {
+        disclosed.located = None;
     }
-    reconcile_explanations(&mut told);
-    Cow::Owned(told)
+    reconcile_explanations(&mut disclosed);
+    Cow::Owned(disclosed)
 }
 
 /// Returns only the part of the grade that students see immediately: points and verdict are those of the remaining
-/// groups, and hints limit the reports on their scenes ([`told_to_students`]). Unless the suite shows the output of
+/// groups, and hints limit the reports on their scenes ([`disclosed_grade`]). Unless the suite shows the output of
 /// programs, scenes have only their verdicts ([`withhold`](fosssim_findings::SceneResult::withhold)).
 #[must_use]
-pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
+pub fn immediate_grade(grade: &Grade) -> Cow<'_, Grade> {
     if grade.is_visible() {
-        return told_to_students(grade);
+        return disclosed_grade(grade);
     }
-    let grade = told_to_students(grade);
+    let grade = disclosed_grade(grade);
     let is_visible = |group: &&GroupGrade| group.visibility == Visibility::Visible;
     let groups: Vec<GroupGrade> = grade.groups.iter().filter(is_visible).cloned().collect();
     let (verdict, points, max_points) = Grade::totals(&groups);
@@ -69,19 +69,23 @@ pub fn for_students(grade: &Grade) -> Cow<'_, Grade> {
 /// Returns the smallest scenes that students may see. They are made from a scene of a visible group, with only the
 /// details that its hints allow. There are none if the suite withholds output of programs, because smallest scenes
 /// depend on it.
-fn visible_smallest(grade: &Grade) -> Vec<SmallestScene> {
-    let told = |small: &SmallestScene| {
+fn visible_smallest_scenes(grade: &Grade) -> Vec<SmallestScene> {
+    let disclosed = |small: &SmallestScene| {
         let is_origin = |scene: &SceneGrade| scene.scene == small.origin;
         let group = grade.groups.iter().find(|group| group.scenes.iter().any(is_origin))?;
-        (group.visibility == Visibility::Visible).then(|| cut_smallest(group.hints, small.clone()))?
+        (group.visibility == Visibility::Visible).then(|| limit_smallest_scene(group.hints, small.clone()))?
     };
-    if grade.is_visible() || grade.shows_output { grade.smallest.iter().filter_map(told).collect() } else { Vec::new() }
+    if grade.is_visible() || grade.shows_output {
+        grade.smallest.iter().filter_map(disclosed).collect()
+    } else {
+        Vec::new()
+    }
 }
 
 /// Returns the points of the scenes that a mistake alone makes wrong, which is the gain from fixing it: the simulator
 /// with only this mistake makes the same wrong steps as the submission. Points for speed and extra points do not count.
 #[must_use]
-pub fn worth(grade: &Grade, mistake: &Explanation) -> f64 {
+pub fn mistake_points(grade: &Grade, mistake: &Explanation) -> f64 {
     let is_mended = |scene: &SceneGrade| {
         // If several mistakes are proven, they reproduce the steps only together.
         let mut proven = scene.explanations.iter().filter(|one| one.is_proven()).peekable();
@@ -102,28 +106,28 @@ pub fn worth(grade: &Grade, mistake: &Explanation) -> f64 {
 /// Returns the mistake that explains most wrong scenes, if several scenes have explanations. Together they nearly
 /// always distinguish mistakes that one scene cannot.
 #[must_use]
-pub fn likely_mistake(grade: &Grade) -> Option<Explanation> {
+pub fn find_likely_mistake(grade: &Grade) -> Option<Explanation> {
     let explained = grade.scenes().filter(|scene| !scene.explanations.is_empty()).count();
-    if explained > 1 { likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
+    if explained > 1 { find_likely_mistakes(grade).into_iter().next().map(|(likely, _)| likely) } else { None }
 }
 
 /// Returns at most three likely mistakes, with the number of wrong scenes that each explains. The mistake that explains
 /// most scenes comes first; later ones explain most of the rest, and explain those scenes completely
 /// ([`explain_together`]).
 #[must_use]
-pub fn likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
+pub fn find_likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
     explain_together(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted)
         .into_iter()
         .filter(|likely| {
             likely.reproduced > 0 || likely.is_of_stage() || likely.is_not_finite() || likely.is_unexplained()
         })
-        .map(|likely| (likely.clone(), explained_by(grade, &likely)))
+        .map(|likely| (likely.clone(), count_explained_scenes(grade, &likely)))
         .collect()
 }
 
 /// Returns the number of scenes whose explanations name `mistake`, or one of its unwritten stages.
 #[must_use]
-pub fn explained_by(grade: &Grade, mistake: &Explanation) -> usize {
+pub fn count_explained_scenes(grade: &Grade, mistake: &Explanation) -> usize {
     grade.scenes().filter(|scene| is_named_in(mistake, &scene.explanations)).count()
 }
 
@@ -131,11 +135,11 @@ pub fn explained_by(grade: &Grade, mistake: &Explanation) -> usize {
 /// right one can refute it. A caller that removes groups from a grade must call it again, so that nothing about them is
 /// revealed.
 pub fn reconcile_explanations(grade: &mut Grade) {
-    let speak_together = !grade.refuted.is_empty() || likely_mistake(grade).is_some();
-    let likely = if speak_together { likely_mistakes(grade) } else { Vec::new() };
+    let speak_together = !grade.refuted.is_empty() || find_likely_mistake(grade).is_some();
+    let likely = if speak_together { find_likely_mistakes(grade) } else { Vec::new() };
     let likely: Vec<Explanation> = likely.into_iter().map(|(one, _)| one).collect();
     for scene in grade.groups.iter_mut().flat_map(|group| &mut group.scenes) {
-        let of_scene = settle_trace(&scene.result.explanations, &likely, &grade.refuted);
+        let of_scene = correct_trace(&scene.result.explanations, &likely, &grade.refuted);
         (scene.settled, scene.agreed) = (of_scene.explanations, of_scene.agreed);
     }
 }

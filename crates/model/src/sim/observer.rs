@@ -325,10 +325,10 @@ pub struct Impulse {
     /// The pair that collides.
     pub pair: Pair,
     /// The contact normal, not normalized.
-    #[serde(with = "fosssim_num::written")]
+    #[serde(with = "fosssim_num::number_serde")]
     pub normal: Vec2,
     /// The time of impact as a fraction of the step.
-    #[serde(with = "fosssim_num::written")]
+    #[serde(with = "fosssim_num::number_serde")]
     pub time: f64,
 }
 

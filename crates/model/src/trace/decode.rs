@@ -9,7 +9,7 @@ use super::{
 use crate::sim::State;
 use fosssim_num::{
     polynomial::{MAX_COEFFICIENTS, trim},
-    tolerances::LEADING_COEFFICIENT,
+    tolerances::MIN_LEADING_COEFFICIENT,
     vector::Vec2,
 };
 use std::io::Read;
@@ -115,7 +115,7 @@ pub(crate) fn decode_polynomials<const TRIM: bool>(
             None => places.iter_mut().zip(numbers).for_each(|(place, bytes)| *place = f64::from_le_bytes(*bytes)),
         }
         let mut kept = size;
-        if TRIM && size > 0 && places[0].abs() < LEADING_COEFFICIENT {
+        if TRIM && size > 0 && places[0].abs() < MIN_LEADING_COEFFICIENT {
             let list = trim(&places[..size]);
             kept = list.len();
             places.copy_within(size - kept..size, 0);

@@ -1,6 +1,6 @@
 //! One record in memory.
 use crate::sim::{Impulse, Pair, PairKind, State};
-use fosssim_num::vector::{Vec2, same_bits};
+use fosssim_num::vector::{Vec2, has_same_bits};
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
 
@@ -19,12 +19,12 @@ impl Frame {
     /// Returns whether both frames are identical, bit for bit.
     #[must_use]
     pub fn is_same(&self, other: &Self) -> bool {
-        same_bits(&self.state.positions, &other.state.positions)
-            && same_bits(&self.state.velocities, &other.state.velocities)
+        has_same_bits(&self.state.positions, &other.state.positions)
+            && has_same_bits(&self.state.velocities, &other.state.velocities)
             && self.impulses.len() == other.impulses.len()
             && self.impulses.iter().zip(&other.impulses).all(|(one, another)| one.is_same(another))
             && self.polynomials.coefficient_ends == other.polynomials.coefficient_ends
-            && same_bits(&self.polynomials.coefficients, &other.polynomials.coefficients)
+            && has_same_bits(&self.polynomials.coefficients, &other.polynomials.coefficients)
     }
 }
 
@@ -65,12 +65,12 @@ struct ImpulseForm {
     /// The objects that collide.
     pair: ImpulsePair,
     /// The contact normal, from the first object to the second, not normalized.
-    #[serde(with = "fosssim_num::written")]
-    #[schemars(with = "[fosssim_num::written::Number; 2]")]
+    #[serde(with = "fosssim_num::number_serde")]
+    #[schemars(with = "[fosssim_num::number_serde::WrittenNumber; 2]")]
     normal: Vec2,
     /// The time of impact as a fraction of the step.
-    #[serde(with = "fosssim_num::written")]
-    #[schemars(with = "fosssim_num::written::Number")]
+    #[serde(with = "fosssim_num::number_serde")]
+    #[schemars(with = "fosssim_num::number_serde::WrittenNumber")]
     time: f64,
 }
 
@@ -124,7 +124,7 @@ impl LoggedImpulse {
     pub fn is_same(&self, other: &Self) -> bool {
         let numbers = |impulse: &Self| [impulse.normal.x, impulse.normal.y, impulse.time];
         (self.kind, self.first, self.second) == (other.kind, other.first, other.second)
-            && same_bits(&numbers(self), &numbers(other))
+            && has_same_bits(&numbers(self), &numbers(other))
     }
 }
 

@@ -18,7 +18,7 @@ use crate::{
     scene::{Collision, Scene},
     sim::State,
 };
-use fosssim_num::{polynomial::MAX_COEFFICIENTS, tolerances::LEADING_COEFFICIENT};
+use fosssim_num::{polynomial::MAX_COEFFICIENTS, tolerances::MIN_LEADING_COEFFICIENT};
 use serde::{Deserialize, Serialize};
 use std::io::Read;
 
@@ -434,7 +434,7 @@ impl<R: Read> LenientReader<R> {
                 }
             }
             let coefficient = f64::from_le_bytes(value);
-            is_leading &= coefficient.abs() < LEADING_COEFFICIENT;
+            is_leading &= coefficient.abs() < MIN_LEADING_COEFFICIENT;
             frame.is_unchanged &= !is_leading;
             // Once the stream has failed, all other coefficients repeat this one.
             let times = if self.has_failed { size - read } else { 1 };

@@ -5,13 +5,13 @@
 //! margin, and the zeros are near (a bound after Fujiwara, 1916) and separated, the root finder has always agreed; the
 //! header of [`super`] lists what is only measured.
 use super::{
-    super::tolerances::{BERNSTEIN_MARGIN, BERNSTEIN_NEAR},
-    separated_zeros::zeros_are_separated,
+    super::tolerances::{BERNSTEIN_MARGIN, BERNSTEIN_NEAR_LIMIT},
+    separated_zeros::are_zeros_separated,
 };
 
 /// Returns whether a polynomial of degree three to five is certainly not positive in `[0, 1]`. NaN gives `false`.
 #[inline]
-pub(super) fn never_positive(coefficients: &[f64]) -> bool {
+pub(super) fn is_never_positive(coefficients: &[f64]) -> bool {
     match *coefficients {
         // The value at 0 is the cheapest test; it is positive for most polynomials that are positive anywhere.
         [.., last] if last >= 0.0 => false,
@@ -30,7 +30,7 @@ fn is_negative_on_unit<const LENGTH: usize>(coefficients: &[f64; LENGTH], recipr
     let mut size = near;
     let mut zeros_are_near = true;
     for coefficient in &coefficients[1..] {
-        near *= BERNSTEIN_NEAR;
+        near *= BERNSTEIN_NEAR_LIMIT;
         let modulus = coefficient.abs();
         size += modulus;
         zeros_are_near &= modulus <= near;
@@ -46,5 +46,5 @@ fn is_negative_on_unit<const LENGTH: usize>(coefficients: &[f64; LENGTH], recipr
         }
     }
     let below = -BERNSTEIN_MARGIN * size;
-    zeros_are_near && control.iter().all(|&value| value < below) && zeros_are_separated(coefficients)
+    zeros_are_near && control.iter().all(|&value| value < below) && are_zeros_separated(coefficients)
 }

@@ -5,8 +5,8 @@ use super::{
     super::{
         polynomial::evaluate,
         tolerances::{
-            LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_MARGIN, PARABOLA_MAX, PARABOLA_MIN, PARABOLA_NEAR, PARABOLA_ROOM,
-            SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
+            LINE_NEAR_LIMIT, PARABOLA_COMPLEX_FACTOR, PARABOLA_MARGIN, PARABOLA_MAX_PRODUCT, PARABOLA_MIN_PRODUCT,
+            PARABOLA_MIN_ZERO_PRODUCT, PARABOLA_NEAR_LIMIT, SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
         },
     },
     Level,
@@ -15,14 +15,14 @@ use super::{
 /// Returns whether a polynomial of degree at most two (as solved, small leading coefficients dropped) is certainly not
 /// positive within the step. NaN and infinities never give a wrong `Some`.
 #[inline]
-pub(super) fn never_positive(coefficients: &[f64]) -> Option<Level> {
+pub(super) fn find_exclusion(coefficients: &[f64]) -> Option<Level> {
     let (level, excluded) = match *coefficients {
         [] => (Level::Vanishing, true),
         [c] => (Level::Vanishing, c <= 0.0),
         [a, b] if a == 0.0 || b == 0.0 => (Level::Vanishing, b <= 0.0),
-        [a, b] => (Level::Line, line_is_excluded(a, b)),
+        [a, b] => (Level::Line, is_line_excluded(a, b)),
         [a, b, c] if a == 0.0 || (b == 0.0 && c == 0.0) => (Level::Vanishing, c <= 0.0),
-        [a, b, c] => (Level::Parabola, parabola_is_excluded(a, b, c)),
+        [a, b, c] => (Level::Parabola, is_parabola_excluded(a, b, c)),
         _ => (Level::Vanishing, false),
     };
     excluded.then_some(level)
@@ -30,7 +30,7 @@ pub(super) fn never_positive(coefficients: &[f64]) -> Option<Level> {
 
 /// Returns whether the line `a t + b` is excluded; neither may be zero.
 #[inline]
-fn line_is_excluded(a: f64, b: f64) -> bool {
+fn is_line_excluded(a: f64, b: f64) -> bool {
     if a < 0.0 {
         // Positive before its zero at a positive time; only rounding could hide it.
         if b > 0.0 {
@@ -38,15 +38,15 @@ fn line_is_excluded(a: f64, b: f64) -> bool {
         }
         // The zero z = -b/a is negative. The sample at z + 1 has the value a, with a rounding error of at most 4u|b|,
         // far less than |a|.
-        if b >= a * LINE_NEAR {
+        if b >= a * LINE_NEAR_LIMIT {
             return true;
         }
     }
-    exact_line(a, b)
+    is_line_excluded_exactly(a, b)
 }
 
 /// Performs the root finder's operations: one zero and the samples on its two sides.
-fn exact_line(a: f64, b: f64) -> bool {
+fn is_line_excluded_exactly(a: f64, b: f64) -> bool {
     let zero = -b / a;
     let before = evaluate(&[a, b], zero - 1.0) > 0.0;
     let after = evaluate(&[a, b], zero + 1.0) > 0.0;
@@ -56,8 +56,8 @@ fn exact_line(a: f64, b: f64) -> bool {
 
 /// Returns whether the parabola `a t² + b t + c` is excluded; `a` is not zero, and `b` and `c` are not both zero.
 #[inline]
-fn parabola_is_excluded(a: f64, b: f64, c: f64) -> bool {
-    c < 0.0 && (misses(a, b, c) || is_negative_on_unit(a, b, c))
+fn is_parabola_excluded(a: f64, b: f64, c: f64) -> bool {
+    c < 0.0 && (has_no_real_zero(a, b, c) || is_negative_on_unit(a, b, c))
 }
 
 /// Returns whether the parabola clearly has no real zero. The only sample is then the one at 0, which is c.
@@ -65,13 +65,13 @@ fn parabola_is_excluded(a: f64, b: f64, c: f64) -> bool {
 /// The relative distance of the discriminant from 0 is 2^-20, and its rounding error is a few u. The imaginary part is
 /// at least 2^-10 sqrt(c/a), and exceeds the 1e-8 below which a zero counts as real.
 #[inline]
-fn misses(a: f64, b: f64, c: f64) -> bool {
+fn has_no_real_zero(a: f64, b: f64, c: f64) -> bool {
     let product = 4.0 * a * c;
     // Moderate products exclude overflow and underflow in the closed form; NaN fails.
     a < 0.0
-        && b * b < product * PARABOLA_COMPLEX
-        && c <= a * PARABOLA_ROOM
-        && (PARABOLA_MIN..PARABOLA_MAX).contains(&product)
+        && b * b < product * PARABOLA_COMPLEX_FACTOR
+        && c <= a * PARABOLA_MIN_ZERO_PRODUCT
+        && (PARABOLA_MIN_PRODUCT..PARABOLA_MAX_PRODUCT).contains(&product)
         && (SEARCH_MIN_COEFFICIENT..SEARCH_MAX_COEFFICIENT).contains(&-a)
 }
 
@@ -88,7 +88,7 @@ fn is_negative_on_unit(a: f64, b: f64, c: f64) -> bool {
     c < below
         && c + 0.5 * b < below
         && (a + b) + c < below
-        && b.abs() <= a.abs() * PARABOLA_NEAR
-        && c.abs() <= a.abs() * (PARABOLA_NEAR * PARABOLA_NEAR)
-        && (PARABOLA_MIN..PARABOLA_MAX).contains(&size)
+        && b.abs() <= a.abs() * PARABOLA_NEAR_LIMIT
+        && c.abs() <= a.abs() * (PARABOLA_NEAR_LIMIT * PARABOLA_NEAR_LIMIT)
+        && (PARABOLA_MIN_PRODUCT..PARABOLA_MAX_PRODUCT).contains(&size)
 }

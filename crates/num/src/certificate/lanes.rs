@@ -6,35 +6,36 @@
 use super::super::{
     lanes::{Lanes, Mask, Simd},
     tolerances::{
-        LEADING_COEFFICIENT, LINE_NEAR, PARABOLA_COMPLEX, PARABOLA_MARGIN, PARABOLA_MAX, PARABOLA_MIN, PARABOLA_NEAR,
-        PARABOLA_ROOM, SEARCH_MAX_COEFFICIENT, SEARCH_MIN_COEFFICIENT,
+        LINE_NEAR_LIMIT, MIN_LEADING_COEFFICIENT, PARABOLA_COMPLEX_FACTOR, PARABOLA_MARGIN, PARABOLA_MAX_PRODUCT,
+        PARABOLA_MIN_PRODUCT, PARABOLA_MIN_ZERO_PRODUCT, PARABOLA_NEAR_LIMIT, SEARCH_MAX_COEFFICIENT,
+        SEARCH_MIN_COEFFICIENT,
     },
 };
 
 /// Returns the lanes in which a coefficient is small enough to be dropped when it leads.
 #[inline(always)]
 pub fn is_small<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
-    coefficient.abs().below(LEADING_COEFFICIENT)
+    coefficient.abs().is_below(MIN_LEADING_COEFFICIENT)
 }
 
 /// Returns the lanes in which the polynomial `a t + b`, with small leading coefficients dropped, is certainly not
 /// positive within the step.
 #[inline(always)]
-pub fn never_positive_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
+pub fn is_line_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (zero, small) = (a.splat_like(0.0), is_small(a));
     // Without its leading coefficient, the polynomial is empty or a constant that is not positive.
-    let constant = small & b.below(LEADING_COEFFICIENT);
-    let near = a.lt(zero) & b.le(zero) & (LINE_NEAR * a).le(b);
+    let constant = small & b.is_below(MIN_LEADING_COEFFICIENT);
+    let near = a.lt(zero) & b.le(zero) & (LINE_NEAR_LIMIT * a).le(b);
     let known = constant | (!small & (b.is_zero() | near));
     // Positive before its zero at a positive time; only rounding could hide it.
     let falls = a.lt(zero) & zero.lt(b);
     let open = !(small | known | falls);
-    if open.any() { known | (open & exact_line(a, b)) } else { known }
+    if open.any() { known | (open & is_line_excluded_exactly(a, b)) } else { known }
 }
 
 /// Performs the root finder's operations: one zero and the samples on its two sides.
 #[inline(always)]
-fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
+fn is_line_excluded_exactly<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let (nothing, one) = (a.splat_like(0.0), a.splat_like(1.0));
     let zero = -b / a;
     let before = nothing.lt(a * (zero - one) + b);
@@ -45,45 +46,45 @@ fn exact_line<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
 /// Returns the lanes in which the polynomial `a t² + b t + c`, with small leading coefficients dropped, is certainly
 /// not positive within the step.
 #[inline(always)]
-pub fn never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
+pub fn is_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let small = is_small(a);
     let vanishing = b.is_zero() & c.is_zero();
-    let whole = (vanishing | parabola_is_excluded(a, b, c)) & !small;
-    if small.any() { whole | (small & never_positive_line(b, c)) } else { whole }
+    let whole = (vanishing | is_parabola_excluded(a, b, c)) & !small;
+    if small.any() { whole | (small & is_line_never_positive(b, c)) } else { whole }
 }
 
 /// Tests parabolas whose leading coefficient is not dropped: whether they have no real zero, or are below zero with a
 /// margin.
 #[inline(always)]
-fn parabola_is_excluded<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
+fn is_parabola_excluded<S: Simd>(a: Lanes<S>, b: Lanes<S>, c: Lanes<S>) -> Mask<S> {
     let product = 4.0 * a * c;
-    let misses = a.below(0.0)
-        & (b * b).lt(PARABOLA_COMPLEX * product)
-        & c.le(PARABOLA_ROOM * a)
-        & within(product, PARABOLA_MIN, PARABOLA_MAX)
-        & within(-a, SEARCH_MIN_COEFFICIENT, SEARCH_MAX_COEFFICIENT);
+    let misses = a.is_below(0.0)
+        & (b * b).lt(PARABOLA_COMPLEX_FACTOR * product)
+        & c.le(PARABOLA_MIN_ZERO_PRODUCT * a)
+        & is_within(product, PARABOLA_MIN_PRODUCT, PARABOLA_MAX_PRODUCT)
+        & is_within(-a, SEARCH_MIN_COEFFICIENT, SEARCH_MAX_COEFFICIENT);
     let size = a.abs() + b.abs() + c.abs();
     let below = -PARABOLA_MARGIN * size;
     let negative = c.lt(below)
         & (c + 0.5 * b).lt(below)
         & ((a + b) + c).lt(below)
-        & b.abs().le(PARABOLA_NEAR * a.abs())
-        & c.abs().le((PARABOLA_NEAR * PARABOLA_NEAR) * a.abs())
-        & within(size, PARABOLA_MIN, PARABOLA_MAX);
-    c.below(0.0) & (misses | negative)
+        & b.abs().le(PARABOLA_NEAR_LIMIT * a.abs())
+        & c.abs().le((PARABOLA_NEAR_LIMIT * PARABOLA_NEAR_LIMIT) * a.abs())
+        & is_within(size, PARABOLA_MIN_PRODUCT, PARABOLA_MAX_PRODUCT);
+    c.is_below(0.0) & (misses | negative)
 }
 
 /// Returns the lanes in which a value is at least `low` and less than `high`.
 #[inline(always)]
-fn within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
-    value.at_least(low) & value.below(high)
+fn is_within<S: Simd>(value: Lanes<S>, low: f64, high: f64) -> Mask<S> {
+    value.is_at_least(low) & value.is_below(high)
 }
 
 /// Returns the lanes in which an impact is excluded for a particle-particle or particle-half-plane pair, because one of
 /// its polynomials (a parabola and a line) is certainly not positive within the step.
 #[inline(always)]
-pub fn excludes_two<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) -> Mask<S> {
-    never_positive(a, b, c) | never_positive_line(d, e)
+pub fn excludes_two_polynomials<S: Simd>([a, b, c]: [Lanes<S>; 3], [d, e]: [Lanes<S>; 2]) -> Mask<S> {
+    is_never_positive(a, b, c) | is_line_never_positive(d, e)
 }
 
 /// Returns the lanes in which the closed forms exclude an impact of a pair with an edge: one of its polynomials is
@@ -101,16 +102,16 @@ pub fn excludes_edge<S: Simd>(
     let [f0, f1, f2] = beyond_first;
     let [s0, s1, s2] = before_second;
     let [a0, a1, a2, a3, a4, a5] = approach;
-    let mut excluded = never_positive(f0, f1, f2) | never_positive(s0, s1, s2);
+    let mut excluded = is_never_positive(f0, f1, f2) | is_never_positive(s0, s1, s2);
     if !excluded.all() {
         // If the overlap or the approach has degree two at most, the closed forms cover it as well.
         let is_parabola = is_small(o0) & is_small(o1);
         if is_parabola.any() {
-            excluded = excluded | (is_parabola & never_positive(o2, o3, o4));
+            excluded = excluded | (is_parabola & is_never_positive(o2, o3, o4));
         }
         let is_parabola = is_small(a0) & is_small(a1) & is_small(a2);
         if is_parabola.any() {
-            excluded = excluded | (is_parabola & never_positive(a3, a4, a5));
+            excluded = excluded | (is_parabola & is_never_positive(a3, a4, a5));
         }
     }
     excluded & ends
@@ -118,19 +119,19 @@ pub fn excludes_edge<S: Simd>(
 
 /// Returns the lanes in which all coefficients have a size for which a search is known to end.
 #[inline(always)]
-pub fn search_ends<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGTH]) -> Mask<S> {
-    let mut all = ends(coefficients[0]);
+pub fn search_terminates<S: Simd, const LENGTH: usize>(coefficients: &[Lanes<S>; LENGTH]) -> Mask<S> {
+    let mut all = has_searchable_size(coefficients[0]);
     for coefficient in &coefficients[1..] {
-        all = all & ends(*coefficient);
+        all = all & has_searchable_size(*coefficient);
     }
     all
 }
 
 #[inline(always)]
-fn ends<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
+fn has_searchable_size<S: Simd>(coefficient: Lanes<S>) -> Mask<S> {
     let modulus = coefficient.abs();
     let largest = modulus.splat_like(SEARCH_MAX_COEFFICIENT);
-    modulus.is_zero() | (modulus.at_least(SEARCH_MIN_COEFFICIENT) & modulus.le(largest))
+    modulus.is_zero() | (modulus.is_at_least(SEARCH_MIN_COEFFICIENT) & modulus.le(largest))
 }
 
 #[cfg(test)]
@@ -138,24 +139,24 @@ mod tests {
     use super::*;
     use crate::{
         certificate::closed_form,
-        lanes::{Instructions, MAX_LANES, Work},
+        lanes::{Instructions, LaneWork, MAX_LANES},
         polynomial::trim,
     };
     use proptest::prelude::*;
 
     struct Ask<'a>(&'a [[f64; MAX_LANES]; 3]);
 
-    impl Work for Ask<'_> {
+    impl LaneWork for Ask<'_> {
         type Output = [[f64; MAX_LANES]; 3];
         #[inline(always)]
         fn run<S: Simd>(self, simd: S) -> Self::Output {
             let mut answers = [[0.0; MAX_LANES]; 3];
             for first in (0..MAX_LANES).step_by(Lanes::<S>::COUNT) {
                 let [a, b, c] = self.0.map(|numbers| Lanes::load(simd, &numbers[first..]));
-                let masks = [never_positive(a, b, c), never_positive_line(b, c), search_ends(&[a, b, c])];
+                let masks = [is_never_positive(a, b, c), is_line_never_positive(b, c), search_terminates(&[a, b, c])];
                 for (answer, mask) in answers.iter_mut().zip(masks) {
                     let mut lanes = [0.0; MAX_LANES];
-                    mask.or_zero(1.0).store(&mut lanes);
+                    mask.select_or_zero(1.0).store(&mut lanes);
                     answer[first..first + Lanes::<S>::COUNT].copy_from_slice(&lanes[..Lanes::<S>::COUNT]);
                 }
             }
@@ -168,7 +169,7 @@ mod tests {
         let exponents = prop_oneof![-7..7_i32, -53..53_i32, -530..465_i32];
         let power = |exponent: i32| f64::from_bits(u64::try_from(1023 + exponent).expect("not negative") << 52);
         let sign = prop_oneof![Just(0.0), Just(-0.0), Just(1.0), Just(-1.0), Just(-1.0)];
-        let bounds = [1e-12, -1e-12, -9.9e-13, 0.5, -0.25, -LINE_NEAR].map(Just);
+        let bounds = [1e-12, -1e-12, -9.9e-13, 0.5, -0.25, -LINE_NEAR_LIMIT].map(Just);
         prop_oneof![
             4 => (sign, 1.0..2.0, exponents).prop_map(move |(sign, size, exponent)| sign * size * power(exponent)),
             1 => prop::strategy::Union::new(bounds),
@@ -185,9 +186,9 @@ mod tests {
                 for lane in 0..MAX_LANES {
                     let [a, b, c] = lists.map(|numbers| numbers[lane]);
                     let expected = [
-                        closed_form::never_positive(trim(&[a, b, c])).is_some(),
-                        closed_form::never_positive(trim(&[b, c])).is_some(),
-                        super::super::search_ends(&[a, b, c]),
+                        closed_form::find_exclusion(trim(&[a, b, c])).is_some(),
+                        closed_form::find_exclusion(trim(&[b, c])).is_some(),
+                        super::super::search_terminates(&[a, b, c]),
                     ];
                     for (answer, expected) in answers.iter().zip(expected) {
                         prop_assert_eq!(answer[lane] == 1.0, expected, "{:?}", [a, b, c]);

@@ -56,54 +56,56 @@ crate::closed_set! {
 #[inline]
 #[must_use]
 pub fn excludes_unit_interval(polynomials: &[Polynomial]) -> bool {
-    exclusion(polynomials).is_some()
+    find_exclusion(polynomials).is_some()
 }
 
 /// Tests like [`excludes_unit_interval`], and returns the level that has decided.
 #[inline]
 #[must_use]
-pub fn exclusion(polynomials: &[Polynomial]) -> Option<Level> {
-    exclusion_of(polynomials.iter().map(Polynomial::coefficients))
+pub fn find_exclusion(polynomials: &[Polynomial]) -> Option<Level> {
+    find_list_exclusion(polynomials.iter().map(Polynomial::coefficients))
 }
 
-/// Tests like [`exclusion`], for lists of coefficients without small leading ones.
+/// Tests like [`find_exclusion`], for lists of coefficients without small leading ones.
 #[inline]
-pub fn exclusion_of<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -> Option<Level> {
+pub fn find_list_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone) -> Option<Level> {
     let mut best = None;
     let mut searches = false;
     for coefficients in lists.clone() {
         if coefficients.len() > 3 {
             searches = true;
         } else if best.is_none() {
-            best = closed_form::never_positive(coefficients);
+            best = closed_form::find_exclusion(coefficients);
         }
     }
-    if searches { with_search(lists, best) } else { best }
+    if searches { confirm_exclusion(lists, best) } else { best }
 }
 
 /// Returns the level for lists with a polynomial that needs a search; `known` is the result of the others.
-fn with_search<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, known: Option<Level>) -> Option<Level> {
+fn confirm_exclusion<'a>(lists: impl Iterator<Item = &'a [f64]> + Clone, known: Option<Level>) -> Option<Level> {
     let mut searched = lists.filter(|list| list.len() > 3);
-    if !searched.clone().all(search_ends) {
+    if !searched.clone().all(search_terminates) {
         return None;
     }
     if known.is_some() {
         return known;
     }
-    searched.any(|list| nowhere_positive(list) || bernstein::never_positive(list)).then_some(Level::Bernstein)
+    searched
+        .any(|list| is_rejected_and_not_positive(list) || bernstein::is_never_positive(list))
+        .then_some(Level::Bernstein)
 }
 
 /// Returns whether the root finder rejects the polynomial (a leading zero in the non-dropping build, or `c z^m`) and
 /// its only sample, at 0, is not positive.
 #[inline]
-fn nowhere_positive(coefficients: &[f64]) -> bool {
+fn is_rejected_and_not_positive(coefficients: &[f64]) -> bool {
     coefficients[coefficients.len() - 1] <= 0.0
         && (coefficients[0] == 0.0 || coefficients[1..].iter().all(|&coefficient| coefficient == 0.0))
 }
 
 /// Returns whether all coefficients are finite and, unless zero, have a size for which the search is known to end.
 #[inline]
-fn search_ends(coefficients: &[f64]) -> bool {
+fn search_terminates(coefficients: &[f64]) -> bool {
     coefficients.iter().all(|coefficient| {
         let modulus = coefficient.abs();
         modulus == 0.0 || (SEARCH_MIN_COEFFICIENT..=SEARCH_MAX_COEFFICIENT).contains(&modulus)

@@ -7,16 +7,16 @@ use super::super::tolerances::DISCRIMINANT_MARGIN;
 
 /// The coefficients of a polynomial of degree below `LENGTH`, with 0 after the last.
 #[derive(Clone, Copy)]
-struct Entries<const LENGTH: usize> {
+struct PerturbedCoefficients<const LENGTH: usize> {
     values: [f64; LENGTH],
     /// The largest change of each coefficient per relative change of the first polynomial's coefficients.
     changes: [f64; LENGTH],
 }
 
-impl<const LENGTH: usize> Entries<LENGTH> {
+impl<const LENGTH: usize> PerturbedCoefficients<LENGTH> {
     /// Returns whether the leading coefficient is clearly not zero; false for NaN.
     #[inline(always)]
-    fn is_clear(&self) -> bool {
+    fn has_clear_leading(&self) -> bool {
         self.values[0].abs() > DISCRIMINANT_MARGIN * self.changes[0]
     }
 
@@ -39,13 +39,13 @@ impl<const LENGTH: usize> Entries<LENGTH> {
 /// Returns whether no change of the coefficients (highest power first) by [`DISCRIMINANT_MARGIN`] of their moduli makes
 /// two zeros coincide. An intermediate remainder of an unusually low degree gives `false`, too.
 #[inline]
-pub(super) fn zeros_are_separated<const LENGTH: usize>(coefficients: &[f64; LENGTH]) -> bool {
-    let mut dividend = Entries { values: *coefficients, changes: coefficients.map(f64::abs) };
+pub(super) fn are_zeros_separated<const LENGTH: usize>(coefficients: &[f64; LENGTH]) -> bool {
+    let mut dividend = PerturbedCoefficients { values: *coefficients, changes: coefficients.map(f64::abs) };
     #[expect(clippy::cast_precision_loss, reason = "degrees up to five")]
     let values = std::array::from_fn(|i| coefficients[i] * (LENGTH - 1 - i) as f64);
-    let mut divisor = Entries { values, changes: values.map(f64::abs) };
+    let mut divisor = PerturbedCoefficients { values, changes: values.map(f64::abs) };
     for _ in 2..LENGTH {
-        if !divisor.is_clear() {
+        if !divisor.has_clear_leading() {
             return false;
         }
         // Two steps of the division leave a remainder that is shorter by two than the dividend.
@@ -54,28 +54,28 @@ pub(super) fn zeros_are_separated<const LENGTH: usize>(coefficients: &[f64; LENG
         dividend.subtract(&divisor, reciprocal);
         (dividend, divisor) = (divisor, dividend);
     }
-    divisor.is_clear()
+    divisor.has_clear_leading()
 }
 
 #[cfg(test)]
 mod tests {
-    use super::zeros_are_separated;
+    use super::are_zeros_separated;
 
     #[test]
     fn different_zeros_are_separated_even_if_of_different_size() {
-        assert!(zeros_are_separated(&[1.0, -6.0, 11.0, -6.0]));
+        assert!(are_zeros_separated(&[1.0, -6.0, 11.0, -6.0]));
         // (z - 1)(z - 1000)(z - 2)(z + 3000) and a pair at +-i.
-        assert!(zeros_are_separated(&[1.0, 1997.0, -3_005_998.0, 9_004_000.0, -6_000_000.0]));
-        assert!(zeros_are_separated(&[1.0, -10.0, 36.0, -60.0, 35.0, -50.0]));
+        assert!(are_zeros_separated(&[1.0, 1997.0, -3_005_998.0, 9_004_000.0, -6_000_000.0]));
+        assert!(are_zeros_separated(&[1.0, -10.0, 36.0, -60.0, 35.0, -50.0]));
     }
 
     #[test]
     fn multiple_zeros_are_not() {
         // (z - 1)^2 (z + 2), the same with a change of 1e-12, and (z - 1)^2 (z - 2)(z - 3)(z - 4).
-        assert!(!zeros_are_separated(&[1.0, 0.0, -3.0, 2.0]));
-        assert!(!zeros_are_separated(&[1.0, 1e-12, -3.0, 2.0]));
-        assert!(!zeros_are_separated(&[1.0, -11.0, 45.0, -85.0, 74.0, -24.0]));
-        assert!(zeros_are_separated(&[1.0, -11.0, 45.0, -85.0, 74.0, -24.1]));
-        assert!(!zeros_are_separated(&[1.0, f64::NAN, 45.0, -85.0]));
+        assert!(!are_zeros_separated(&[1.0, 0.0, -3.0, 2.0]));
+        assert!(!are_zeros_separated(&[1.0, 1e-12, -3.0, 2.0]));
+        assert!(!are_zeros_separated(&[1.0, -11.0, 45.0, -85.0, 74.0, -24.0]));
+        assert!(are_zeros_separated(&[1.0, -11.0, 45.0, -85.0, 74.0, -24.1]));
+        assert!(!are_zeros_separated(&[1.0, f64::NAN, 45.0, -85.0]));
     }
 }

@@ -1,4 +1,4 @@
-use super::{Level, closed_form, excludes_unit_interval, exclusion};
+use super::{Level, closed_form, excludes_unit_interval, find_exclusion};
 use crate::{
     first_time::{first_time, positive_set},
     polynomial::Polynomial,
@@ -33,7 +33,7 @@ fn each_level_decides_what_it_is_made_for() {
     ];
     for (lists, expected) in cases {
         let polynomials = list(lists);
-        assert_eq!(exclusion(&polynomials), expected, "{lists:?}");
+        assert_eq!(find_exclusion(&polynomials), expected, "{lists:?}");
         let collides = first_time(&polynomials).expect("terminates") <= 1.0;
         assert!(!(collides && expected.is_some()), "{lists:?}");
     }
@@ -119,7 +119,7 @@ proptest! {
 
     #[test]
     fn lines_are_decided_exactly(a in number(), b in number()) {
-        let excluded = closed_form::never_positive(&[a, b]).is_some();
+        let excluded = closed_form::find_exclusion(&[a, b]).is_some();
         let set = positive_set(&[a, b]).expect("closed forms return");
         let meets = set.as_slice().iter().any(|interval| interval.hi > 0.0 && interval.lo <= 1.0);
         // Positive before a zero at a positive time: left to the search, whatever rounding makes of it.

@@ -38,16 +38,16 @@ use super::{
     bounded::{BoundedValue, UNIT_ROUNDOFF},
     polynomial::MAX_COEFFICIENTS,
 };
-use exact::{ExactAnswer, exact_first};
-use pieces::{Answer, Search};
-use range::{Ends, Problem};
-pub use short_numbers::all_exact;
+use exact::{ExactAnswer, find_exact_first_time};
+use pieces::{Answer, SearchOutcome};
+use range::{IntervalEnd, Problem};
+pub use short_numbers::are_short;
 
 /// The maximum number of polynomials of one detection.
 pub const MAX_POLYNOMIALS: usize = 4;
 
 /// The largest reported margin, in units of [`UNIT_ROUNDOFF`]: the decision survives relative errors of about 1.
-pub const MARGIN_CAP: f64 = 9_007_199_254_740_992.0;
+pub const MAX_MARGIN: f64 = 9_007_199_254_740_992.0;
 
 /// The maximum number of powers of two over which coefficients may spread for [`decide`] to use integers if there are
 /// errors. It is enough for the fifth powers of displacements of `1e-20` next to distances of 1. A larger number makes
@@ -56,11 +56,11 @@ const MAX_SPREAD: u64 = 400;
 
 /// Whether the detection hits within the step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub enum Certainty {
+pub enum HitCertainty {
     /// `tau <= 1` for every choice of coefficients within their bounds.
-    Yes,
+    Hits,
     /// `tau > 1` for every choice.
-    No,
+    Misses,
     /// Some choices hit, others do not; or nothing could be proved, see [`decide`].
     Borderline,
 }
@@ -84,14 +84,14 @@ crate::closed_set! {
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct CertifiedDecision {
     /// The decision.
-    pub certainty: Certainty,
+    pub certainty: HitCertainty,
     /// An enclosure of `tau`, a fraction of the step in `[0, 1]`. For `Yes`, it is valid for every choice of
     /// coefficients; it is about as wide as the effect of the coefficients' errors, or wider if the polynomials nearly
     /// touch earlier in the step. For `Borderline`, it holds for the smallest `tau` of any choice (if that is at most
     /// 1), or is `None` if a coefficient is not finite. `None` for `No`.
     pub time: Option<[f64; 2]>,
     /// The number of units `u` of the coefficients' bounds for which the decision is proved to survive errors, at least
-    /// the given `units` and at most [`MARGIN_CAP`]. The true number may be larger. 0 for `Borderline`.
+    /// the given `units` and at most [`MAX_MARGIN`]. The true number may be larger. 0 for `Borderline`.
     pub margin: f64,
     /// The level that was needed.
     pub level: Level,
@@ -102,7 +102,7 @@ pub struct CertifiedDecision {
 /// header).
 ///
 /// Coefficients must be in the order highest power first, untrimmed. With `units` 0 (or bounds that are all 0) the
-/// result is that of [`exact_first`] and never `Borderline`. A coefficient that is not finite always gives
+/// result is that of [`find_exact_first_time`] and never `Borderline`. A coefficient that is not finite always gives
 /// `Borderline`. With errors, so does a polynomial whose coefficients' sizes spread over more than 400 powers of two
 /// and which is so close to the limit that only integers could decide, because they might take a tenth of a second.
 ///
@@ -111,53 +111,55 @@ pub struct CertifiedDecision {
 /// coefficients.
 #[must_use]
 pub fn decide(polynomials: &[&[BoundedValue]], units: f64) -> CertifiedDecision {
-    let upper = Problem::new(polynomials, units, Ends::Upper);
+    let upper = Problem::new(polynomials, units, IntervalEnd::Upper);
     if !upper.is_finite() {
-        return borderline(None, Level::Range);
+        return borderline_decision(None, Level::Range);
     }
-    if let Some((level, slack)) = upper.exclusion() {
-        return no(level, units + slack);
+    if let Some((level, slack)) = upper.find_exclusion() {
+        return miss_decision(level, units + slack);
     }
-    let lower = Problem::new(polynomials, units, Ends::Lower);
+    let lower = Problem::new(polynomials, units, IntervalEnd::Lower);
     if !lower.is_finite() {
-        return borderline(None, Level::Range);
+        return borderline_decision(None, Level::Range);
     }
     if lower.starts_positive() {
-        return yes([0.0; 2], units + lower.slack_of_yes(0.0), Level::Range);
+        return hit_decision([0.0; 2], units + lower.hit_slack(0.0), Level::Range);
     }
     let outer = pieces::search(&upper);
     if outer.answer == Answer::Never {
-        return no(Level::Subdivision, units + outer.slack);
+        return miss_decision(Level::Subdivision, units + outer.slack);
     }
-    if upper.coefficients_equal(&lower) {
-        return without_errors(&upper, &outer, units);
+    if upper.has_equal_coefficients(&lower) {
+        return decide_without_errors(&upper, &outer, units);
     }
-    let (inner, from) = (pieces::search(&lower), outer.from);
+    let (inner, from) = (pieces::search(&lower), outer.not_before);
     match (outer.answer, inner.answer) {
-        (_, Answer::Reached(time)) => yes([from, time], units + lower.slack_of_yes(time), Level::Subdivision),
-        (Answer::Reached(first), Answer::Never) => borderline(Some([from, first]), Level::Subdivision),
-        (outer, _) if upper.spread().max(lower.spread()) > MAX_SPREAD => {
+        (_, Answer::Reached(time)) => hit_decision([from, time], units + lower.hit_slack(time), Level::Subdivision),
+        (Answer::Reached(first), Answer::Never) => borderline_decision(Some([from, first]), Level::Subdivision),
+        (outer, _) if upper.exponent_spread().max(lower.exponent_spread()) > MAX_SPREAD => {
             let to = if let Answer::Reached(first) = outer { first } else { 1.0 };
-            borderline(Some([from, to]), Level::Subdivision)
+            borderline_decision(Some([from, to]), Level::Subdivision)
         }
-        (outer, inner) => by_integers(&upper, &lower, units, outer != Answer::Unknown, inner == Answer::Never),
+        (outer, inner) => decide_by_integers(&upper, &lower, units, outer != Answer::Unknown, inner == Answer::Never),
     }
 }
 
 /// Returns the decision if all coefficients are exact.
-fn without_errors(problem: &Problem, search: &Search, units: f64) -> CertifiedDecision {
+fn decide_without_errors(problem: &Problem, search: &SearchOutcome, units: f64) -> CertifiedDecision {
     match search.answer {
-        Answer::Reached(time) => yes([search.from, time], units + problem.slack_of_yes(time), Level::Subdivision),
-        Answer::Never => no(Level::Subdivision, units + search.slack),
+        Answer::Reached(time) => {
+            hit_decision([search.not_before, time], units + problem.hit_slack(time), Level::Subdivision)
+        }
+        Answer::Never => miss_decision(Level::Subdivision, units + search.slack),
         Answer::Unknown => match decide_exactly(problem) {
-            ExactAnswer::First { time, .. } => yes(time, units, Level::Exact),
-            ExactAnswer::Never | ExactAnswer::NotFinite => no(Level::Exact, units),
+            ExactAnswer::First { time, .. } => hit_decision(time, units, Level::Exact),
+            ExactAnswer::Never | ExactAnswer::NotFinite => miss_decision(Level::Exact, units),
         },
     }
 }
 
 /// Returns the decision by exact arithmetic; `upper_hits` and `lower_misses` are the known results.
-fn by_integers(
+fn decide_by_integers(
     upper: &Problem,
     lower: &Problem,
     units: f64,
@@ -166,32 +168,32 @@ fn by_integers(
 ) -> CertifiedDecision {
     let ExactAnswer::First { time: first, .. } = decide_exactly(upper) else {
         debug_assert!(!upper_hits, "the subdivision has proved a hit");
-        return no(Level::Exact, units);
+        return miss_decision(Level::Exact, units);
     };
     if !lower_misses && let ExactAnswer::First { time: [_, to], .. } = decide_exactly(lower) {
-        return yes([first[0], to], units, Level::Exact);
+        return hit_decision([first[0], to], units, Level::Exact);
     }
-    borderline(Some(first), Level::Exact)
+    borderline_decision(Some(first), Level::Exact)
 }
 
-/// Decides like [`exact_first`], for a problem's coefficients.
+/// Decides like [`find_exact_first_time`], for a problem's coefficients.
 fn decide_exactly(problem: &Problem) -> ExactAnswer {
-    let lists = problem.highest_first();
+    let lists = problem.coefficients_highest_first();
     let mut slices = [&[] as &[f64]; MAX_POLYNOMIALS];
     for (slice, (list, length)) in slices.iter_mut().zip(&lists) {
         *slice = &list[..*length];
     }
-    exact_first(&slices[..problem.polynomials().len()])
+    find_exact_first_time(&slices[..problem.polynomials().len()])
 }
 
-fn yes(time: [f64; 2], margin: f64, level: Level) -> CertifiedDecision {
-    CertifiedDecision { certainty: Certainty::Yes, time: Some(time), margin: margin.min(MARGIN_CAP), level }
+fn hit_decision(time: [f64; 2], margin: f64, level: Level) -> CertifiedDecision {
+    CertifiedDecision { certainty: HitCertainty::Hits, time: Some(time), margin: margin.min(MAX_MARGIN), level }
 }
 
-fn no(level: Level, margin: f64) -> CertifiedDecision {
-    CertifiedDecision { certainty: Certainty::No, time: None, margin: margin.min(MARGIN_CAP), level }
+fn miss_decision(level: Level, margin: f64) -> CertifiedDecision {
+    CertifiedDecision { certainty: HitCertainty::Misses, time: None, margin: margin.min(MAX_MARGIN), level }
 }
 
-fn borderline(time: Option<[f64; 2]>, level: Level) -> CertifiedDecision {
-    CertifiedDecision { certainty: Certainty::Borderline, time, margin: 0.0, level }
+fn borderline_decision(time: Option<[f64; 2]>, level: Level) -> CertifiedDecision {
+    CertifiedDecision { certainty: HitCertainty::Borderline, time, margin: 0.0, level }
 }

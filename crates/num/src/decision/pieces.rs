@@ -8,7 +8,7 @@
 //! bisection by values brackets faster.
 use super::{
     MAX_POLYNOMIALS, UNIT_ROUNDOFF,
-    range::{Control, Problem, slack},
+    range::{BernsteinForm, Problem, slack},
 };
 
 /// The number of halvings after which a piece stays open.
@@ -36,21 +36,21 @@ pub(crate) enum Answer {
 
 /// A result with its values.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Search {
+pub(crate) struct SearchOutcome {
     /// The result of the search.
     pub(crate) answer: Answer,
     /// The time before which a polynomial is always negative.
-    pub(crate) from: f64,
+    pub(crate) not_before: f64,
     /// For [`Answer::Never`], the number of units of the bounds that the result survives at least.
     pub(crate) slack: f64,
 }
 
 /// Searches `[0, 1]` for the first time at which all polynomials are positive.
-pub(crate) fn search(problem: &Problem) -> Search {
+pub(crate) fn search(problem: &Problem) -> SearchOutcome {
     let mut walk = PieceWalk { problem, first_open: None, slack: f64::INFINITY, pieces: 0 };
-    let mut controls = Controls::new();
+    let mut controls = BernsteinForms::new();
     for (index, polynomial) in problem.polynomials().iter().enumerate() {
-        controls.push(Control { index, ..polynomial.control() });
+        controls.push(BernsteinForm { index, ..polynomial.to_bernstein() });
     }
     let reached = walk.visit(0.0, 1.0, &controls, 0);
     let answer = match (reached, walk.first_open) {
@@ -58,38 +58,38 @@ pub(crate) fn search(problem: &Problem) -> Search {
         (None, None) => Answer::Never,
         (None, Some(_)) => Answer::Unknown,
     };
-    Search { answer, from: walk.first_open.or(reached).unwrap_or(1.0), slack: walk.slack }
+    SearchOutcome { answer, not_before: walk.first_open.or(reached).unwrap_or(1.0), slack: walk.slack }
 }
 
 /// The polynomials whose sign on a piece is unknown; all others are positive on it.
 #[derive(Clone, Copy)]
-struct Controls {
-    list: [Control; MAX_POLYNOMIALS],
+struct BernsteinForms {
+    list: [BernsteinForm; MAX_POLYNOMIALS],
     count: usize,
 }
 
-impl Controls {
+impl BernsteinForms {
     const fn new() -> Self {
-        let empty = Control { values: [0.0; super::MAX_COEFFICIENTS], length: 0, error: 0.0, index: 0 };
+        let empty = BernsteinForm { values: [0.0; super::MAX_COEFFICIENTS], length: 0, error: 0.0, index: 0 };
         Self { list: [empty; MAX_POLYNOMIALS], count: 0 }
     }
 
-    fn push(&mut self, control: Control) {
+    fn push(&mut self, control: BernsteinForm) {
         self.list[self.count] = control;
         self.count += 1;
     }
 
-    fn as_slice(&self) -> &[Control] {
+    fn as_slice(&self) -> &[BernsteinForm] {
         &self.list[..self.count]
     }
 
     /// Returns whether all polynomials are positive at the left end.
-    fn begin_positive(&self) -> bool {
+    fn starts_positive(&self) -> bool {
         self.as_slice().iter().all(|control| control.values[0] > control.error)
     }
 
     /// Returns whether all polynomials are positive at the right end.
-    fn end_positive(&self) -> bool {
+    fn ends_positive(&self) -> bool {
         self.as_slice().iter().all(|control| control.values[control.length - 1] > control.error)
     }
 }
@@ -104,9 +104,9 @@ struct PieceWalk<'a> {
 
 impl PieceWalk<'_> {
     /// Visits the piece from `lo` to `hi`. Returns the first time at which all were found to be positive, if any.
-    fn visit(&mut self, lo: f64, hi: f64, controls: &Controls, depth: u32) -> Option<f64> {
+    fn visit(&mut self, lo: f64, hi: f64, controls: &BernsteinForms, depth: u32) -> Option<f64> {
         self.pieces += 1;
-        let mut open = Controls::new();
+        let mut open = BernsteinForms::new();
         let mut improves = false;
         for control in controls.as_slice() {
             match Sign::from_control(control) {
@@ -123,13 +123,13 @@ impl PieceWalk<'_> {
             }
         }
         // If no polynomial is open, all are positive on the whole piece.
-        if open.begin_positive() {
+        if open.starts_positive() {
             return Some(lo);
         }
         let is_last = depth == MAX_DEPTH || hi - lo < MIN_WIDTH * hi || self.pieces >= MAX_PIECES;
         if !improves || is_last {
             self.first_open.get_or_insert(lo);
-            return open.end_positive().then_some(hi);
+            return open.ends_positive().then_some(hi);
         }
         if let [single] = open.as_slice()
             && rises_once(single)
@@ -137,13 +137,13 @@ impl PieceWalk<'_> {
             return Some(self.bracket(single, lo, hi));
         }
         let middle = lo + (hi - lo) * 0.5;
-        let (mut left, mut right) = (Controls::new(), Controls::new());
+        let (mut left, mut right) = (BernsteinForms::new(), BernsteinForms::new());
         for control in open.as_slice() {
-            let (mut first, second) = halves(control);
+            let (mut first, second) = split(control);
             if lo == 0.0 {
                 // Near 0 small coefficients decide, which large ones have swamped, so they are converted again.
-                let fresh = self.problem.polynomials()[control.index].control_until(middle);
-                first = Control { index: control.index, ..fresh };
+                let fresh = self.problem.polynomials()[control.index].to_bernstein_until(middle);
+                first = BernsteinForm { index: control.index, ..fresh };
             }
             left.push(first);
             right.push(second);
@@ -153,7 +153,7 @@ impl PieceWalk<'_> {
 
     /// Brackets the only zero of a polynomial that rises through it between two times, where all others are positive.
     /// Notes the time before as the start of an open piece, and returns the time after.
-    fn bracket(&mut self, control: &Control, mut lo: f64, mut hi: f64) -> f64 {
+    fn bracket(&mut self, control: &BernsteinForm, mut lo: f64, mut hi: f64) -> f64 {
         let polynomial = &self.problem.polynomials()[control.index];
         loop {
             let middle = lo + (hi - lo) * 0.5;
@@ -175,7 +175,7 @@ impl PieceWalk<'_> {
 /// Returns whether the Bernstein coefficients are negative up to an index and positive after it, with at most one
 /// coefficient between them, whose sign does not matter. The sign changes once, so the polynomial has one change as
 /// well (Descartes' rule of signs).
-fn rises_once(control: &Control) -> bool {
+fn rises_once(control: &BernsteinForm) -> bool {
     let values = &control.values[..control.length];
     let negative = values.iter().take_while(|&&value| value < -control.error).count();
     let positive = values.iter().rev().take_while(|&&value| value > control.error).count();
@@ -195,7 +195,7 @@ enum Sign {
 }
 
 impl Sign {
-    fn from_control(control: &Control) -> Self {
+    fn from_control(control: &BernsteinForm) -> Self {
         let values = &control.values[..control.length];
         let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
         for &value in values {
@@ -216,7 +216,7 @@ impl Sign {
 
 /// Returns the Bernstein coefficients of the two halves (de Casteljau). A sum is rounded; halving is exact except for
 /// underflow, which the error already covers. All intermediate values are convex combinations of the first ones.
-fn halves(control: &Control) -> (Control, Control) {
+fn split(control: &BernsteinForm) -> (BernsteinForm, BernsteinForm) {
     let (mut left, mut right) = (*control, *control);
     let length = control.length;
     let size = control.values[..length].iter().fold(0.0_f64, |most, value| most.max(value.abs()));

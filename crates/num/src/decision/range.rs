@@ -8,7 +8,7 @@ use super::{BoundedValue, Level, MAX_COEFFICIENTS, MAX_POLYNOMIALS, UNIT_ROUNDOF
 
 /// The end of every coefficient's interval.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Ends {
+pub(crate) enum IntervalEnd {
     /// The largest values.
     Upper,
     /// The smallest values.
@@ -39,7 +39,7 @@ pub(crate) struct ExactPolynomial {
 
 /// Bernstein coefficients on a piece of `[0, 1]`; the last `6 - length` are unused.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Control {
+pub(crate) struct BernsteinForm {
     /// The coefficients.
     pub(crate) values: [f64; MAX_COEFFICIENTS],
     /// The number of coefficients.
@@ -63,7 +63,7 @@ impl Problem {
     /// # Panics
     /// Panics if there are too many polynomials or coefficients.
     #[inline]
-    pub(crate) fn new(polynomials: &[&[BoundedValue]], units: f64, ends: Ends) -> Self {
+    pub(crate) fn new(polynomials: &[&[BoundedValue]], units: f64, ends: IntervalEnd) -> Self {
         assert!(polynomials.len() <= MAX_POLYNOMIALS, "more polynomials than a detection has");
         let empty = ExactPolynomial { coefficients: [0.0; MAX_COEFFICIENTS], length: 0, bound: 0.0 };
         let mut problem = Self { list: [empty; MAX_POLYNOMIALS], count: polynomials.len() };
@@ -71,7 +71,7 @@ impl Problem {
             assert!(polynomial.len() <= MAX_COEFFICIENTS, "a polynomial of higher degree than a detection has");
             exactly.length = polynomial.len();
             for (value, &coefficient) in exactly.coefficients.iter_mut().zip(polynomial.iter().rev()) {
-                *value = end(coefficient, units, ends);
+                *value = interval_end(coefficient, units, ends);
                 exactly.bound += coefficient.bound;
             }
         }
@@ -96,14 +96,14 @@ impl Problem {
     /// Returns, if one polynomial alone proves that there is no hit within the step, the level, and the number of
     /// further units of the bounds that the result survives. An empty problem is excluded.
     #[inline]
-    pub(crate) fn exclusion(&self) -> Option<(Level, f64)> {
+    pub(crate) fn find_exclusion(&self) -> Option<(Level, f64)> {
         if self.count == 0 {
             return Some((Level::Range, f64::INFINITY));
         }
         let by = |test: fn(&ExactPolynomial) -> Option<f64>, level| {
             self.polynomials().iter().find_map(test).map(|slack| (level, slack))
         };
-        by(ExactPolynomial::range, Level::Range).or_else(|| by(ExactPolynomial::bernstein, Level::Bernstein))
+        by(ExactPolynomial::try_signs, Level::Range).or_else(|| by(ExactPolynomial::try_bernstein, Level::Bernstein))
     }
 
     /// Returns whether all polynomials are positive at 0 (exact, because no arithmetic is needed).
@@ -113,13 +113,13 @@ impl Problem {
     }
 
     /// Returns whether two problems of the same shape have the same coefficients.
-    pub(crate) fn coefficients_equal(&self, other: &Self) -> bool {
+    pub(crate) fn has_equal_coefficients(&self, other: &Self) -> bool {
         let pairs = self.polynomials().iter().zip(other.polynomials());
         pairs.into_iter().all(|(one, two)| one.coefficients == two.coefficients)
     }
 
     /// Returns the coefficients, highest power first, with their number.
-    pub(crate) fn highest_first(&self) -> [([f64; MAX_COEFFICIENTS], usize); MAX_POLYNOMIALS] {
+    pub(crate) fn coefficients_highest_first(&self) -> [([f64; MAX_COEFFICIENTS], usize); MAX_POLYNOMIALS] {
         self.list.map(|polynomial| {
             let mut list = [0.0; MAX_COEFFICIENTS];
             for (place, value) in list.iter_mut().zip(polynomial.coefficients[..polynomial.length].iter().rev()) {
@@ -131,7 +131,7 @@ impl Problem {
 
     /// Returns the maximum number of powers of two over which the sizes of one polynomial's coefficients spread; zeros
     /// do not count.
-    pub(crate) fn spread(&self) -> u64 {
+    pub(crate) fn exponent_spread(&self) -> u64 {
         let spread = |polynomial: &ExactPolynomial| {
             let exponents =
                 polynomial.coefficients.iter().filter(|value| **value != 0.0).map(|value| value.abs().to_bits() >> 52);
@@ -143,7 +143,7 @@ impl Problem {
     /// Returns the number of further units of the bounds that a hit survives, at least 0. It is the smallest of the
     /// polynomials' values over their bounds, at the best of several times from `first` on. The times are spread evenly
     /// over the rest of the step, and more closely after `first`, because a hit may be short.
-    pub(crate) fn slack_of_yes(&self, first: f64) -> f64 {
+    pub(crate) fn hit_slack(&self, first: f64) -> f64 {
         let slack_at = |t: f64| {
             let slacks = self.polynomials().iter().map(|polynomial| polynomial.slack_at(t));
             slacks.fold(f64::INFINITY, f64::min)
@@ -161,7 +161,7 @@ impl Problem {
 
 /// Returns one end of the interval that contains a coefficient, rounded outward.
 #[inline]
-fn end(coefficient: BoundedValue, units: f64, ends: Ends) -> f64 {
+fn interval_end(coefficient: BoundedValue, units: f64, ends: IntervalEnd) -> f64 {
     if units == 0.0 || coefficient.bound == 0.0 {
         return coefficient.value;
     }
@@ -170,8 +170,8 @@ fn end(coefficient: BoundedValue, units: f64, ends: Ends) -> f64 {
         + coefficient.value.abs() * (2.0 * UNIT_ROUNDOFF)
         + f64::MIN_POSITIVE;
     match ends {
-        Ends::Upper => coefficient.value + reach,
-        Ends::Lower => coefficient.value - reach,
+        IntervalEnd::Upper => coefficient.value + reach,
+        IntervalEnd::Lower => coefficient.value - reach,
     }
 }
 
@@ -186,7 +186,7 @@ impl ExactPolynomial {
     /// Tries level L0: by signs (if no coefficient is positive, no value after 0 is), or because the positive terms
     /// cannot compensate a negative constant.
     #[inline]
-    fn range(&self) -> Option<f64> {
+    fn try_signs(&self) -> Option<f64> {
         let (mut greatest, mut size) = (self.coefficients[0], self.coefficients[0].abs());
         let mut none_positive = !(self.coefficients[0] > 0.0);
         for &value in &self.coefficients[1..] {
@@ -200,12 +200,12 @@ impl ExactPolynomial {
 
     /// Tries level L1: all Bernstein coefficients are negative.
     #[inline]
-    fn bernstein(&self) -> Option<f64> {
+    fn try_bernstein(&self) -> Option<f64> {
         // Positive at 0, so no search is needed.
         if self.coefficients[0] > 0.0 {
             return None;
         }
-        let control = self.control();
+        let control = self.to_bernstein();
         let greatest = control.values[..control.length].iter().fold(f64::NEG_INFINITY, |most, &value| most.max(value));
         let distance = -greatest - control.error;
         (distance > 0.0).then(|| slack(distance, self.bound))
@@ -214,7 +214,7 @@ impl ExactPolynomial {
     /// Returns the Bernstein coefficients on `[0, 1]`. An overflow makes the error infinite, so that nothing is
     /// concluded from it.
     #[inline]
-    pub(crate) fn control(&self) -> Control {
+    pub(crate) fn to_bernstein(&self) -> BernsteinForm {
         let values = match self.length {
             0 | 1 => self.coefficients,
             2 => self.convert([1.0, 1.0]),
@@ -224,18 +224,18 @@ impl ExactPolynomial {
             _ => self.convert([1.0, 0.2, 0.1, 0.1, 0.2, 1.0]),
         };
         let size: f64 = self.coefficients.iter().map(|value| value.abs()).sum();
-        Control { values, length: self.length, error: CONVERSION_BOUND * size + UNDERFLOW_BOUND, index: 0 }
+        BernsteinForm { values, length: self.length, error: CONVERSION_BOUND * size + UNDERFLOW_BOUND, index: 0 }
     }
 
     /// Returns the Bernstein coefficients on `[0, end]`, for an end that is a power of two between `2^-150` and 1:
     /// scaling is exact except for underflow.
-    pub(crate) fn control_until(&self, end: f64) -> Control {
+    pub(crate) fn to_bernstein_until(&self, end: f64) -> BernsteinForm {
         let (mut stretched, mut power) = (*self, 1.0);
         for value in &mut stretched.coefficients {
             *value *= power;
             power *= end;
         }
-        stretched.control()
+        stretched.to_bernstein()
     }
 
     /// Divides by the binomial coefficients and adds up Pascal's triangle: entry k becomes the sum of (k over i) times

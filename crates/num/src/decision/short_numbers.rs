@@ -6,14 +6,14 @@
 /// Returns whether all values are integer multiples of one power of two with quotients of modulus below `2^bits`. Zeros
 /// fit everywhere; a value that is not finite fits nowhere. `bits` 0 admits zeros only.
 #[must_use]
-pub fn all_exact(values: &[f64], bits: u32) -> bool {
+pub fn are_short(values: &[f64], bits: u32) -> bool {
     let (mut lowest, mut highest) = (i32::MAX, i32::MIN);
     for &value in values {
         if !value.is_finite() {
             return false;
         }
         if value != 0.0 {
-            let (mantissa, exponent) = split(value);
+            let (mantissa, exponent) = split_double(value);
             lowest = lowest.min(exponent + mantissa.trailing_zeros().cast_signed());
             highest = highest.max(exponent + mantissa.ilog2().cast_signed() + 1);
         }
@@ -24,7 +24,7 @@ pub fn all_exact(values: &[f64], bits: u32) -> bool {
 }
 
 /// Returns `|value|` as mantissa and power of two; the mantissa of zero is 0. `value` must be finite.
-pub(super) fn split(value: f64) -> (u64, i32) {
+pub(super) fn split_double(value: f64) -> (u64, i32) {
     let bits = value.to_bits();
     let exponent = i32::try_from((bits >> 52) & 0x7FF).unwrap_or(0);
     let fraction = bits & ((1 << 52) - 1);
@@ -33,39 +33,39 @@ pub(super) fn split(value: f64) -> (u64, i32) {
 
 #[cfg(test)]
 mod tests {
-    use super::{all_exact, split};
+    use super::{are_short, split_double};
 
     #[test]
     fn short_values_share_a_power_of_two() {
-        assert!(all_exact(&[], 0));
-        assert!(all_exact(&[0.0, -0.0], 0));
-        assert!(all_exact(&[0.5, -3.0, 0.0, 7.25], 5));
-        assert!(!all_exact(&[0.5, -3.0, 0.0, 7.25], 4));
+        assert!(are_short(&[], 0));
+        assert!(are_short(&[0.0, -0.0], 0));
+        assert!(are_short(&[0.5, -3.0, 0.0, 7.25], 5));
+        assert!(!are_short(&[0.5, -3.0, 0.0, 7.25], 4));
         // Each product is short, but not together with the other.
-        assert!(!all_exact(&[1e9, 0.0625], 30));
-        assert!(all_exact(&[f64::MAX, f64::MIN], 53));
-        assert!(!all_exact(&[f64::MAX, 5e-324], 2000));
-        assert!(all_exact(&[f64::MAX, 5e-324], 2098));
+        assert!(!are_short(&[1e9, 0.0625], 30));
+        assert!(are_short(&[f64::MAX, f64::MIN], 53));
+        assert!(!are_short(&[f64::MAX, 5e-324], 2000));
+        assert!(are_short(&[f64::MAX, 5e-324], 2098));
     }
 
     #[test]
     fn decimals_are_long_and_what_is_not_finite_is_never_short() {
-        assert!(!all_exact(&[0.1], 50));
-        assert!(all_exact(&[0.1], 53));
-        assert!(all_exact(&[5e-324], 1));
-        assert!(!all_exact(&[f64::NAN], 2000) && !all_exact(&[f64::INFINITY], 2000));
+        assert!(!are_short(&[0.1], 50));
+        assert!(are_short(&[0.1], 53));
+        assert!(are_short(&[5e-324], 1));
+        assert!(!are_short(&[f64::NAN], 2000) && !are_short(&[f64::INFINITY], 2000));
     }
 
     #[test]
     fn mantissas_and_exponents_make_the_value() {
         for value in [1.0, 0.1, 3.5e300, 2.0_f64 * f64::MIN_POSITIVE, 12.0] {
-            let (mantissa, exponent) = split(value);
+            let (mantissa, exponent) = split_double(value);
             let scale = f64::from_bits(u64::try_from(exponent + 1023).unwrap_or(0) << 52);
             if exponent > -1022 {
                 assert_eq!(mantissa as f64 * scale, value);
             }
         }
-        assert_eq!(split(5e-324), (1, -1074));
-        assert_eq!(split(-0.0).0, 0);
+        assert_eq!(split_double(5e-324), (1, -1074));
+        assert_eq!(split_double(-0.0).0, 0);
     }
 }

@@ -1,10 +1,10 @@
 use super::{
     super::{
         bounded::{BoundedValue, UNIT_ROUNDOFF},
-        first_time::first_time_of,
+        first_time::first_time_of_lists,
     },
-    Certainty, CertifiedDecision, Level, decide,
-    exact::{ExactAnswer, exact_first},
+    CertifiedDecision, HitCertainty, Level, decide,
+    exact::{ExactAnswer, find_exact_first_time},
     range::slack,
 };
 use proptest::prelude::*;
@@ -18,14 +18,14 @@ type Example<'a> = (&'a [&'a [f64]], Option<(f64, bool)>);
 /// The decision for coefficients whose terms add up to their modulus: bound = |value|.
 fn decided(lists: &[Vec<f64>], units: f64) -> CertifiedDecision {
     let bounded: Vec<Vec<BoundedValue>> =
-        lists.iter().map(|list| list.iter().map(|&value| BoundedValue::rounded(value)).collect()).collect();
+        lists.iter().map(|list| list.iter().map(|&value| BoundedValue::from_rounded(value)).collect()).collect();
     let slices: Vec<&[BoundedValue]> = bounded.iter().map(Vec::as_slice).collect();
     decide(&slices, units)
 }
 
 fn exactly(lists: &[Vec<f64>]) -> ExactAnswer {
     let slices: Vec<&[f64]> = lists.iter().map(Vec::as_slice).collect();
-    exact_first(&slices)
+    find_exact_first_time(&slices)
 }
 
 fn hits(lists: &[Vec<f64>]) -> bool {
@@ -38,9 +38,9 @@ fn owned(lists: &[&[f64]]) -> Lists {
 
 /// A particle at rest at the origin and one that passes: polynomials of collisions.md 2, with their bounds.
 fn particle_pair(x: [f64; 2], d: [f64; 2], reach: f64) -> [Vec<BoundedValue>; 2] {
-    let [x0, x1, d0, d1] = [x[0], x[1], d[0], d[1]].map(BoundedValue::rounded);
+    let [x0, x1, d0, d1] = [x[0], x[1], d[0], d[1]].map(BoundedValue::from_rounded);
     let (xx, xd, dd) = (x0 * x0 + x1 * x1, x0 * d0 + x1 * d1, d0 * d0 + d1 * d1);
-    let reach = BoundedValue::rounded(reach);
+    let reach = BoundedValue::from_rounded(reach);
     [vec![-dd, -2.0 * xd, reach * reach - xx], vec![-dd, -xd]]
 }
 
@@ -52,7 +52,7 @@ fn decide_pair(pair: &[Vec<BoundedValue>; 2]) -> CertifiedDecision {
 fn particles_that_hit_miss_leave_and_graze() {
     // From 3 away with speed 4: they touch when 1 is left, after half the step.
     let hit = decide_pair(&particle_pair([3.0, 0.0], [-4.0, 0.0], 1.0));
-    assert_eq!(hit.certainty, Certainty::Yes);
+    assert_eq!(hit.certainty, HitCertainty::Hits);
     let [lo, hi] = hit.time.expect("a time");
     assert!(lo < 0.5 && 0.5 < hi && hi - lo < 1e-12, "{lo} {hi}");
     assert!(hit.margin > 1e12);
@@ -60,19 +60,19 @@ fn particles_that_hit_miss_leave_and_graze() {
     let short = decide_pair(&particle_pair([3.0, 0.0], [-1.0, 0.0], 1.0));
     let leaving = decide_pair(&particle_pair([0.5, 0.0], [1.0, 0.0], 1.0));
     let passing = decide_pair(&particle_pair([-3.0, 2.0], [6.0, 0.0], 1.0));
-    assert_eq!((short.certainty, short.time, short.level), (Certainty::No, None, Level::Range));
-    assert_eq!((leaving.certainty, leaving.level), (Certainty::No, Level::Range));
-    assert_eq!(passing.certainty, Certainty::No);
+    assert_eq!((short.certainty, short.time, short.level), (HitCertainty::Misses, None, Level::Range));
+    assert_eq!((leaving.certainty, leaving.level), (HitCertainty::Misses, Level::Range));
+    assert_eq!(passing.certainty, HitCertainty::Misses);
     // Grazing, and arriving exactly at the end: a rounding decides.
     let graze = decide_pair(&particle_pair([-3.0, 1.0], [6.0, 0.0], 1.0));
     let arriving = decide_pair(&particle_pair([3.0, 0.0], [-2.0, 0.0], 1.0));
-    assert_eq!((graze.certainty, graze.margin), (Certainty::Borderline, 0.0));
-    assert_eq!(arriving.certainty, Certainty::Borderline);
+    assert_eq!((graze.certainty, graze.margin), (HitCertainty::Borderline, 0.0));
+    assert_eq!(arriving.certainty, HitCertainty::Borderline);
     let [lo, hi] = arriving.time.expect("the earliest time");
     assert!(1.0 - 1e-12 < lo && lo <= hi && hi <= 1.0, "{lo} {hi}");
     // Already overlapping and approaching.
     let overlapping = decide_pair(&particle_pair([0.5, 0.0], [-1.0, 0.0], 1.0));
-    assert_eq!((overlapping.certainty, overlapping.time), (Certainty::Yes, Some([0.0; 2])));
+    assert_eq!((overlapping.certainty, overlapping.time), (HitCertainty::Hits, Some([0.0; 2])));
 }
 
 /// A decision near its limit changes from Yes over Borderline to No, and the margin counts the way there.
@@ -80,13 +80,13 @@ fn particles_that_hit_miss_leave_and_graze() {
 fn the_margin_is_what_the_decision_survives() {
     let at = |gap: f64| decide_pair(&particle_pair([3.0 + gap, 0.0], [-2.0, 0.0], 1.0));
     let step = 1e-16;
-    assert_eq!(at(-1e5 * step).certainty, Certainty::Yes);
-    assert_eq!(at(0.0).certainty, Certainty::Borderline);
-    assert_eq!(at(1e5 * step).certainty, Certainty::No);
+    assert_eq!(at(-1e5 * step).certainty, HitCertainty::Hits);
+    assert_eq!(at(0.0).certainty, HitCertainty::Borderline);
+    assert_eq!(at(1e5 * step).certainty, HitCertainty::Misses);
     let (near, far) = (at(1e6 * step).margin, at(1e8 * step).margin);
     assert!(64.0 < near && near < far, "{near} {far}");
     let pair = particle_pair([3.0 + 1e8 * step, 0.0], [-2.0, 0.0], 1.0);
-    assert_eq!(decide(&[&pair[0], &pair[1]], far * 0.999).certainty, Certainty::No);
+    assert_eq!(decide(&[&pair[0], &pair[1]], far * 0.999).certainty, HitCertainty::Misses);
 }
 
 #[test]
@@ -120,7 +120,7 @@ fn the_exact_examples() {
         (&[&[1e-300, -1e300]], None),
     ];
     for (lists, expected) in cases {
-        let answer = exact_first(lists);
+        let answer = find_exact_first_time(lists);
         match (answer, expected) {
             (ExactAnswer::Never, None) => {}
             (ExactAnswer::First { time: [lo, hi], touching }, Some((time, touches))) => {
@@ -129,9 +129,9 @@ fn the_exact_examples() {
             }
             _ => panic!("{lists:?}: {answer:?}, expected {expected:?}"),
         }
-        assert_eq!(decided(&owned(lists), 0.0).certainty == Certainty::Yes, expected.is_some(), "{lists:?}");
+        assert_eq!(decided(&owned(lists), 0.0).certainty == HitCertainty::Hits, expected.is_some(), "{lists:?}");
     }
-    assert_eq!(exact_first(&[&[1.0], &[f64::NAN]]), ExactAnswer::NotFinite);
+    assert_eq!(find_exact_first_time(&[&[1.0], &[f64::NAN]]), ExactAnswer::NotFinite);
 }
 
 #[test]
@@ -139,13 +139,13 @@ fn what_is_not_finite_is_borderline() {
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
         for lists in [owned(&[&[bad, 1.0]]), owned(&[&[-1.0], &[1.0, 2.0, bad]])] {
             for units in [0.0, 64.0] {
-                assert_eq!(decided(&lists, units).certainty, Certainty::Borderline);
+                assert_eq!(decided(&lists, units).certainty, HitCertainty::Borderline);
             }
         }
     }
     let unbounded = [BoundedValue { value: -1.0, bound: f64::INFINITY }];
-    assert_eq!(decide(&[&unbounded], 64.0).certainty, Certainty::Borderline);
-    assert_eq!(decided(&owned(&[&[1.0]]), f64::NAN).certainty, Certainty::Borderline);
+    assert_eq!(decide(&[&unbounded], 64.0).certainty, HitCertainty::Borderline);
+    assert_eq!(decided(&owned(&[&[1.0]]), f64::NAN).certainty, HitCertainty::Borderline);
 }
 
 #[test]
@@ -280,8 +280,8 @@ proptest! {
     #[test]
     fn without_errors_the_decision_is_the_exact_one(lists in lists()) {
         let decision = decided(&lists, 0.0);
-        prop_assert_ne!(decision.certainty, Certainty::Borderline);
-        prop_assert_eq!(decision.certainty == Certainty::Yes, hits(&lists), "{:?}", decision);
+        prop_assert_ne!(decision.certainty, HitCertainty::Borderline);
+        prop_assert_eq!(decision.certainty == HitCertainty::Hits, hits(&lists), "{:?}", decision);
         if let (Some([lo, hi]), ExactAnswer::First { time: [first, last], .. }) = (decision.time, exactly(&lists)) {
             prop_assert!(lo <= last && first <= hi && 0.0 <= lo && hi <= 1.0, "{:?} {} {}", decision, first, last);
         }
@@ -291,7 +291,7 @@ proptest! {
     #[test]
     fn decisions_are_monotone_in_the_units(lists in lists(), units in 0.0..1e6_f64) {
         let (loose, tight) = (decided(&lists, units), decided(&lists, units * 0.25));
-        if loose.certainty == Certainty::Borderline {
+        if loose.certainty == HitCertainty::Borderline {
             prop_assert_eq!(loose.margin, 0.0);
             prop_assert!(loose.time.is_some());
             // The extreme choices, a little further out because the decision rounds outwards, answer differently.
@@ -339,9 +339,10 @@ proptest! {
         let power = f64::from_bits(u64::try_from(1023 - scale).unwrap_or(0) << 52);
         let lists: Lists = lists.iter().map(|list| list.iter().map(|value| value * power).collect()).collect();
         let answer = hits(&lists);
-        prop_assert_eq!(decided(&lists, 0.0).certainty == Certainty::Yes, answer);
+        prop_assert_eq!(decided(&lists, 0.0).certainty == HitCertainty::Hits, answer);
         let decision = decided(&lists, 64.0);
-        prop_assert!(decision.certainty == Certainty::Borderline || (decision.certainty == Certainty::Yes) == answer);
+        let is_borderline = decision.certainty == HitCertainty::Borderline;
+        prop_assert!(is_borderline || (decision.certainty == HitCertainty::Hits) == answer);
     }
 }
 
@@ -362,7 +363,7 @@ proptest! {
     ) {
         let units = if coarse { 1e13 } else { 64.0 };
         let decision = decided(&lists, units);
-        if decision.certainty == Certainty::Borderline {
+        if decision.certainty == HitCertainty::Borderline {
             return Ok(());
         }
         for (round, choice) in choices.iter().enumerate() {
@@ -373,7 +374,7 @@ proptest! {
                 value + weight * units * UNIT_ROUNDOFF * value.abs() * (1.0 - 1e-15)
             }).collect()).collect();
             let answer = exactly(&chosen);
-            prop_assert_eq!(decision.certainty == Certainty::Yes, answer != ExactAnswer::Never, "{:?}", chosen);
+            prop_assert_eq!(decision.certainty == HitCertainty::Hits, answer != ExactAnswer::Never, "{:?}", chosen);
             if let (Some([lo, hi]), ExactAnswer::First { time: [first, last], .. }) = (decision.time, answer) {
                 prop_assert!(lo <= last && first <= hi);
             }
@@ -395,9 +396,9 @@ proptest! {
         lists in prop::collection::vec(prop::collection::vec(-1.0..1.0_f64, 2..=6), 1..=4),
     ) {
         let decision = decided(&lists, 64.0);
-        if decision.certainty != Certainty::Borderline && decision.margin > 1e10 {
-            let time = first_time_of(lists.iter().map(Vec::as_slice)).expect("ends");
-            prop_assert_eq!(decision.certainty == Certainty::Yes, time <= 1.0, "{:?} {}", decision, time);
+        if decision.certainty != HitCertainty::Borderline && decision.margin > 1e10 {
+            let time = first_time_of_lists(lists.iter().map(Vec::as_slice)).expect("ends");
+            prop_assert_eq!(decision.certainty == HitCertainty::Hits, time <= 1.0, "{:?} {}", decision, time);
             if let Some([lo, hi]) = decision.time {
                 prop_assert!(lo - 1e-6 <= time && time <= hi + 1e-6, "{:?} {}", decision, time);
             }

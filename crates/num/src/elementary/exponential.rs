@@ -8,7 +8,7 @@ const MINUS_STEP: [f64; 2] = [f64::from_bits(0xbf76_2e42_fefa_0000), f64::from_b
 /// The constant that, added to a number, rounds it to an integer in the lowest bits of the sum.
 const ROUNDING_SHIFT: f64 = f64::from_bits(0x4338_0000_0000_0000);
 /// The coefficients of `e^r - 1 - r` from `r^2` on.
-const SERIES: [f64; 4] = [
+const SERIES_COEFFICIENTS: [f64; 4] = [
     f64::from_bits(0x3fdf_ffff_ffff_fdbd),
     f64::from_bits(0x3fc5_5555_5555_543c),
     f64::from_bits(0x3fa5_5555_cf17_2b91),
@@ -17,7 +17,7 @@ const SERIES: [f64; 4] = [
 /// The exponents of 2^-54, 512 and 1024 in a number's bits.
 const TINY_EXPONENT: u64 = 0x3c9;
 const LARGE_EXPONENT: u64 = 0x408;
-const TOO_LARGE: u64 = 0x409;
+const OVERFLOW_EXPONENT: u64 = 0x409;
 
 /// Returns `e^x`; infinite above 709.78, zero below -745.13.
 #[must_use]
@@ -26,7 +26,7 @@ pub fn exp(x: f64) -> f64 {
     if exponent < TINY_EXPONENT || exponent == 0x7ff {
         return if x == f64::NEG_INFINITY { 0.0 } else { 1.0 + x };
     }
-    if exponent >= TOO_LARGE {
+    if exponent >= OVERFLOW_EXPONENT {
         return if x < 0.0 { 0.0 } else { f64::INFINITY };
     }
     let shifted = multiply_add(x, STEPS_PER_E, ROUNDING_SHIFT);
@@ -37,8 +37,8 @@ pub fn exp(x: f64) -> f64 {
     let tail = f64::from_bits(POWER_TABLE[row]);
     let power = POWER_TABLE[row + 1].wrapping_add(k << 45);
     let square = r * r;
-    let low = multiply_add(multiply_add(r, SERIES[1], SERIES[0]), square, r + tail);
-    let more = multiply_add(square * square, multiply_add(r, SERIES[3], SERIES[2]), low);
+    let low = multiply_add(multiply_add(r, SERIES_COEFFICIENTS[1], SERIES_COEFFICIENTS[0]), square, r + tail);
+    let more = multiply_add(square * square, multiply_add(r, SERIES_COEFFICIENTS[3], SERIES_COEFFICIENTS[2]), low);
     if exponent < LARGE_EXPONENT {
         let power = f64::from_bits(power);
         return multiply_add(power, more, power);

@@ -4,7 +4,7 @@ use super::{multiply_add, tables::LOGARITHM_TABLE};
 /// The number ln 2 in two parts; a product of the first with an exponent is exact.
 const LN_2: [f64; 2] = [f64::from_bits(0x3fe6_2e42_fefa_3800), f64::from_bits(0x3d2e_f357_93c7_6730)];
 /// The coefficients of `ln(1 + r) - r` from `r^2` on, for `|r| < 1/256`.
-const SERIES: [f64; 5] = [
+const SERIES_COEFFICIENTS: [f64; 5] = [
     f64::from_bits(0xbfe0_0000_0000_0001),
     f64::from_bits(0x3fd5_5555_5551_305b),
     f64::from_bits(0xbfcf_ffff_ffeb_4590),
@@ -12,7 +12,7 @@ const SERIES: [f64; 5] = [
     f64::from_bits(0xbfc5_5575_e506_c89f),
 ];
 /// The series for arguments from `1 - 2^-4` to `1 + 0x1.09p-4`.
-const SERIES_AT_ONE: [f64; 11] = [
+const NEAR_ONE_COEFFICIENTS: [f64; 11] = [
     f64::from_bits(0xbfe0_0000_0000_0000),
     f64::from_bits(0x3fd5_5555_5555_5577),
     f64::from_bits(0xbfcf_ffff_ffff_fdcb),
@@ -28,8 +28,8 @@ const SERIES_AT_ONE: [f64; 11] = [
 /// The bits of 0.6875, where the table begins.
 const TABLE_START_BITS: u64 = 0x3fe6_0000_0000_0000;
 /// The bits of `1 - 2^-4`, and the number of the following numbers that are close to one.
-const AT_ONE: u64 = 0x3fee_0000_0000_0000;
-const NUMBERS_AT_ONE: u64 = 0x0003_0900_0000_0000;
+const NEAR_ONE_START_BITS: u64 = 0x3fee_0000_0000_0000;
+const NEAR_ONE_BIT_COUNT: u64 = 0x0003_0900_0000_0000;
 /// The number 2^27, for half of a number's bits.
 const HALF_BITS_FACTOR: f64 = 134_217_728.0;
 
@@ -37,8 +37,8 @@ const HALF_BITS_FACTOR: f64 = 134_217_728.0;
 #[must_use]
 pub fn ln(x: f64) -> f64 {
     let mut bits = x.to_bits();
-    if bits.wrapping_sub(AT_ONE) < NUMBERS_AT_ONE {
-        return at_one(x);
+    if bits.wrapping_sub(NEAR_ONE_START_BITS) < NEAR_ONE_BIT_COUNT {
+        return ln_near_one(x);
     }
     if x == 0.0 {
         return f64::NEG_INFINITY;
@@ -58,18 +58,22 @@ pub fn ln(x: f64) -> f64 {
     let high = multiply_add(exponent, LN_2[0], logarithm);
     let sum = high + r;
     let square = r * r;
-    let low = multiply_add(square, SERIES[0], multiply_add(exponent, LN_2[1], high - sum + r));
-    let inner = multiply_add(multiply_add(r, SERIES[4], SERIES[3]), square, multiply_add(r, SERIES[2], SERIES[1]));
+    let low = multiply_add(square, SERIES_COEFFICIENTS[0], multiply_add(exponent, LN_2[1], high - sum + r));
+    let inner = multiply_add(
+        multiply_add(r, SERIES_COEFFICIENTS[4], SERIES_COEFFICIENTS[3]),
+        square,
+        multiply_add(r, SERIES_COEFFICIENTS[2], SERIES_COEFFICIENTS[1]),
+    );
     multiply_add(r * square, inner, low) + sum
 }
 
 /// Returns the logarithm of a number close to one, with the first two terms in double precision arithmetic of two
 /// parts.
-fn at_one(x: f64) -> f64 {
+fn ln_near_one(x: f64) -> f64 {
     if x == 1.0 {
         return 0.0;
     }
-    let b = &SERIES_AT_ONE;
+    let b = &NEAR_ONE_COEFFICIENTS;
     let r = x - 1.0;
     let square = r * r;
     let cube = r * square;

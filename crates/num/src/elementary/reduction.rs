@@ -14,7 +14,7 @@ pub(super) struct ReducedAngle {
 /// The number π/2 in two parts.
 pub(super) const HALF_PI: [f64; 2] = [f64::from_bits(0x3ff9_21fb_5444_2d18), f64::from_bits(0x3c91_a626_3314_5c07)];
 /// The number 2/π.
-const TO_QUARTERS: f64 = f64::from_bits(0x3fe4_5f30_6dc9_c883);
+const QUARTERS_PER_RADIAN: f64 = f64::from_bits(0x3fe4_5f30_6dc9_c883);
 /// The constant that, added to a number, rounds it to an integer in the lowest bits of the sum.
 const ROUNDING_SHIFT: f64 = f64::from_bits(0x4338_0000_0000_0000);
 /// The constant that rounds to multiples of four.
@@ -32,13 +32,13 @@ const HALF_PI_HALVES: [f64; 2] = [HALF_PI_PARTS[0], f64::from_bits(0xbe4d_de97_4
 const SPLIT_FACTOR: f64 = 134_217_729.0;
 
 /// Returns a power of two.
-const fn power(exponent: i32) -> f64 {
+const fn power_of_two(exponent: i32) -> f64 {
     f64::from_bits(((1023 + exponent) as u64) << 52)
 }
 
 /// Reduces an angle below 1.05e8.
 pub(super) fn reduce_small(x: f64) -> ReducedAngle {
-    let shifted = multiply_add(x, TO_QUARTERS, ROUNDING_SHIFT);
+    let shifted = multiply_add(x, QUARTERS_PER_RADIAN, ROUNDING_SHIFT);
     let quarters = shifted - ROUNDING_SHIFT;
     let first = multiply_add(-quarters, HALF_PI_PARTS[1], multiply_add(-quarters, HALF_PI_PARTS[0], x));
     let second = multiply_add(-quarters, HALF_PI_PARTS[2], first);
@@ -50,10 +50,10 @@ pub(super) fn reduce_small(x: f64) -> ReducedAngle {
 
 /// Reduces any finite angle from there on.
 pub(super) fn reduce_large(x: f64) -> ReducedAngle {
-    let x = x * power(-600);
+    let x = x * power_of_two(-600);
     let scaled = x * SPLIT_FACTOR;
     let high = scaled - (scaled - x);
-    let [first, second] = [high, x - high].map(quarters_of);
+    let [first, second] = [high, x - high].map(count_quarters);
     let mut whole = first.whole + second.whole;
     let mut part = first.part + second.part;
     let mut rest = if first.part.abs() > second.part.abs() {
@@ -89,15 +89,15 @@ struct Quarters {
 }
 
 /// Returns the quarters of half of an angle's digits, times 2^-600.
-fn quarters_of(half: f64) -> Quarters {
+fn count_quarters(half: f64) -> Quarters {
     // Digits whose product is a multiple of a turn are left out.
     let exponent = (half.to_bits() >> 52 & 0x7ff) as i32;
     let from = ((exponent - 450) / 24).max(0);
-    let mut scale = power(576 - 24 * from);
+    let mut scale = power_of_two(576 - 24 * from);
     let mut digits = [0.0; 6];
     for (product, digit) in digits.iter_mut().zip(&TWO_OVER_PI[from as usize..]) {
         *product = half * f64::from(*digit) * scale;
-        scale *= power(-24);
+        scale *= power_of_two(-24);
     }
     let mut whole = 0.0;
     for digit in &mut digits[..3] {

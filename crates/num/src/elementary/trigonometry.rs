@@ -7,10 +7,10 @@ use super::{
 };
 
 /// The high words of the angles at which the next method begins.
-const SINE_IS_ANGLE: u32 = 0x3e50_0000;
-const COSINE_IS_ONE: u32 = 0x3e40_0000;
-const TABLE_ENDS: u32 = 0x3feb_6000;
-const QUARTER_ENDS: u32 = 0x4003_68fd;
+const SINE_IS_ANGLE_LIMIT: u32 = 0x3e50_0000;
+const COSINE_IS_ONE_LIMIT: u32 = 0x3e40_0000;
+const TABLE_LIMIT: u32 = 0x3feb_6000;
+const QUARTER_LIMIT: u32 = 0x4003_68fd;
 const NEAR_LIMIT_BITS: u32 = 0x4199_21fb;
 /// The constant that, added to an angle, rounds it to 1/128; the number of the step is in the lowest bits of the sum.
 const ROUNDING_SHIFT: f64 = f64::from_bits(0x42c8_0000_0000_0000);
@@ -33,10 +33,10 @@ const COSINE_COEFFICIENTS: [f64; 3] =
 #[must_use]
 pub fn sin(angle: f64) -> f64 {
     match high_word(angle) {
-        word if word < SINE_IS_ANGLE => angle,
-        word if word < TABLE_ENDS => sine(angle, 0.0),
-        word if word < QUARTER_ENDS => cosine(HALF_PI[0] - angle.abs(), HALF_PI[1]).copysign(angle),
-        word => reduce(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 0)),
+        word if word < SINE_IS_ANGLE_LIMIT => angle,
+        word if word < TABLE_LIMIT => sine(angle, 0.0),
+        word if word < QUARTER_LIMIT => cosine(HALF_PI[0] - angle.abs(), HALF_PI[1]).copysign(angle),
+        word => reduce(angle, word).map_or(f64::NAN, |reduced| sine_at_quarter(reduced, 0)),
     }
 }
 
@@ -44,14 +44,14 @@ pub fn sin(angle: f64) -> f64 {
 #[must_use]
 pub fn cos(angle: f64) -> f64 {
     match high_word(angle) {
-        word if word < COSINE_IS_ONE => 1.0,
-        word if word < TABLE_ENDS => cosine(angle, 0.0),
-        word if word < QUARTER_ENDS => {
+        word if word < COSINE_IS_ONE_LIMIT => 1.0,
+        word if word < TABLE_LIMIT => cosine(angle, 0.0),
+        word if word < QUARTER_LIMIT => {
             let rest = HALF_PI[0] - angle.abs();
             let sum = rest + HALF_PI[1];
             sine(sum, (rest - sum) + HALF_PI[1])
         }
-        word => reduce(angle, word).map_or(f64::NAN, |reduced| at_quarter(reduced, 1)),
+        word => reduce(angle, word).map_or(f64::NAN, |reduced| sine_at_quarter(reduced, 1)),
     }
 }
 
@@ -69,7 +69,7 @@ fn reduce(angle: f64, word: u32) -> Option<ReducedAngle> {
 }
 
 /// Returns the sine of an angle plus `more` quarter turns.
-fn at_quarter(ReducedAngle { quarters, angle, rest }: ReducedAngle, more: u32) -> f64 {
+fn sine_at_quarter(ReducedAngle { quarters, angle, rest }: ReducedAngle, more: u32) -> f64 {
     let quarter = quarters + more;
     let value = if quarter & 1 == 0 { sine(angle, rest) } else { cosine(angle, rest) };
     if quarter & 2 == 0 { value } else { -value }

@@ -4,7 +4,7 @@ use super::super::{
     style::{Look, Style},
     table::{Align, Cell, Table},
 };
-use fosssim_judge::{Finding, FindingDetail, Power, RescaledCoefficient, differing_powers, find_factor};
+use fosssim_judge::{Finding, FindingDetail, Power, RescaledCoefficient, find_differing_powers, find_factor};
 use fosssim_model::trace::LoggedImpulse;
 
 /// Renders the block about one finding, with a heading and without advice.
@@ -175,7 +175,7 @@ fn polynomials_with(
     let powers = expected.len().max(actual.len());
     let is_one = (factor - 1.0).abs() <= 1e-12 || !factor.is_finite();
     let factor = if is_one { 1.0 } else { factor };
-    let differing = differing_powers(expected, actual, factor);
+    let differing = find_differing_powers(expected, actual, factor);
     let row = |power: usize| {
         let (expected, actual) = (of(expected, power).map(|value| factor * value), of(actual, power));
         let value = |value: Option<f64>| value.map_or(Value::Nothing, Value::Number);

@@ -26,8 +26,8 @@ view! {
             CountedView::count(Book::Fair, &fair.findings.examples, |kind| fair.findings.counts.get(kind)),
         /// The smallest and the largest factor by which the trace's polynomials differ from the reference's; null if
         /// all factors are 1.
-        #[serde(with = "fosssim_num::written")]
-        #[schemars(with = "Option<[crate::view::Number; 2]>")]
+        #[serde(with = "fosssim_num::number_serde")]
+        #[schemars(with = "Option<[crate::view::WrittenNumber; 2]>")]
         factor: Option<[f64; 2]> = fair.factor,
         /// The accepted form of the particle-edge approach polynomial that the trace uses.
         approach_form: Form = fair.form,

@@ -65,7 +65,10 @@ impl WrongSteps {
             Book::Fair => self.fair.clone(),
         };
         for finding in account.examples.iter().chain(&account.first_divergence) {
-            let findings = StepFindings { firsts: std::slice::from_ref(finding), more: FindingCounts::default() };
+            let findings = StepFindings {
+                first_findings: std::slice::from_ref(finding),
+                further_counts: FindingCounts::default(),
+            };
             steps.add(finding.step, findings, &self.shown);
         }
         steps
@@ -73,7 +76,7 @@ impl WrongSteps {
 }
 
 impl Progress for WrongSteps {
-    fn step_wrong(&mut self, wrong: &WrongStep<'_>) {
+    fn observe_wrong_step(&mut self, wrong: &WrongStep<'_>) {
         self.parity.add(wrong.step, wrong.parity, &self.shown);
         self.fair.add(wrong.step, wrong.fair, &self.shown);
     }
@@ -82,7 +85,7 @@ impl Progress for WrongSteps {
 impl Steps {
     /// Adds findings of a step, which the collection may contain already.
     fn add(&mut self, step: u32, findings: StepFindings<'_>, shown: &StepChoice) {
-        if findings.firsts.is_empty() {
+        if findings.first_findings.is_empty() {
             return;
         }
         // Record 0 is the initial state, not a step.
@@ -107,12 +110,12 @@ impl Steps {
             }
         };
         let kept = &mut self.kept[place];
-        for first in findings.firsts {
+        for first in findings.first_findings {
             if !kept.firsts.iter().any(|known| known.kind() == first.kind()) {
                 kept.firsts.push(*first);
             }
         }
-        kept.more += findings.more;
+        kept.more += findings.further_counts;
     }
 }
 

@@ -3,11 +3,11 @@ use super::{AnswerView, DETECT_SCHEMA, DetectView, PlaceView, ShownNumber, rende
 use crate::{
     number::format_exact,
     style::{Look, Style},
-    view::{Number, to_document},
+    view::{WrittenNumber, to_document},
 };
 use fosssim_judge::overlap::OverlapStudy;
 use fosssim_model::sim::Pair;
-use fosssim_num::{vector::Vec2, written::WrittenNumbers};
+use fosssim_num::{number_serde::WrittenNumbers, vector::Vec2};
 use serde::Serialize;
 
 /// An overlap decision, and where in the run of a scene it was made.
@@ -86,7 +86,7 @@ impl Overlap<'_> {
     #[must_use]
     pub fn json(&self) -> String {
         let &Self { study, scene, trace, step, pair, .. } = self;
-        let time = Number(if study.collides { 0.0 } else { f64::INFINITY });
+        let time = WrittenNumber(if study.collides { 0.0 } else { f64::INFINITY });
         let normal = study.collides.then(|| study.normal.write());
         to_document(&DetectView {
             schema: DETECT_SCHEMA,
@@ -98,13 +98,13 @@ impl Overlap<'_> {
             certain: study.is_certain.then_some(study.collides),
             right_approach: None,
             overlap: Some(OverlapView {
-                alpha: study.alpha.map(Number),
+                alpha: study.alpha.map(WrittenNumber),
                 normal: study.normal.write(),
-                distance: Number(study.distance()),
-                radii_together: Number(study.reach),
+                distance: WrittenNumber(study.distance()),
+                radii_together: WrittenNumber(study.reach),
                 overlaps: self.overlaps(),
                 velocities: study.velocities.map(|velocity| velocity.write()),
-                approach: Number(study.approach()),
+                approach: WrittenNumber(study.approach()),
                 approaches: self.approaches(),
                 logged: self.logged,
             }),
@@ -130,19 +130,19 @@ const fn negation(is: bool) -> &'static str {
 pub(super) struct OverlapView {
     /// The place of the nearest point on the edge, from 0 at its first endpoint to 1 at its second; null if there is no
     /// edge.
-    alpha: Option<Number>,
+    alpha: Option<WrittenNumber>,
     /// The vector from the first object to the nearest point of the second, not normalized.
-    normal: [Number; 2],
+    normal: [WrittenNumber; 2],
     /// The length of the normal.
-    distance: Number,
+    distance: WrittenNumber,
     /// The sum of the radii.
-    radii_together: Number,
+    radii_together: WrittenNumber,
     /// Whether the distance is smaller than the sum of the radii.
     overlaps: bool,
     /// The velocity of the first object, and that of the nearest point of the second object.
-    velocities: [[Number; 2]; 2],
+    velocities: [[WrittenNumber; 2]; 2],
     /// The dot product of the velocities' difference and the normal.
-    approach: Number,
+    approach: WrittenNumber,
     /// Whether `approach` is positive, so that the objects come closer.
     approaches: bool,
     /// Whether the trace logs a collision of the pair; null for the reference's own run.

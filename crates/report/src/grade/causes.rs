@@ -1,6 +1,6 @@
 //! Groups the scenes of a submission by the cause of their verdicts, and selects the scene that shows each cause best.
 //! All reports use this order and these scenes.
-use super::likely_mistakes;
+use super::find_likely_mistakes;
 use crate::words;
 use fosssim_findings::{Grade, Reason, SceneGrade, Verdict};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
@@ -14,7 +14,7 @@ pub type AlikeScenes<'a> = Vec<&'a SceneGrade>;
 /// their scenes. Skipped scenes follow, and last come accepted scenes on which the rule books differ.
 #[must_use]
 pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
-    let likely: Vec<Explanation> = likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
+    let likely: Vec<Explanation> = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| mistake).collect();
     let mut found: BTreeMap<(Verdict, Vec<String>), (usize, AlikeScenes<'_>)> = BTreeMap::new();
     for (place, scene) in grade.scenes().enumerate().filter(|(_, scene)| is_listed(scene)) {
         found.entry((scene.verdict, describe_cause(scene))).or_insert((place, Vec::new())).1.push(scene);

@@ -44,7 +44,7 @@ pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
 #[cfg(test)]
 mod tests {
     use super::{super::samples, *};
-    use fosssim_mistakes::together::for_students;
+    use fosssim_mistakes::together::immediate_grade;
 
     #[test]
     fn changes_of_hidden_groups_are_not_told_to_students() {
@@ -59,6 +59,6 @@ mod tests {
         let expected =
             ["10 points before, 15 now", "1 scene became right: Impulses/a", "1 scene broke: Detection/a (WA)"];
         assert_eq!(words(&now), expected);
-        assert_eq!(words(&for_students(&now)), ["10 points before, 5 now", expected[2]]);
+        assert_eq!(words(&immediate_grade(&now)), ["10 points before, 5 now", expected[2]]);
     }
 }

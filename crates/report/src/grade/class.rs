@@ -1,5 +1,5 @@
 //! The statistics of a class: points, the hardest scenes, and the most frequent mistakes.
-use super::{format_points, likely_mistakes, phrases::list_some, shorten_name};
+use super::{find_likely_mistakes, format_points, phrases::list_some, shorten_name};
 use crate::foreign::one_line;
 use crate::{
     number::format_count,
@@ -180,7 +180,7 @@ pub(crate) struct SharedMistake {
 pub(crate) fn find_frequent(grades: &[Grade]) -> Vec<SharedMistake> {
     let mut found: BTreeMap<String, SharedMistake> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {
-        for (mistake, _) in likely_mistakes(grade) {
+        for (mistake, _) in find_likely_mistakes(grade) {
             let new = || SharedMistake { mistake: mistake.clone(), members: Vec::new() };
             found.entry(mistake.statement()).or_insert_with(new).members.push(number);
         }

@@ -1,9 +1,9 @@
 //! CSV tables for spreadsheets. A cell that a spreadsheet would read as a formula gets an apostrophe at its beginning.
-use super::{format_points, likely_mistakes, no_points, phrases::NOT_GRADED};
+use super::{find_likely_mistakes, format_points, no_points, phrases::NOT_GRADED};
 use crate::foreign::one_line;
 use crate::{view::to_key, words};
 use fosssim_findings::{Grade, SkippedEntry, speed::SpeedSource};
-use fosssim_mistakes::together::worth;
+use fosssim_mistakes::together::mistake_points;
 
 /// Renders a table with one row per scene.
 pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
@@ -51,7 +51,8 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> Str
         head.extend(timed.map(|group| escape_formula(&format!("{}: times the reference", group.name))));
     }
     let rows = grades.iter().map(|grade| {
-        let mistakes = likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
+        let mistakes =
+            find_likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
         let mistakes: Vec<String> = grade.located.iter().map(words::describe_located).chain(mistakes).collect();
         let mut row = vec![
             escape_formula(&grade.submission),
@@ -65,7 +66,10 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> Str
             escape_formula(&mistakes.join(" ")),
             escape_formula(&no_points(grade).or_else(|| words::describe_reason(grade)).unwrap_or_default()),
             escape_formula(&grade.same_program.join(", ")),
-            likely_mistakes(grade).first().map(|(first, _)| format_points(worth(grade, first))).unwrap_or_default(),
+            find_likely_mistakes(grade)
+                .first()
+                .map(|(first, _)| format_points(mistake_points(grade, first)))
+                .unwrap_or_default(),
         ];
         row.extend(grade.groups.iter().map(|group| group.points.map(format_points).unwrap_or_default()));
         row.extend(grade.groups.iter().filter_map(|group| group.speed.as_ref()).map(|speed| match &speed.source {

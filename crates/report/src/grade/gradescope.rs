@@ -7,7 +7,7 @@ use fosssim_findings::{
     Grade, SceneGrade, Verdict, Visibility,
     speed::{SpeedGrade, SpeedSource},
 };
-use fosssim_mistakes::together::for_students;
+use fosssim_mistakes::together::immediate_grade;
 use serde::Serialize;
 use std::{borrow::Cow, fmt::Write};
 
@@ -127,7 +127,7 @@ fn describe_grade(grade: &Grade) -> String {
         lines.push(format!("{}\n{}", strip_control_characters(&words::build(&build.end)), clean_output(&build.output)));
     } else {
         // A fault of the whole upload does not reveal anything about hidden scenes.
-        let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { for_students(grade) };
+        let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { immediate_grade(grade) };
         lines.extend(head_lines(&shown).iter().map(|line| strip_control_characters(line)));
     }
     lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", strip_control_characters(warning))));

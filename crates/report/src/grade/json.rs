@@ -14,7 +14,7 @@ use fosssim_findings::{
     located::LocatedFailure,
     speed::{SpeedGrade, SpeedRatio, SpeedSource},
 };
-use fosssim_mistakes::together::{likely_mistake, likely_mistakes, worth};
+use fosssim_mistakes::together::{find_likely_mistake, find_likely_mistakes, mistake_points};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -80,20 +80,21 @@ view! {
         /// scenes.
         located: Option<LocatedView> = grade.located.as_ref().map(LocatedView::from),
         /// The mistake that explains most of the wrong scenes; null if fewer than two scenes have explanations.
-        likely_mistake: Option<ExplanationView> = likely_mistake(grade).as_ref().map(ExplanationView::from),
+        likely_mistake: Option<ExplanationView> = find_likely_mistake(grade).as_ref().map(ExplanationView::from),
         /// Up to three mistakes that together explain the wrong scenes, the most frequent first.
         #[schemars(length(max = 3))]
         likely_mistakes: Vec<ExplanationView> =
-            likely_mistakes(grade).iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
+            find_likely_mistakes(grade).iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
         /// For each of the likely mistakes, the points of the scenes that are wrong only because of it.
         #[schemars(length(max = 3))]
-        worth: Vec<f64> = likely_mistakes(grade).iter().map(|(mistake, _)| worth(grade, mistake)).collect(),
+        worth: Vec<f64> =
+            find_likely_mistakes(grade).iter().map(|(mistake, _)| mistake_points(grade, mistake)).collect(),
         /// The smallest scene for each cause; left out if the user did not request it.
         #[serde(skip_serializing_if = "Vec::is_empty")]
         smallest: Vec<SmallestView> = grade.smallest.iter().map(SmallestView::from).collect(),
         /// The course's notes on the likely mistakes, by the keys of the mistakes; left out if there are none.
         #[serde(skip_serializing_if = "BTreeMap::is_empty")]
-        notes: BTreeMap<String, CourseNote> = likely_mistakes(grade)
+        notes: BTreeMap<String, CourseNote> = find_likely_mistakes(grade)
             .iter()
             .filter_map(|(mistake, _)| Some((mistake.key.clone(), grade.note(mistake)?.clone())))
             .collect(),

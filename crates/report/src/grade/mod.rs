@@ -38,7 +38,8 @@ pub use passed_over::{add_warnings, not_graded};
 use phrases::see_above;
 pub(crate) use phrases::{count_wrong, describe_worth};
 pub use phrases::{
-    describe_difference, format_optional_points, format_points, format_score, head_lines, likely_mistakes, no_points,
+    describe_difference, find_likely_mistakes, format_optional_points, format_points, format_score, head_lines,
+    no_points,
 };
 pub(crate) use speed::describe_speed;
 pub use text::{Advice, Text, TextDetail, extra, render_table as text_table, shorten_name};

@@ -1,7 +1,7 @@
 //! Sentences about a grade that appear in several formats.
 use crate::{foreign::one_line, number::format_count, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
-pub use fosssim_mistakes::together::likely_mistakes;
+pub use fosssim_mistakes::together::find_likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
 
 /// The text that a skipped entry has instead of a verdict.
@@ -25,13 +25,13 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
         format!("{}: {what} (explains {explained} of {wrong}{worth})", std::mem::replace(&mut rank, "also likely"))
     };
     let located = grade.located.as_ref().map(words::describe_located);
-    located.into_iter().chain(likely_mistakes(grade).into_iter().map(line)).collect()
+    located.into_iter().chain(find_likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
 /// Describes the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene is
 /// wrong only because of this mistake.
 pub(crate) fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<String> {
-    let lost = together::worth(grade, mistake);
+    let lost = together::mistake_points(grade, mistake);
     (lost > 0.0).then(|| format!("worth {}", format_score(lost, grade.max_points)))
 }
 

@@ -4,7 +4,7 @@ use super::{super::explain, describe_difference, describe_speed, format_score, h
 use crate::foreign::{clean_output, one_line, strip_control_characters};
 use crate::{style::Style, view::to_document, words};
 use fosssim_findings::{Grade, SceneGrade, Verdict};
-use fosssim_mistakes::together::for_students;
+use fosssim_mistakes::together::immediate_grade;
 use serde::Serialize;
 
 /// The maximum length of a text, in characters. PrairieLearn accepts up to a megabyte.
@@ -46,7 +46,7 @@ struct Test {
 
 /// Renders the results of one submission.
 pub(crate) fn render(grade: &Grade) -> String {
-    let shown = for_students(grade);
+    let shown = immediate_grade(grade);
     let mut scenes: Vec<_> =
         shown.groups.iter().flat_map(|group| group.scenes.iter().map(move |scene| (group, scene))).collect();
     scenes.sort_by_key(|(_, scene)| scene.verdict.is_accepted());

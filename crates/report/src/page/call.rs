@@ -7,7 +7,7 @@ use crate::{describe::pair_key, detect::Detect, number::format_g};
 use askama::Template;
 use fosssim_evidence::{CallLog, InspectedCall};
 use fosssim_judge::{
-    PairWords, PassWords, differing_powers, find_factor,
+    PairWords, PassWords, find_differing_powers, find_factor,
     study::{self, Study},
 };
 use fosssim_num::{first_time::positive_set, interval::Interval};
@@ -69,9 +69,13 @@ impl CallContent<'_> {
         let mut wrong = study.curves.iter().zip(logged).filter(|(curve, own)| is_wrong(curve, own));
         let curves = match (wrong.next(), wrong.next()) {
             (None, _) => return String::new(),
-            (Some((curve, own)), None) => {
-                draw_both(self.step, &curve.role.to_string(), curve.logged.coefficients(), &curve.positive, own)
-            }
+            (Some((curve, own)), None) => draw_both(
+                self.step,
+                &curve.role.to_string(),
+                curve.logged.coefficients(),
+                &curve.positive_intervals,
+                own,
+            ),
             _ => own_curves(self.step, self.call, study, logged),
         };
         own_decision(logged) + &curves
@@ -92,7 +96,8 @@ fn changes_sign(study: &Study) -> bool {
 /// Describes the polynomials whose signs do not change within the step.
 fn describe_signs(study: &Study) -> String {
     let of = |is_wanted: bool| {
-        let is_positive = |curve: &study::Curve| curve.positive.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
+        let is_positive =
+            |curve: &study::Curve| curve.positive_intervals.iter().any(|set| set.lo < 0.5 && set.hi > 0.5);
         let names = study.curves.iter().filter(|curve| is_positive(curve) == is_wanted);
         names.map(|curve| curve.role.to_string()).collect::<Vec<_>>().join(", ")
     };
@@ -206,7 +211,7 @@ fn coefficient_rows(study: &Study, logged: &[Vec<f64>], nothing: bool) -> Vec<Ro
 
 /// Returns for each power of t whether its coefficients differ after division by the common factor.
 fn mark_differences(expected: &[f64], own: &[f64]) -> Vec<bool> {
-    let differing = differing_powers(expected, own, find_factor(expected, own));
+    let differing = find_differing_powers(expected, own, find_factor(expected, own));
     (0..expected.len().max(own.len())).map(|power| differing.contains(&power)).collect()
 }
 

@@ -26,7 +26,7 @@ use fosssim_judge::{Book, BookFindings, PairWords, fair::find_cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::{
     bounded::UNIT_ROUNDOFF,
-    tolerances::{FAIR_UNITS, PARITY_MAXIMUM},
+    tolerances::{FAIR_UNITS, PARITY_MAX_RESIDUAL},
 };
 use fosssim_render::plot::{PassPlot, PlotTarget, ResidualPlot, STEPS_AXIS, Series};
 
@@ -266,7 +266,7 @@ fn pair_of(finding: &Finding) -> String {
 /// this is the bound for the largest numbers.
 fn state_bound(evidence: &Evidence, book: Book) -> f64 {
     match book {
-        Book::Parity => PARITY_MAXIMUM,
+        Book::Parity => PARITY_MAX_RESIDUAL,
         Book::Fair => {
             let moduli = evidence.reference.values.iter().map(|value| value.abs());
             FAIR_UNITS * UNIT_ROUNDOFF * moduli.fold(0.0, f64::max)

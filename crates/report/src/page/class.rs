@@ -9,8 +9,8 @@ use super::{
 use crate::foreign::one_line;
 use crate::{
     grade::{
-        ClassFigures, SharedMistake, clearest_scene, find_frequent, find_hardest, format_optional_points,
-        format_points, likely_mistakes, never_ran, same_programs,
+        ClassFigures, SharedMistake, clearest_scene, find_frequent, find_hardest, find_likely_mistakes,
+        format_optional_points, format_points, never_ran, same_programs,
     },
     smallest::title,
     words::{self, explanation::what_or},
@@ -193,7 +193,7 @@ fn accepted_of(grade: &Grade) -> usize {
 
 /// Returns the first likely mistake of a submission, or the reason why it is not accepted.
 fn describe_reason(grade: &Grade) -> String {
-    let likely = likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
+    let likely = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
     let likely: Vec<String> = grade.located.iter().map(words::describe_located).chain(likely).collect();
     match likely.as_slice() {
         [] => words::describe_reason(grade).unwrap_or_default(),
@@ -275,7 +275,7 @@ fn list_figures(grades: &[Grade]) -> Vec<(String, String)> {
 /// likely mistake are left out.
 fn by_signature(grades: &[Grade]) -> Vec<Vec<usize>> {
     let mut found: BTreeMap<Vec<(&str, Verdict, String)>, Vec<usize>> = BTreeMap::new();
-    for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| likely_mistakes(grade).is_empty()) {
+    for (number, grade) in grades.iter().enumerate().filter(|(_, grade)| find_likely_mistakes(grade).is_empty()) {
         let failed = grade.scenes().filter(|scene| is_failed(scene));
         let signature: Vec<_> =
             failed.map(|scene| (scene.scene.as_str(), scene.verdict, words::summarize(scene))).collect();

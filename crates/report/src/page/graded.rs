@@ -11,7 +11,7 @@ use crate::foreign::{one_line, without_codes};
 use crate::{
     grade::{
         by_cause, change_lines, clearest_scene, count_wrong, describe_difference, describe_speed, describe_worth,
-        extra, format_optional_points, format_points, format_score, is_listed, likely_mistakes, no_points,
+        extra, find_likely_mistakes, format_optional_points, format_points, format_score, is_listed, no_points,
     },
     number::format_count,
     words,
@@ -21,7 +21,7 @@ use fosssim_findings::{
     Build, Grade, GroupGrade, SceneGrade, Visibility, located::LocatedFailure, smallest::SmallestScene,
 };
 use fosssim_mistakes::diagnose::Explanation;
-use fosssim_mistakes::together::for_students;
+use fosssim_mistakes::together::immediate_grade;
 use sha2::{Digest, Sha256};
 use std::borrow::Cow;
 
@@ -56,7 +56,7 @@ impl GradePage<'_> {
     #[must_use]
     pub fn html(&self) -> String {
         let shown = match self.reader {
-            Audience::Student => for_students(self.grade),
+            Audience::Student => immediate_grade(self.grade),
             Audience::Staff => Cow::Borrowed(self.grade),
         };
         let grade = shown.as_ref();
@@ -116,7 +116,7 @@ impl GradeContent<'_> {
     /// Returns the likely mistakes, and how many scenes each explains. The list is empty if a fault of the whole
     /// submission explains everything.
     fn likely(&self) -> Vec<(Explanation, usize)> {
-        if self.has_scenes { likely_mistakes(self.grade) } else { Vec::new() }
+        if self.has_scenes { find_likely_mistakes(self.grade) } else { Vec::new() }
     }
 
     /// Returns the first scene of a group that the page lists.

@@ -12,7 +12,7 @@ use fosssim_grading::{
 use fosssim_judge::{Outcome, Rules, replay};
 use fosssim_mistakes::{
     diagnose::{self, Explanation},
-    together::told::cut,
+    together::disclosure::limit_explanations,
 };
 use fosssim_model::scene::{Scene, original};
 use fosssim_student::{self as student, Student};
@@ -27,10 +27,10 @@ fn page(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8]) -> Stri
 }
 
 fn told(scene: &Scene, scene_name: &str, trace_name: &str, trace: &[u8], hints: Hints) -> String {
-    let options = replay::Options { fair: true, ..Default::default() };
+    let options = replay::Options { uses_fair_rules: true, ..Default::default() };
     let mut rulings = StepRulings::default();
     let outcome: Outcome = replay::judge(scene, trace, &options, &mut rulings);
-    let explanations = cut(hints, diagnose::explain(scene, trace));
+    let explanations = limit_explanations(hints, diagnose::explain(scene, trace));
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     let check = check_of(scene_name, trace_name, &outcome, &explanations);
@@ -44,7 +44,8 @@ fn check_of<'a>(scene: &'a str, trace: &'a str, outcome: &'a Outcome, explanatio
 }
 
 fn text_of(scene: &Scene, trace: &[u8]) -> String {
-    let outcome = replay::judge(scene, trace, &replay::Options { fair: true, ..Default::default() }, &mut ());
+    let outcome =
+        replay::judge(scene, trace, &replay::Options { uses_fair_rules: true, ..Default::default() }, &mut ());
     check_of("scene", "trace", &outcome, &[]).text(crate::style::Style::Plain)
 }
 
@@ -119,7 +120,8 @@ fn a_wrong_state_comes_before_the_polynomials_that_follow_from_it() {
 #[test]
 fn a_page_about_no_trace_has_no_verdicts_of_books() {
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
-    let outcome = replay::judge(&scene, &b""[..], &replay::Options { fair: true, ..Default::default() }, &mut ());
+    let outcome =
+        replay::judge(&scene, &b""[..], &replay::Options { uses_fair_rules: true, ..Default::default() }, &mut ());
     let check = Check { looks_like: Some("is empty"), ..check_of("head-on", "mine.bin", &outcome, &[]) };
     let case = Case { check, scene: &scene, evidence: None, what_if: None, hints: Hints::Full, has_trace: true };
     let html = case.page("mine.bin");
@@ -132,7 +134,7 @@ fn a_proof_is_told_of_whole_traces_only() {
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
     let trace = of_mistake(&scene, "pp-contact-reversed");
     let mut rulings = StepRulings::default();
-    let options = replay::Options { fair: true, ..Default::default() };
+    let options = replay::Options { uses_fair_rules: true, ..Default::default() };
     let outcome = replay::judge(&scene, &trace[..], &options, &mut rulings);
     let focus = Focus::from_outcome(&outcome);
     let evidence = gather(&scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
@@ -196,12 +198,12 @@ fn the_motion_is_exact() {
 fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let trace = of_mistake(scene, id);
     let mut rulings = StepRulings::default();
-    let options = replay::Options { fair: true, ..Default::default() };
+    let options = replay::Options { uses_fair_rules: true, ..Default::default() };
     let outcome = replay::judge(scene, &trace[..], &options, &mut rulings);
     let focus: Vec<Focus> = outcome.parity.findings.examples.iter().map(Focus::from).collect();
     let evidence = gather(scene, &mut &trace[..], &rulings.into_steps(&outcome), true, &focus, MAX_NUMBERS);
     let all = diagnose::explain(scene, &trace);
-    let explanations = cut(hints, all.clone());
+    let explanations = limit_explanations(hints, all.clone());
     let what_if = WhatIf {
         id: id.to_owned(),
         sentence: student::find(id).expect("a mistake").what.to_owned(),

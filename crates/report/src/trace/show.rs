@@ -7,7 +7,7 @@ use super::super::{
 };
 use fosssim_judge::{PairWords, PassWords, Role};
 use fosssim_model::trace::{Frame, PolynomialLabel};
-use fosssim_num::printed::format_exact;
+use fosssim_num::number_format::format_exact;
 use serde_json::{Value, json};
 
 /// One of the step's records, as the report shows it.

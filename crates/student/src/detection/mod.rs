@@ -3,7 +3,7 @@
 //! The root finder is the one supplied by the course (`num::first_time`); everything else is the student's.
 use fosssim_model::sim::{PairMotion, PointMotion};
 use fosssim_num::{
-    first_time::first_time_counted,
+    first_time::first_time_with_steps,
     polynomial::Polynomial,
     vector::{Vec2, length, unit, vector_at},
 };
@@ -278,7 +278,7 @@ pub fn detect(
 /// Returns the time of impact; the log counts the unusual part of the search.
 fn searched_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, StepFailure> {
     let mut steps = 0;
-    let found = first_time_counted(polynomials, &mut steps);
+    let found = first_time_with_steps(polynomials, &mut steps);
     log.long_searches += if found.is_err() { ENDLESS_SEARCH } else { steps.saturating_sub(USUAL_SEARCH) };
     Ok(found?)
 }

@@ -25,8 +25,8 @@ fn what_fits_at_once_is_what_a_close_look_says() {
         let (factor, noise) = (4.0 * next(), [0.0, 1e-15, 1e-13][round % 3]);
         let actual: Vec<f64> = expected.iter().map(|r| factor * (r.value + noise * (next() - 0.5) * r.bound)).collect();
         if let Some(found) = match_if_right(&expected, &actual) {
-            let close = compare_closely(&expected, &actual, &[1.0]).expect("right");
-            let bits = |found: Match| (found.scale.map(f64::to_bits), found.share.to_bits());
+            let close = compare_any_kind(&expected, &actual, &[1.0]).expect("right");
+            let bits = |found: Match| (found.scale.map(f64::to_bits), found.tolerance_share.to_bits());
             assert_eq!(bits(found), bits(close));
             answered += 1;
         }
@@ -50,15 +50,15 @@ fn what_is_right_at_once_is_right() {
         let factor = [1.0, 0.25, 1.0 / 3.0, 3.0, 1e7][round / 5 % 5];
         let noise = [0.0, 1e-16, 1e-15, 4e-15][round / 25 % 4];
         let size: f64 = expected.iter().map(|r| r.value.abs()).sum();
-        let kept = expected.iter().skip_while(|r| r.value.abs() < LEADING_COEFFICIENT);
+        let kept = expected.iter().skip_while(|r| r.value.abs() < MIN_LEADING_COEFFICIENT);
         let actual: Vec<f64> = kept.map(|r| factor * (r.value + noise * (next() - 0.5) * size)).collect();
         let Some(found) = match_if_clear(&expected, &actual) else { continue };
         if let Some(scale) = found.scale {
-            let close = compare_closely(&expected, &actual, &[1.0]);
+            let close = compare_any_kind(&expected, &actual, &[1.0]);
             // A factor near 1 may have moved lost coefficients to four times the library's bound.
             let has_lost = actual.len() < expected.len();
             assert!(has_lost || close.is_ok(), "{expected:?} {actual:?}");
-            assert!((scale / factor - 1.0).abs() < 1e-14 && found.share <= FAIR_CLEAR, "{found:?}");
+            assert!((scale / factor - 1.0).abs() < 1e-14 && found.tolerance_share <= FAIR_CLEAR_SHARE, "{found:?}");
             answered += 1;
         }
     }
@@ -122,7 +122,7 @@ fn what_fits_with_no_factor_is_wrong() {
             logged.remove(0);
         }
         let is_wrong = compare(&expected, &logged, &[factor.abs(), 1.0]).is_err();
-        let is_certain = fits_with_no_factor(&expected, &logged);
+        let is_certain = is_wrong_with_every_factor(&expected, &logged);
         assert!(is_wrong || !is_certain, "{expected:?} {logged:?}");
         wrong += u32::from(is_wrong);
         certain += u32::from(is_certain);
@@ -137,7 +137,7 @@ fn one_part_in_a_billion_is_wrong_and_a_few_roundings_are_not() {
     logged[2] *= 1.0 + 1e-9;
     assert!(compare(&right, &logged, &[1.0]).is_err());
     logged[2] = right[2].value * (1.0 + 1e-15);
-    assert!(compare(&right, &logged, &[1.0]).expect("round-off").share > 0.0);
+    assert!(compare(&right, &logged, &[1.0]).expect("round-off").tolerance_share > 0.0);
 }
 
 /// Small leading coefficients are dropped after scaling; others can't be missing.
@@ -153,7 +153,7 @@ fn only_small_leading_coefficients_may_be_missing() {
 fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
     let right = [1e-16, 0.0].map(|value: f64| BoundedValue { value, bound: 1.0 });
     for logged in [&[] as &[f64], &[1e-11], &[-1.0, 0.3], &[1e100]] {
-        assert_eq!(compare(&right, logged, &[1.0]), Ok(Match { scale: None, share: 0.0 }), "{logged:?}");
+        assert_eq!(compare(&right, logged, &[1.0]), Ok(Match { scale: None, tolerance_share: 0.0 }), "{logged:?}");
     }
     assert!(compare(&right, &[f64::NAN], &[1.0]).is_err());
     assert!(compare(&right, &[f64::INFINITY, 1.0], &[1.0]).is_err());
@@ -162,7 +162,7 @@ fn what_is_zero_but_for_round_off_may_be_any_polynomial() {
 /// Where nothing moves there is no round-off either.
 #[test]
 fn what_is_exactly_zero_is_zero() {
-    let right = [BoundedValue::exact(0.0); 2];
+    let right = [BoundedValue::from_exact(0.0); 2];
     assert!(compare(&right, &[], &[1.0]).is_ok() && compare(&right, &[0.0, -0.0], &[1.0]).is_ok());
     assert!(compare(&right, &[1e-11], &[1.0]).is_err());
 }
@@ -170,7 +170,7 @@ fn what_is_exactly_zero_is_zero() {
 /// The trace's own states may have lost all numbers: then its polynomials have none, and that is no second error.
 #[test]
 fn no_number_stands_where_none_is_expected() {
-    let (lost, kept) = (BoundedValue { value: f64::NAN, bound: f64::NAN }, BoundedValue::rounded(0.3));
+    let (lost, kept) = (BoundedValue { value: f64::NAN, bound: f64::NAN }, BoundedValue::from_rounded(0.3));
     assert!(compare(&[lost, kept], &[f64::NAN, 0.3], &[1.0]).is_ok());
     assert!(compare(&[lost, kept], &[f64::INFINITY, 0.3], &[1.0]).is_ok());
     for logged in [&[1.0, 0.3], &[f64::NAN, f64::NAN]] {

@@ -2,7 +2,9 @@
 use crate::{
     fair::{FairRefusal, FairVerdict, Judgement, context::Context},
     finding::{FindingDetail, FindingKind},
-    samples::{BOUNCE_SCENE, ZONES_SCENE, changed_trace, judge_by_both, relog, run, scene, write_frames},
+    samples::{
+        BOUNCE_SCENE, ZONES_SCENE, change_trace, judge_by_both, replace_polynomials, scene, simulate, write_frames,
+    },
 };
 use fosssim_model::{
     scene::{Collision, Scene, original},
@@ -63,8 +65,8 @@ fn distance(one: &[Frame], other: &[Frame]) -> f64 {
 fn no_loss_is_accepted(exponent: impl Fn(usize, usize) -> i32 + Copy) -> usize {
     let mut changed = 0;
     for (name, scene) in assets() {
-        let frames = run(&scene, SteeringObserver(Factors(exponent, 0)));
-        let distance = distance(&run(&scene, ()), &frames);
+        let frames = simulate(&scene, SteeringObserver(Factors(exponent, 0)));
+        let distance = distance(&simulate(&scene, ()), &frames);
         if distance > 1e-7 {
             changed += 1;
             let judged = fair(&scene, &write_frames(&scene, &frames));
@@ -94,7 +96,7 @@ fn a_factor_of_each_polynomial_must_not_change_what_happens() {
 #[test]
 fn ordinary_factors_are_accepted() {
     for (name, scene) in assets() {
-        let judged = fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Factors(|_, _| 1, 0)))));
+        let judged = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Factors(|_, _| 1, 0)))));
         assert_eq!(judged.verdict, FairVerdict::Accepted, "{name}: {:?}", judged.findings.first_divergence);
     }
 }
@@ -120,10 +122,10 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     let scene = scene(TOUCH);
     let with = |time, x, y| {
         let hit = Decision::Hit { time, normal: Vec2::new(x, y) };
-        fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Answer(Some(hit))))))
+        fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Answer(Some(hit))))))
     };
     let miss = Decision::Miss { time: ImpactTime::None };
-    let without = fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Answer(Some(miss))))));
+    let without = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Answer(Some(miss))))));
     let right = with(1.0, -0.06, -0.08);
     assert_eq!(
         (without.verdict, right.verdict),
@@ -145,10 +147,10 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
 #[test]
 fn one_factor_does_not_vouch_for_empty_logs() {
     for (name, scene) in assets() {
-        let reference = changed_trace(&scene, |_| {});
-        let forged = changed_trace(&scene, |frames| {
+        let reference = change_trace(&scene, |_| {});
+        let forged = change_trace(&scene, |frames| {
             for frame in frames {
-                relog(frame, |index, list| {
+                replace_polynomials(frame, |index, list| {
                     if index == 0 {
                         list.iter().map(|c| 1e-11 * c).filter(|c| c.abs() >= 1e-12).collect()
                     } else {
@@ -167,9 +169,9 @@ fn one_factor_does_not_vouch_for_empty_logs() {
 #[test]
 fn a_large_factor_does_not_vouch_for_garbage() {
     for (name, scene) in assets() {
-        let forged = changed_trace(&scene, |frames| {
+        let forged = change_trace(&scene, |frames| {
             for frame in frames {
-                relog(frame, |index, list| {
+                replace_polynomials(frame, |index, list| {
                     if index == 0 {
                         list.iter().map(|c| 1e15 * c).collect()
                     } else {
@@ -187,9 +189,9 @@ fn a_large_factor_does_not_vouch_for_garbage() {
 fn what_is_no_positive_number_is_no_factor() {
     let scene = scene(BOUNCE_SCENE);
     for factor in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY, -1.0, -1e-9, 0.0, 5e-324, 1e-320] {
-        let forged = changed_trace(&scene, |frames| {
+        let forged = change_trace(&scene, |frames| {
             for frame in frames {
-                relog(frame, |_, list| {
+                replace_polynomials(frame, |_, list| {
                     Polynomial::trimmed(&list.iter().map(|c| factor * c).collect::<Vec<_>>()).coefficients().to_vec()
                 });
             }
@@ -208,15 +210,15 @@ const LEAVE: &str = r#"<scene><duration time="2"/><integrator type="explicit-eul
 #[test]
 fn polynomials_that_hang_on_factors_count_in_their_steps() {
     let scene = scene(LEAVE);
-    let empty = |frames: &mut [Frame]| frames.iter_mut().for_each(|frame| relog(frame, |_, _| vec![]));
-    let judged = fair(&scene, &changed_trace(&scene, |frames| empty(frames)));
+    let empty = |frames: &mut [Frame]| frames.iter_mut().for_each(|frame| replace_polynomials(frame, |_, _| vec![]));
+    let judged = fair(&scene, &change_trace(&scene, |frames| empty(frames)));
     let first = judged.findings.first_divergence.expect("the first empty polynomial");
     assert_eq!((judged.findings.wrong_steps, first.step), (4, 1), "{judged:?}");
     assert!(matches!(first.detail, FindingDetail::Coefficient { .. }), "{first:?}");
     // The fourth step's end is wrong, too: the empty polynomial of the second still comes first.
     let judged = fair(
         &scene,
-        &changed_trace(&scene, |frames| {
+        &change_trace(&scene, |frames| {
             empty(&mut frames[3..5]);
             frames[8].state.positions[0] += 0.25;
         }),
@@ -240,12 +242,12 @@ fn steps_that_lead_nowhere_are_never_right() {
                 // One ball alone may be anywhere near.
                 continue;
             }
-            let forged = changed_trace(&scene, |frames| {
+            let forged = change_trace(&scene, |frames| {
                 for frame in &mut frames[1..] {
                     frame.state.positions.fill(value);
                     frame.state.velocities.fill(value);
                     frame.impulses.clear();
-                    relog(frame, |_, list| vec![f64::NAN; list.len()]);
+                    replace_polynomials(frame, |_, list| vec![f64::NAN; list.len()]);
                 }
             });
             let outcome = judge_by_both(&scene, &forged);
@@ -263,9 +265,9 @@ fn a_lost_record_spoils_two_steps() {
         <particle m="1" px="0" py="0" vx="1" vy="2" fixed="0" radius="0.1"/></scene>"#,
     );
     for value in [f64::NAN, f64::INFINITY, 1e200] {
-        let forged = changed_trace(&scene, |frames| frames[5].state.velocities[1] = value);
+        let forged = change_trace(&scene, |frames| frames[5].state.velocities[1] = value);
         assert_eq!(fair(&scene, &forged).findings.wrong_steps, 2, "{value}");
-        let forged = changed_trace(&scene, |frames| {
+        let forged = change_trace(&scene, |frames| {
             for frame in &mut frames[5..] {
                 frame.state.positions.fill(value);
                 frame.state.velocities.fill(value);
@@ -280,11 +282,11 @@ fn a_lost_record_spoils_two_steps() {
 fn the_mid_record_logs_the_passes_before_it() {
     for (name, scene) in assets() {
         let wrong_steps = |trace: &[u8]| fair(&scene, trace).findings.wrong_steps;
-        let own = run(&scene, ());
+        let own = simulate(&scene, ());
         let steps = own[1..].chunks_exact(2);
         let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });
         let logging = steps.clone().filter(|step| is_hybrid && !step[0].polynomials.is_empty()).count();
-        let emptied = changed_trace(&scene, |frames| {
+        let emptied = change_trace(&scene, |frames| {
             frames[1..]
                 .iter_mut()
                 .step_by(2)
@@ -293,7 +295,7 @@ fn the_mid_record_logs_the_passes_before_it() {
         });
         assert_eq!(wrong_steps(&emptied) as usize, logging, "{name}, without passes");
         let longer = steps.filter(|step| step[0].polynomials.len() < step[1].polynomials.len()).count();
-        let filled = changed_trace(&scene, |frames| {
+        let filled = change_trace(&scene, |frames| {
             for step in frames[1..].chunks_exact_mut(2) {
                 step[0].polynomials = step[1].polynomials.clone();
             }
@@ -311,7 +313,7 @@ fn the_references_own_way_is_right_wherever_it_leads() {
         <particle m="1" px="1" py="0" vx="0" vy="2" fixed="0" radius="0.1"/>
         <edge i="0" j="1" radius="0.1"/><springforce edge="0" k="1e300" l0="1" b="0"/></scene>"#,
     );
-    let frames = run(&scene, ());
+    let frames = simulate(&scene, ());
     assert!(frames.iter().any(|frame| !frame.state.velocities.iter().all(|v| v.is_finite())));
     assert_eq!(fair(&scene, &write_frames(&scene, &frames)).verdict, FairVerdict::Accepted);
 }
@@ -332,9 +334,9 @@ fn a_trace_that_is_mostly_borderline_is_not_accepted() {
             polynomials[1] = Polynomial::trimmed(&[1.0]);
         }
     }
-    let plain = fair(&scene, &write_frames(&scene, &run(&scene, ())));
+    let plain = fair(&scene, &write_frames(&scene, &simulate(&scene, ())));
     assert_eq!(plain.verdict, FairVerdict::Accepted);
-    let forged = fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Push))));
+    let forged = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Push))));
     assert_eq!(forged.refusal, Some(FairRefusal::Undecided), "{:?} of {}", forged.borderline, forged.decisions);
     assert_eq!(forged.findings.counts.total(), 0, "{:?}", forged.findings.first_divergence);
 }
@@ -373,12 +375,12 @@ fn what_a_response_has_moved_is_not_left_out() {
         }
         let is_moved = vec![false; scene.particles.len()];
         let mut moved = Moved { context: Context::new(&scene), is_moved, steps: vec![vec![]] };
-        run(&scene, &mut moved);
-        let reference = changed_trace(&scene, |_| {});
-        let forged = changed_trace(&scene, |frames| {
+        simulate(&scene, &mut moved);
+        let reference = change_trace(&scene, |_| {});
+        let forged = change_trace(&scene, |frames| {
             for (number, frame) in frames.iter_mut().enumerate() {
                 let left_out = &moved.steps[number.div_ceil(2)];
-                relog(frame, |index, list| if left_out[index] { vec![] } else { list.to_vec() });
+                replace_polynomials(frame, |index, list| if left_out[index] { vec![] } else { list.to_vec() });
             }
         });
         if forged != reference {
@@ -419,10 +421,10 @@ fn what_is_gone_is_no_mixture_of_forms() {
     }
     let stretched = scene(STRETCHED);
     let is_slip = |list: &[f64]| list.len() == 4 && list[1..].iter().all(|c| c.abs() < 1e-12);
-    assert!(run(&stretched, ()).iter().any(|frame| frame.polynomials.iter().any(is_slip)));
+    assert!(simulate(&stretched, ()).iter().any(|frame| frame.polynomials.iter().any(is_slip)));
     for (name, scene) in assets().into_iter().chain([("stretched".to_owned(), stretched)]) {
         for factor in [1e-2, 1e-4, 1e-6, 1e-8] {
-            let judged = fair(&scene, &write_frames(&scene, &run(&scene, SteeringObserver(Edges(factor)))));
+            let judged = fair(&scene, &write_frames(&scene, &simulate(&scene, SteeringObserver(Edges(factor)))));
             let counts = &judged.findings.counts;
             let lost = counts.get(FindingKind::TrimmedDecision);
             assert_eq!(counts.total(), lost, "{factor} in {name}: {:?}", judged.findings.first_divergence);
@@ -442,13 +444,13 @@ fn in_a_hybrid_steps_first_pass_formulas_are_charged() {
         let context = Context::new(&scene);
         let is_moved = vec![false; scene.particles.len()];
         let mut moved = Moved { context, is_moved, steps: vec![vec![]] };
-        run(&scene, &mut moved);
+        simulate(&scene, &mut moved);
         // Every polynomial of pairs that have collided before in the first pass of their step.
-        let trace = changed_trace(&scene, |frames| {
+        let trace = change_trace(&scene, |frames| {
             for (number, frame) in frames.iter_mut().enumerate() {
                 let collided = &moved.steps[number.div_ceil(2)];
-                relog(frame, |index, list| {
-                    let is_wrong = index < context.per_pass && collided[index];
+                replace_polynomials(frame, |index, list| {
+                    let is_wrong = index < context.polynomials_per_pass && collided[index];
                     let factors = if is_wrong { [1.0, 2.0, 1.0, 2.0, 1.0, 2.0] } else { [1.0; 6] };
                     list.iter().zip(factors).map(|(c, factor)| factor * c).collect()
                 });
@@ -472,11 +474,11 @@ fn fixed_particles_are_not_moved_by_a_response() {
         <particle m="1" px="0.31" py="2" vx="0" vy="-3" fixed="0" radius="0.1"/>
         <halfplane px="0.1" py="-0.3" nx="0.3" ny="1.7"/></scene>"#,
     );
-    let frames = run(&scene, ());
+    let frames = simulate(&scene, ());
     assert!(!frames[2].impulses.is_empty() && frames[2].polynomials.get(3).is_empty());
-    let forged = changed_trace(&scene, |frames| {
+    let forged = change_trace(&scene, |frames| {
         for frame in &mut frames[1..3] {
-            relog(frame, |index, list| if index == 3 { vec![0.25] } else { list.to_vec() });
+            replace_polynomials(frame, |index, list| if index == 3 { vec![0.25] } else { list.to_vec() });
         }
     });
     assert_eq!(fair(&scene, &forged).verdict, FairVerdict::Rejected);
@@ -515,9 +517,9 @@ fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
         );
         let scene = scene(&text);
         let contacts = |frames: &[Frame]| frames.last().expect("a record").impulses.len();
-        let mut frames = run(&scene, SteeringObserver(OtherWay));
+        let mut frames = simulate(&scene, SteeringObserver(OtherWay));
         let count = contacts(&frames);
-        assert_eq!(contacts(&run(&scene, ())), 1 - count);
+        assert_eq!(contacts(&simulate(&scene, ())), 1 - count);
         decided[count] += 1;
         assert_eq!(fair(&scene, &write_frames(&scene, &frames)).verdict, FairVerdict::Accepted, "{text}");
         for impulse in frames.iter_mut().flat_map(|frame| &mut frame.impulses) {
@@ -533,10 +535,10 @@ fn a_ball_that_just_touches_an_edge_may_collide_or_not() {
 #[test]
 fn the_initial_record_has_no_lists() {
     let scene = scene(BOUNCE_SCENE);
-    let frames = run(&scene, ());
+    let frames = simulate(&scene, ());
     let later = frames.iter().find(|frame| !frame.impulses.is_empty()).expect("a contact");
     for (impulses, polynomials) in [(true, false), (false, true), (true, true)] {
-        let forged = changed_trace(&scene, |frames| {
+        let forged = change_trace(&scene, |frames| {
             if impulses {
                 frames[0].impulses.clone_from(&later.impulses);
             }

@@ -67,7 +67,7 @@ fn trace_within(scene: &Scene, reach: f64, times: impl Fn(usize, usize) -> [f64;
 
 fn judged(times: impl Fn(usize, usize) -> [f64; 2]) -> Judgement {
     let scene = pile(0.525);
-    let options = Options { threads: 1, fair: true, ..Options::default() };
+    let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     *judge(&scene, &trace(&scene, times)[..], &options, &mut ()).fair.expect("the fair rules were asked")
 }
 
@@ -87,7 +87,7 @@ fn forces_may_be_summed_in_any_order() {
 #[test]
 fn forces_of_a_layer_alone_may_be_left_out() {
     let scene = pile(0.5);
-    let options = Options { threads: 1, fair: true, ..Options::default() };
+    let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     for reach in [1.0, 1.05] {
         let fair =
             judge(&scene, &trace_within(&scene, reach, |_, _| [1.0; 2])[..], &options, &mut ()).fair.expect("asked");

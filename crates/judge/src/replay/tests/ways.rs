@@ -2,7 +2,7 @@
 use crate::{
     options::Options,
     replay,
-    samples::{BOUNCE_SCENE, ZONES_SCENE, changed_trace, relog, scene},
+    samples::{BOUNCE_SCENE, ZONES_SCENE, change_trace, replace_polynomials, scene},
 };
 use fosssim_model::{scene::Scene, sim::RootSearch, trace::Frame};
 
@@ -28,7 +28,8 @@ const SPIN: &str = r#"<scene>
 /// Everything that both ways say, as text: it compares NaN, too.
 fn judged(scene: &Scene, trace: &[u8]) -> [String; 2] {
     [false, true].map(|one_by_one| {
-        let options = Options { fair: true, threads: 1, one_by_one, ..Options::default() };
+        let options =
+            Options { uses_fair_rules: true, threads: 1, judges_individually: one_by_one, ..Options::default() };
         format!("{:?}", replay::judge(scene, trace, &options, &mut ()))
     })
 }
@@ -56,38 +57,54 @@ fn both_ways_say_the_same_to_the_last_field() {
         |frames| frames[1].state.positions[0] += 1e-13,
         |frames| frames[3].state.positions[1] = f64::NAN,
         |frames| frames[0].state.positions[0] = 1e9,
-        |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| 3.0 * c).collect())),
-        |frames| relog(&mut frames[1], |_, own| own.iter().map(|c| c + 1e-3).collect()),
-        |frames| frames[2].impulses.clear(),
-        |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| c / 3.0).collect())),
-        |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| -c).collect())),
-        |frames| relog(&mut frames[1], |index, own| own[usize::from(index == 1).min(own.len())..].to_vec()),
         |frames| {
-            relog(&mut frames[3], |index, own| {
+            frames
+                .iter_mut()
+                .for_each(|frame| replace_polynomials(frame, |_, own| own.iter().map(|c| 3.0 * c).collect()))
+        },
+        |frames| replace_polynomials(&mut frames[1], |_, own| own.iter().map(|c| c + 1e-3).collect()),
+        |frames| frames[2].impulses.clear(),
+        |frames| {
+            frames
+                .iter_mut()
+                .for_each(|frame| replace_polynomials(frame, |_, own| own.iter().map(|c| c / 3.0).collect()))
+        },
+        |frames| {
+            frames.iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| own.iter().map(|c| -c).collect()))
+        },
+        |frames| {
+            replace_polynomials(&mut frames[1], |index, own| own[usize::from(index == 1).min(own.len())..].to_vec())
+        },
+        |frames| {
+            replace_polynomials(&mut frames[3], |index, own| {
                 own.iter().map(|c| if index == 0 { f64::NAN } else { c * 1.25 }).collect()
             })
         },
         // Other roundings, in one polynomial or in all of them.
-        |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| rounded(own, 1.0))),
-        |frames| frames[2..4].iter_mut().for_each(|frame| relog(frame, |_, own| rounded(own, 40.0))),
+        |frames| frames.iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| rounded(own, 1.0))),
+        |frames| frames[2..4].iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| rounded(own, 40.0))),
         // Factors with which leading coefficients are lost, here and there or everywhere.
-        |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| lost(own, 1e-12))),
+        |frames| frames.iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| lost(own, 1e-12))),
         |frames| {
             let small = |index: usize, own: &[f64]| lost(own, if index.is_multiple_of(3) { 1e-11 } else { 1.0 });
-            frames.iter_mut().for_each(|frame| relog(frame, small));
+            frames.iter_mut().for_each(|frame| replace_polynomials(frame, small));
         },
         // A polynomial that differs in the mid record only.
-        |frames| relog(&mut frames[1], |index, own| rounded(own, if index == 1 { 1.0 } else { 0.0 })),
-        |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| 2e4 * c).collect())),
+        |frames| replace_polynomials(&mut frames[1], |index, own| rounded(own, if index == 1 { 1.0 } else { 0.0 })),
+        |frames| {
+            frames
+                .iter_mut()
+                .for_each(|frame| replace_polynomials(frame, |_, own| own.iter().map(|c| 2e4 * c).collect()))
+        },
     ];
     for text in [BOUNCE_SCENE, ZONES_SCENE, LARGE, SPIN] {
         let scene = scene(text);
         for (number, change) in changes.into_iter().enumerate() {
-            let trace = changed_trace(&scene, change);
+            let trace = change_trace(&scene, change);
             let [quickly, slowly] = judged(&scene, &trace);
             assert!(quickly == slowly, "change {number}: {quickly}\n{slowly}");
         }
-        let mut cut = changed_trace(&scene, |_| {});
+        let mut cut = change_trace(&scene, |_| {});
         cut.truncate(cut.len() - 5);
         let [quickly, slowly] = judged(&scene, &cut);
         assert!(quickly == slowly, "{quickly}\n{slowly}");
@@ -108,12 +125,13 @@ fn what_only_the_root_finder_sees_is_no_missed_collision() {
             vy="-0.6812726629071891" fixed="0" radius="14.158818287407597"/></scene>"#,
     );
     let factors = [0.751_233_916_835_469, 0.962_163_694_423_374_3];
-    let trace = changed_trace(&scene, |frames| {
+    let trace = change_trace(&scene, |frames| {
         let scaled = |index: usize, own: &[f64]| own.iter().map(|c| factors[index % 2] * c).collect();
-        frames.iter_mut().for_each(|frame| relog(frame, scaled));
+        frames.iter_mut().for_each(|frame| replace_polynomials(frame, scaled));
     });
     for one_by_one in [false, true] {
-        let options = Options { fair: true, threads: 1, one_by_one, ..Options::default() };
+        let options =
+            Options { uses_fair_rules: true, threads: 1, judges_individually: one_by_one, ..Options::default() };
         let fair = replay::judge(&scene, &trace[..], &options, &mut ()).fair.expect("asked");
         assert_eq!(fair.findings.first_divergence, None, "one by one: {one_by_one}");
     }
@@ -124,15 +142,19 @@ fn what_only_the_root_finder_sees_is_no_missed_collision() {
 fn audited_searches_judge_the_same() {
     let changes: [Change; 4] = [
         |_| {},
-        |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| own.iter().map(|c| 3.0 * c).collect())),
-        |frames| frames.iter_mut().for_each(|frame| relog(frame, |_, own| rounded(own, 40.0))),
-        |frames| relog(&mut frames[1], |_, own| own.iter().map(|c| c + 1e-3).collect()),
+        |frames| {
+            frames
+                .iter_mut()
+                .for_each(|frame| replace_polynomials(frame, |_, own| own.iter().map(|c| 3.0 * c).collect()))
+        },
+        |frames| frames.iter_mut().for_each(|frame| replace_polynomials(frame, |_, own| rounded(own, 40.0))),
+        |frames| replace_polynomials(&mut frames[1], |_, own| own.iter().map(|c| c + 1e-3).collect()),
     ];
     for scene in [BOUNCE_SCENE, ZONES_SCENE, SPIN].map(scene) {
         for change in changes {
-            let trace = changed_trace(&scene, change);
+            let trace = change_trace(&scene, change);
             let [needed, audited] = [RootSearch::OnDemand, RootSearch::Audit].map(|root_search| {
-                let options = Options { fair: true, threads: 1, root_search, ..Options::default() };
+                let options = Options { uses_fair_rules: true, threads: 1, root_search, ..Options::default() };
                 let mut outcome = replay::judge(&scene, &trace[..], &options, &mut ());
                 (std::mem::take(&mut outcome.searches), format!("{outcome:?}"))
             });
@@ -145,7 +167,7 @@ fn audited_searches_judge_the_same() {
 #[test]
 fn what_the_original_rejects_of_itself_is_found() {
     let scene = scene(LARGE);
-    let trace = changed_trace(&scene, |_| {});
+    let trace = change_trace(&scene, |_| {});
     let outcome = replay::judge(&scene, &trace[..], &Options::default(), &mut ());
     assert!(outcome.parity.findings.counts.total() > 0, "{outcome:?}");
 }

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use fosssim_oracle::num::{
     bounded::BoundedValue,
-    decision::{Certainty, Level, decide},
+    decision::{HitCertainty, Level, decide},
     polynomial::Polynomial,
 };
 
@@ -57,7 +57,8 @@ impl Decisions {
         self.levels[decision.level as usize] += 1;
         self.certainties[decision.certainty as usize] += 1;
         let Some(time) = time else { return };
-        if decision.certainty == Certainty::Borderline || (time <= 1.0) == (decision.certainty == Certainty::Yes) {
+        if decision.certainty == HitCertainty::Borderline || (time <= 1.0) == (decision.certainty == HitCertainty::Hits)
+        {
             return;
         }
         let monomial = |polynomial: &Polynomial| match polynomial.coefficients() {
@@ -75,7 +76,7 @@ impl Decisions {
         } else {
             2
         };
-        self.differ[reason][usize::from(decision.certainty == Certainty::Yes)] += 1;
+        self.differ[reason][usize::from(decision.certainty == HitCertainty::Hits)] += 1;
         if self.first[reason].as_ref().is_none_or(|&(first, _)| index < first) {
             let coefficients: Vec<&[f64]> = polynomials.iter().map(Polynomial::coefficients).collect();
             let decided = decision.time.map_or("certainly no impact".to_owned(), |[from, to]| {

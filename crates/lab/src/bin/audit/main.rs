@@ -17,7 +17,7 @@
 use fosssim_oracle::{
     num::{
         bounded::{BoundedValue, BoundedVector},
-        certificate::{Level, exclusion},
+        certificate::{Level, find_exclusion},
         first_time::first_time,
         polynomial::Polynomial,
         vector::{Vec2, length},
@@ -87,7 +87,7 @@ impl AuditTally {
         let (pair, geometry, lists) = draw(random);
         let values = |list: &Vec<BoundedValue>| list.iter().map(|coefficient| coefficient.value).collect::<Vec<f64>>();
         let polynomials: Vec<Polynomial> = lists.iter().map(|list| Polynomial::trimmed(&values(list))).collect();
-        let level = exclusion(&polynomials);
+        let level = find_exclusion(&polynomials);
         let time = first_time(&polynomials);
         let column = level.map_or(Level::ALL.len(), |level| level as usize);
         self.decided[pair][column] += 1;
@@ -96,7 +96,7 @@ impl AuditTally {
         self.needless[pair] += u64::from(never && level.is_none());
         let alone = |polynomial: &Polynomial| {
             let alone = std::slice::from_ref(polynomial);
-            exclusion(alone).is_some() && !first_time(alone).is_ok_and(|time| time > 1.0)
+            find_exclusion(alone).is_some() && !first_time(alone).is_ok_and(|time| time > 1.0)
         };
         if (level.is_some() && !never) || polynomials.iter().any(alone) {
             self.disagreements += 1;
@@ -282,7 +282,7 @@ fn draw_product(random: &mut Random) -> Vec<BoundedValue> {
             }
         }
     }
-    coefficients[..=degree].iter().map(|&coefficient| BoundedValue::rounded(coefficient)).collect()
+    coefficients[..=degree].iter().map(|&coefficient| BoundedValue::from_rounded(coefficient)).collect()
 }
 
 /// Makes a motion in which every object has its own scale and speed.
@@ -388,23 +388,23 @@ fn draw_bulk_motion(random: &mut Random) -> RandomMotion {
 
 /// Returns the polynomials of collisions.md 2.
 fn particle_particle(motion: &RandomMotion) -> Vec<Vec<BoundedValue>> {
-    let [x1, x2, _] = motion.x.map(BoundedVector::rounded);
-    let [d1, d2, _] = motion.d.map(BoundedVector::rounded);
-    let (overlap, approach) = formulas::particle_particle(x1, d1, x2, d2, BoundedValue::rounded(motion.radius));
+    let [x1, x2, _] = motion.x.map(BoundedVector::from_rounded);
+    let [d1, d2, _] = motion.d.map(BoundedVector::from_rounded);
+    let (overlap, approach) = formulas::particle_particle(x1, d1, x2, d2, BoundedValue::from_rounded(motion.radius));
     vec![overlap.to_vec(), approach.to_vec()]
 }
 
 fn particle_half_plane(motion: &RandomMotion) -> Vec<Vec<BoundedValue>> {
-    let [x, point, normal] = motion.x.map(BoundedVector::rounded);
-    let (d, radius) = (BoundedVector::rounded(motion.d[0]), BoundedValue::rounded(motion.radius));
+    let [x, point, normal] = motion.x.map(BoundedVector::from_rounded);
+    let (d, radius) = (BoundedVector::from_rounded(motion.d[0]), BoundedValue::from_rounded(motion.radius));
     let (overlap, approach) = formulas::particle_half_plane(x, d, radius, point, normal, normal.dot(normal));
     vec![overlap.to_vec(), approach.to_vec()]
 }
 
 fn particle_edge(motion: &RandomMotion) -> Vec<Vec<BoundedValue>> {
-    let [x1, x2, x3] = motion.x.map(BoundedVector::rounded);
-    let [d1, d2, d3] = motion.d.map(BoundedVector::rounded);
+    let [x1, x2, x3] = motion.x.map(BoundedVector::from_rounded);
+    let [d1, d2, d3] = motion.d.map(BoundedVector::from_rounded);
     let edge = formulas::EdgeMotions::new(x2, d2, x3, d3);
-    let pair = formulas::particle_edge(x1, d1, &edge, BoundedValue::rounded(motion.radius));
+    let pair = formulas::particle_edge(x1, d1, &edge, BoundedValue::from_rounded(motion.radius));
     vec![pair.distance.to_vec(), pair.beyond_first.to_vec(), pair.before_second.to_vec(), pair.approach.to_vec()]
 }

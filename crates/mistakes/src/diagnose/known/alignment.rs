@@ -1,31 +1,31 @@
 //! Finds records that are missing throughout. Every later record is then at the place of another record, so no step
 //! looks right.
-use super::{explain, resimulate::resimulate};
+use super::{resimulate::resimulate, row_explanation};
 use crate::diagnose::{
     Explanation,
-    sampling::{LoggedNumbers, ROUND_OFF, Scan, StepRecords, first_difference},
+    sampling::{LoggedNumbers, ROUND_OFF, Scan, StepRecords, find_first_difference},
 };
 use fosssim_model::{scene::Scene, sim::State, trace::Layout};
 use fosssim_student::{Mistake, Row, StepLog, Student, World, find};
 
 /// Returns the record that this program leaves out, if the beginning of the trace is right once the missing record is
 /// taken into account.
-pub(super) fn missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {
+pub(super) fn find_missing_record(scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let layout = Layout::for_scene(scene);
     ["log-no-initial", "log-no-mid"].into_iter().filter_map(find).find_map(|row| {
-        let expected = records_without(layout, row);
+        let expected = count_records_without(layout, row);
         if scan.outline.records.is_some_and(|records| records > expected) {
             return None;
         }
-        let steps = aligned_steps(scene, layout, &scan.outline.opening, row)?;
+        let steps = count_aligned_steps(scene, layout, &scan.outline.opening, row)?;
         // If nothing moves in a scene, every record is right, so only the number of records counts.
-        let tells = !scan.wrong.is_empty() || scan.outline.records == Some(expected);
-        tells.then(|| explain(row, (steps, steps)))
+        let tells = !scan.wrong_steps.is_empty() || scan.outline.records == Some(expected);
+        tells.then(|| row_explanation(row, (steps, steps)))
     })
 }
 
 /// Returns the number of records of a trace without the record of `row`.
-fn records_without(layout: Layout, row: &Row) -> u64 {
+fn count_records_without(layout: Layout, row: &Row) -> u64 {
     match row.mistake {
         Mistake::LogNoInitial => layout.records() - 1,
         _ => 1 + u64::from(layout.steps),
@@ -34,7 +34,7 @@ fn records_without(layout: Layout, row: &Row) -> u64 {
 
 /// Returns the number of right steps in the opening if the records are read without the missing one; `None` if one of
 /// them is wrong.
-fn aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: &Row) -> Option<u64> {
+fn count_aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: &Row) -> Option<u64> {
     let world = World::new(scene.clone(), Student::default());
     let initial = world.initial_state();
     let mut before = State { positions: initial.x, velocities: initial.v };
@@ -57,7 +57,7 @@ fn aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: 
             expected.mid = None;
         }
         before = end.state.clone();
-        if first_difference(&expected, &StepRecords { mid, end }, &ROUND_OFF).is_some() {
+        if find_first_difference(&expected, &StepRecords { mid, end }, &ROUND_OFF).is_some() {
             return None;
         }
         steps += 1;

@@ -1,5 +1,5 @@
 //! Finds the rows of the catalogue that can show on a scene; no others are tried on it.
-use crate::diagnose::written::{is_written, term};
+use crate::diagnose::student_code::{changed_term, is_written_by_student};
 use fosssim_model::{
     assignments::{ForceKind, Integrator, Part},
     scene::{Collision, Scene},
@@ -20,16 +20,16 @@ pub(super) fn applicable_rows(scene: &Scene) -> impl Iterator<Item = &'static Ro
         row.kind != RowKind::Hostile && !is_elsewhere
     };
     let (counts, assignment) = (pairs(scene).counts(), scene.assignment());
-    let is_theirs = move |row: &&Row| is_written(row, assignment);
+    let is_theirs = move |row: &&Row| is_written_by_student(row, assignment);
     let is_small = counts.iter().map(|(_, count)| count).sum::<usize>() <= MAX_DISTANT_PAIRS;
-    let is_cheap = move |row: &&Row| is_small || !reaches_apart(row);
+    let is_cheap = move |row: &&Row| is_small || !checks_distant_pairs(row);
     all_rows().filter(is_tried).filter(is_theirs).filter(is_cheap).filter(move |row| is_applicable(scene, &counts, row))
 }
 
 /// Returns whether a penalty force with this mistake checks all pairs, even distant ones.
-fn reaches_apart(row: &Row) -> bool {
+fn checks_distant_pairs(row: &Row) -> bool {
     let Mistake::Step(StepMistake::Edit(edit)) = row.mistake else { return false };
-    !edit.slip.keeps_distance() && matches!(term(row).row().part, Part::Penalty(_))
+    !edit.slip.keeps_distance() && matches!(changed_term(row).row().part, Part::Penalty(_))
 }
 
 /// Returns whether the mistake is in forces, integrators, penalties or simple responses.
@@ -40,13 +40,13 @@ pub(super) const fn is_state_mistake(row: &Row) -> bool {
 /// Returns whether a program with this mistake may write a different trace. A mistake is excluded only if the scene
 /// lacks a part: a stage of a step, or a kind of pair.
 #[must_use]
-pub fn can_show(scene: &Scene, row: &Row) -> bool {
+pub fn may_change_trace(scene: &Scene, row: &Row) -> bool {
     is_applicable(scene, &pairs(scene).counts(), row)
 }
 
 fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
     if is_state_mistake(row) {
-        return shows_in_states(scene, counts, row);
+        return may_change_states(scene, counts, row);
     }
     let has_stage = match (&scene.collision, row.area) {
         (_, Area::Trace | Area::Process) => true,
@@ -61,8 +61,8 @@ fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool 
 }
 
 /// Returns whether mistakes of forces and integrators, and their effects, show.
-fn shows_in_states(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
-    let term = term(row);
+fn may_change_states(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool {
+    let term = changed_term(row);
     let has = |kind: ForceKind| scene.forces.iter().any(|force| force.kind() == kind);
     let is_implicit = matches!(scene.integrator, Integrator::LinearizedImplicitEuler | Integrator::ImplicitEuler);
     let is_simple = matches!(scene.collision, Collision::Simple { .. });
@@ -103,7 +103,7 @@ mod tests {
         scenes.extend(others);
         for scene in scenes {
             let right = record_trace(&scene, Student::default()).ok();
-            let is_left_out = |row: &&Row| row.kind != RowKind::Hostile && !can_show(&scene, row);
+            let is_left_out = |row: &&Row| row.kind != RowKind::Hostile && !may_change_trace(&scene, row);
             for row in all_rows().filter(is_left_out) {
                 left_out += 1;
                 assert!(record_trace(&scene, Student::new(Some(row.mistake))).ok() == right, "{} on {scene:?}", row.id);
@@ -124,7 +124,7 @@ mod tests {
             );
             fosssim_model::scene::read("balls", text.as_bytes()).expect("a scene").scene
         };
-        let of_apart = |count: u32| applicable_rows(&balls(count)).filter(|row| reaches_apart(row)).count();
+        let of_apart = |count: u32| applicable_rows(&balls(count)).filter(|row| checks_distant_pairs(row)).count();
         assert!(of_apart(10) > 0);
         assert_eq!(of_apart(400), 0);
     }

@@ -27,9 +27,9 @@ type Candidate = (&'static Row, Program);
 pub(super) struct Candidates<'a> {
     candidates: Vec<Candidate>,
     scan: &'a Scan,
-    probes: Vec<&'a KeptStep>,
+    probe_steps: Vec<&'a KeptStep>,
     /// The wrong steps that are not probes.
-    others: Vec<&'a KeptStep>,
+    other_steps: Vec<&'a KeptStep>,
     trials: Trials<'a>,
 }
 
@@ -42,8 +42,8 @@ impl<'a> Candidates<'a> {
         let candidates = applicable_rows(scene).map(|row| (row, trials.program(&[row]))).collect();
         let probes = scan.probes();
         let is_probe = |sample: &KeptStep| probes.iter().any(|probe| std::ptr::eq(*probe, sample));
-        let others = scan.wrong.iter().filter(|sample| !is_probe(sample)).collect();
-        Self { candidates, scan, probes, others, trials }
+        let others = scan.wrong_steps.iter().filter(|sample| !is_probe(sample)).collect();
+        Self { candidates, scan, probe_steps: probes, other_steps: others, trials }
     }
 
     /// Returns the rows that reproduce the most wrong steps, all the same number, in the order of the catalogue. Empty
@@ -57,7 +57,9 @@ impl<'a> Candidates<'a> {
     fn complete_scores(&self) -> Vec<Score> {
         let mut left: Vec<&Candidate> = self.candidates.iter().collect();
         let mut samples = 0;
-        for sample in self.probes.iter().copied().chain(&self.scan.right).chain(self.others.iter().copied()) {
+        for sample in
+            self.probe_steps.iter().copied().chain(&self.scan.right_steps).chain(self.other_steps.iter().copied())
+        {
             if self.trials.exceeds_limit(MAX_WORK) && samples > 0 {
                 break;
             }
@@ -73,7 +75,7 @@ impl<'a> Candidates<'a> {
     /// Returns the rows that reproduce the most wrong steps, at least half of them, and all right ones.
     fn partial_scores(&self) -> Vec<Score> {
         self.trials.restart();
-        let wrong = [self.probes.as_slice(), &self.others].concat();
+        let wrong = [self.probe_steps.as_slice(), &self.other_steps].concat();
         let stride = wrong.len().div_ceil(MAX_PARTIAL_STEPS).max(1);
         let spread: Vec<&KeptStep> = wrong.iter().step_by(stride).copied().collect();
         let rest = wrong.iter().enumerate().filter(|(index, _)| !index.is_multiple_of(stride));
@@ -95,8 +97,8 @@ impl<'a> Candidates<'a> {
         // A mistake that does not reproduce the first difference is not the right one.
         left.retain(|(candidate, reproduced)| {
             2 * reproduced >= tried
-                && self.scan.wrong.first().is_none_or(|first| self.reproduces(candidate, first))
-                && self.scan.right.iter().all(|sample| self.reproduces(candidate, sample))
+                && self.scan.wrong_steps.first().is_none_or(|first| self.reproduces(candidate, first))
+                && self.scan.right_steps.iter().all(|sample| self.reproduces(candidate, sample))
         });
         let most = left.iter().map(|(_, reproduced)| *reproduced).max().unwrap_or(0);
         left.retain(|(_, reproduced)| *reproduced == most && most > 0);
@@ -107,11 +109,11 @@ impl<'a> Candidates<'a> {
     /// Returns whether the program logs the same as the submission in this step.
     fn reproduces(&self, (row, program): &Candidate, sample: &KeptStep) -> bool {
         match row.mistake {
-            Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.polynomials_kept,
-            Mistake::LogImpulsesKept if sample.difference.is_some() => return sample.context.impulses_kept,
-            Mistake::LogSinglePrecision if sample.difference.is_some() => return sample.context.single_precision,
+            Mistake::LogPolynomialsKept if sample.difference.is_some() => return sample.context.keeps_polynomials,
+            Mistake::LogImpulsesKept if sample.difference.is_some() => return sample.context.keeps_impulses,
+            Mistake::LogSinglePrecision if sample.difference.is_some() => return sample.context.has_single_precision,
             Mistake::Step(StepMistake::Edit(Edit { slip: Slip::NotCleared, .. })) if sample.difference.is_some() => {
-                return sample.context.forces_kept;
+                return sample.context.keeps_forces;
             }
             _ => {}
         }

@@ -15,36 +15,37 @@ const MAX_SETS: usize = 1 << 8;
 const MAX_WORK: u64 = 700_000;
 
 /// Rows that reproduce a trace together.
-pub(super) struct SeveralRows {
+pub(super) struct RowCombination {
     /// The rows: first empty stages, then the others in the order in which they were found.
     pub(super) rows: Vec<&'static Row>,
     /// For each row, the rows that are equally good.
-    pub(super) same_as: Vec<Vec<&'static Row>>,
+    pub(super) equivalent_rows: Vec<Vec<&'static Row>>,
     /// Other rows that explain the trace without any empty stage.
-    pub(super) rivals: Vec<&'static Row>,
+    pub(super) rival_rows: Vec<&'static Row>,
     /// The number of tried wrong steps, all of which are reproduced.
     pub(super) samples: u64,
 }
 
 /// Returns the set of rows that reproduces all kept steps; `None` if no set of at least two rows is found.
-pub(super) fn find_set(
+pub(super) fn find_row_set(
     reference: &Reference<'_>,
     scene: &Scene,
     scan: &Scan,
     correct: ApproachForm,
-) -> Option<SeveralRows> {
+) -> Option<RowCombination> {
     let search = Search::new(reference, scene, scan, correct);
     if !Layout::for_scene(scene).has_polynomials {
         return search.find_combination();
     }
-    let mut found = search.starting_sets().into_iter().find_map(|start| search.complete(start))?;
+    let mut found = search.starting_sets().into_iter().find_map(|start| search.complete_set(start))?;
     // An empty stage may look like a mistake in another stage.
     if found.rows.iter().any(|row| is_empty_stage(row))
-        && let Some(other) = search.complete(Vec::new())
+        && let Some(other) = search.complete_set(Vec::new())
         && other.rows.len() <= found.rows.len()
     {
         let is_new = |row: &&&Row| found.rows.iter().all(|known| known.mistake != row.mistake);
-        found.rivals = other.rows.iter().chain(other.same_as.iter().flatten()).filter(is_new).copied().collect();
+        found.rival_rows =
+            other.rows.iter().chain(other.equivalent_rows.iter().flatten()).filter(is_new).copied().collect();
     }
     Some(found)
 }
@@ -72,16 +73,16 @@ impl<'a> Search<'a> {
         self.probes.len() as f64 - 1e-9
     }
 
-    fn progress(&self, rows: &[&'static Row]) -> f64 {
+    fn reproduced_share(&self, rows: &[&'static Row]) -> f64 {
         let program = self.trials.program(rows);
         self.probes.iter().map(|kept| self.trials.reproduced_share(&program, kept)).sum()
     }
 
     /// Adds rows to a set of empty stages until it reproduces everything.
-    fn complete(&self, mut set: Vec<&'static Row>) -> Option<SeveralRows> {
+    fn complete_set(&self, mut set: Vec<&'static Row>) -> Option<RowCombination> {
         // For each row of the set, the rows that were equally good when it was added.
         let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
-        let mut best = self.progress(&set);
+        let mut best = self.reproduced_share(&set);
         while best < self.full_share() && set.iter().filter(|row| !is_empty_stage(row)).count() < MAX_MISTAKES {
             let (row, progress, others) = self.next(&set, best)?;
             set.push(row);
@@ -104,28 +105,28 @@ impl<'a> Search<'a> {
             };
             let is_last = index + 1 == set.len();
             others.retain(|other| {
-                !is_empty_stage(set[index]) && (is_last || self.progress(&with(other)) >= self.full_share())
+                !is_empty_stage(set[index]) && (is_last || self.reproduced_share(&with(other)) >= self.full_share())
             });
         }
-        Some(SeveralRows { rows: set, same_as: alike, rivals: Vec::new(), samples })
+        Some(RowCombination { rows: set, equivalent_rows: alike, rival_rows: Vec::new(), samples })
     }
 
     /// Finds several mistakes of a program whose steps log only states. There, a single mistake does not reproduce a
     /// larger part of a step, but all mistakes together reproduce all of it. Unwritten functions come first, then one
     /// mistake with such functions, then two mistakes; `None` if two disjoint sets reproduce everything.
-    fn find_combination(&self) -> Option<SeveralRows> {
+    fn find_combination(&self) -> Option<RowCombination> {
         let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable_rows(self.scene).filter(is_asked).collect();
-        let mut empty = subsets(&self.stage_rows());
+        let mut empty = list_subsets(&self.empty_stage_rows());
         let most = empty.len().min(MAX_SETS);
         empty.truncate(most);
-        let explains = |set: &Vec<&'static Row>| self.explains(set);
+        let explains = |set: &Vec<&'static Row>| self.is_minimal_explanation(set);
         if let Some(rows) = empty.iter().filter(|set| set.len() > 1).find(|set| explains(set)) {
             let same_as = rows.iter().map(|_| Vec::new()).collect();
-            return Some(SeveralRows {
+            return Some(RowCombination {
                 rows: rows.clone(),
-                same_as,
-                rivals: Vec::new(),
+                equivalent_rows: same_as,
+                rival_rows: Vec::new(),
                 samples: self.count_confirmed(rows)?,
             });
         }
@@ -137,17 +138,19 @@ impl<'a> Search<'a> {
         let of_two = rows.iter().enumerate().flat_map(|(index, &one)| {
             rows[index + 1..].iter().filter(move |_| !is_empty_stage(one)).map(move |&other| vec![one, other])
         });
-        self.unique_set(beside(1)).or_else(|| self.unique_set(beside(2))).or_else(|| self.unique_set(of_two))
+        self.find_unique_set(beside(1))
+            .or_else(|| self.find_unique_set(beside(2)))
+            .or_else(|| self.find_unique_set(of_two))
     }
 
     /// Returns the only set that reproduces everything, with the alternatives for one of its rows.
-    fn unique_set(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<SeveralRows> {
+    fn find_unique_set(&self, sets: impl Iterator<Item = Vec<&'static Row>>) -> Option<RowCombination> {
         let mut found: Vec<Vec<&'static Row>> = Vec::new();
         for set in sets {
             if self.trials.exceeds_limit(MAX_WORK) {
                 return None;
             }
-            if self.explains(&set) {
+            if self.is_minimal_explanation(&set) {
                 found.push(set);
             }
         }
@@ -161,14 +164,14 @@ impl<'a> Search<'a> {
         };
         let same_as: Vec<Vec<&'static Row>> = first.iter().map(instead).collect();
         let is_told = found.len() == 1 + same_as.iter().map(Vec::len).sum::<usize>();
-        is_told.then(|| SeveralRows { rows: first, same_as, rivals: Vec::new(), samples })
+        is_told.then(|| RowCombination { rows: first, equivalent_rows: same_as, rival_rows: Vec::new(), samples })
     }
 
     /// Returns whether the rows reproduce everything, and none can be omitted.
-    fn explains(&self, set: &[&'static Row]) -> bool {
+    fn is_minimal_explanation(&self, set: &[&'static Row]) -> bool {
         let Some(probe) = self.probes.first() else { return false };
         self.trials.reproduced_share(&self.trials.program(set), probe) >= 1.0
-            && self.progress(set) >= self.full_share()
+            && self.reproduced_share(set) >= self.full_share()
             && self.is_needed(set)
             && self.count_confirmed(set).is_some()
     }
@@ -176,8 +179,9 @@ impl<'a> Search<'a> {
     /// Returns the initial sets of empty stages. One is the set that reproduces most. The others are sets of detections
     /// without which the number of polynomials fits whole passes, in case another mistake hides the first set.
     fn starting_sets(&self) -> Vec<Vec<&'static Row>> {
-        let mut starts = vec![self.empty_stages()];
-        let counts: Vec<usize> = self.scan.wrong.iter().map(|sample| sample.records.end.polynomials.len()).collect();
+        let mut starts = vec![self.find_empty_stages()];
+        let counts: Vec<usize> =
+            self.scan.wrong_steps.iter().map(|sample| sample.records.end.polynomials.len()).collect();
         let fits =
             |pass: usize| counts.iter().all(|&count| if pass == 0 { count == 0 } else { count.is_multiple_of(pass) });
         let sizes = self.row_sizes();
@@ -185,7 +189,7 @@ impl<'a> Search<'a> {
         if fits(all) {
             return starts;
         }
-        let mut sets = subsets(&sizes);
+        let mut sets = list_subsets(&sizes);
         sets.retain(|set| !set.is_empty() && fits(all - set.iter().map(|(_, size)| size).sum::<usize>()));
         starts.extend(sets.into_iter().take(MAX_MISTAKES).map(|set| set.into_iter().map(|(row, _)| row).collect()));
         starts
@@ -196,12 +200,12 @@ impl<'a> Search<'a> {
     fn row_sizes(&self) -> Vec<(&'static Row, usize)> {
         let counts = pairs(self.scene).counts();
         let size = |row: &Row| row.kind_of_pair().map_or(0, |kind| counts[kind] * kind.polynomial_count());
-        self.stage_rows().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
+        self.empty_stage_rows().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
     }
 
     /// Returns the smallest set of empty stages that reproduces most; empty if none helps.
-    fn empty_stages(&self) -> Vec<&'static Row> {
-        let mut sets = subsets(&self.stage_rows());
+    fn find_empty_stages(&self) -> Vec<&'static Row> {
+        let mut sets = list_subsets(&self.empty_stage_rows());
         // One variant of an empty loop is enough, and an empty failsafe is not visible if it is never called.
         sets.retain(|set: &Vec<&Row>| {
             let has = |mistake| set.iter().any(|row| row.mistake == mistake);
@@ -209,12 +213,12 @@ impl<'a> Search<'a> {
             let unseen = has(Mistake::GeometricEmpty) && has(Mistake::FailsafeEmpty);
             !loops && !unseen
         });
-        let mut best = (self.progress(&[]), Vec::new());
+        let mut best = (self.reproduced_share(&[]), Vec::new());
         for set in sets.into_iter().skip(1) {
             if self.trials.exceeds_limit(MAX_WORK / 2) {
                 break;
             }
-            let progress = self.progress(&set);
+            let progress = self.reproduced_share(&set);
             if progress > best.0 + 1e-9 {
                 best = (progress, set);
             }
@@ -223,9 +227,9 @@ impl<'a> Search<'a> {
     }
 
     /// Returns the rows of empty stages that show on the scene. An unwritten detection logs nothing, or zeros.
-    fn stage_rows(&self) -> Vec<&'static Row> {
+    fn empty_stage_rows(&self) -> Vec<&'static Row> {
         // For bodies at rest the approach polynomial is zero, too, but the overlap polynomial before it is not.
-        let logs_zeros = self.scan.wrong.iter().any(|kept| {
+        let logs_zeros = self.scan.wrong_steps.iter().any(|kept| {
             let are_zero = |list: &[f64]| list.iter().all(|&coefficient| coefficient == 0.0);
             let all: Vec<bool> = kept.records.end.polynomials.iter().map(are_zero).collect();
             all.windows(2).any(|two| two == [true, true])
@@ -248,7 +252,7 @@ impl<'a> Search<'a> {
                 return None;
             }
             let with: Vec<&Row> = set.iter().copied().chain([row]).collect();
-            let progress = self.progress(&with);
+            let progress = self.reproduced_share(&with);
             if progress > best.0 + 1e-9 {
                 best = (progress, vec![row]);
             } else if (progress - best.0).abs() <= 1e-9 && !best.1.is_empty() {
@@ -259,7 +263,7 @@ impl<'a> Search<'a> {
         // Leave out a stage that reproduces as much but breaks steps that are right.
         let spoils = |row: &&'static Row| {
             let program = self.trials.program(&[set, &[*row]].concat());
-            self.scan.right.iter().any(|kept| self.trials.reproduced_share(&program, kept) < 1.0)
+            self.scan.right_steps.iter().any(|kept| self.trials.reproduced_share(&program, kept) < 1.0)
         };
         rows.sort_by_cached_key(|row| (spoils(row), plausibility(row)));
         (!rows.is_empty()).then(|| (rows[0], progress, rows[1..].to_vec()))
@@ -270,7 +274,7 @@ impl<'a> Search<'a> {
         (0..set.len()).all(|index| {
             let without: Vec<&Row> =
                 set.iter().enumerate().filter(|(other, _)| *other != index).map(|(_, row)| *row).collect();
-            self.progress(&without) < self.full_share()
+            self.reproduced_share(&without) < self.full_share()
         })
     }
 
@@ -278,7 +282,7 @@ impl<'a> Search<'a> {
     fn count_confirmed(&self, set: &[&'static Row]) -> Option<u64> {
         let program = self.trials.program(set);
         let mut samples = 0;
-        for sample in self.scan.right.iter().chain(&self.scan.wrong) {
+        for sample in self.scan.right_steps.iter().chain(&self.scan.wrong_steps) {
             if self.trials.exceeds_limit(2 * MAX_WORK) && samples > 0 {
                 break;
             }
@@ -292,7 +296,7 @@ impl<'a> Search<'a> {
 }
 
 /// Returns all subsets, the smallest first.
-fn subsets<T: Copy>(all: &[T]) -> Vec<Vec<T>> {
+fn list_subsets<T: Copy>(all: &[T]) -> Vec<Vec<T>> {
     let of_bits = |bits: u32| (0..all.len()).filter(|bit| bits >> bit & 1 == 1).map(|bit| all[bit]).collect();
     let mut sets: Vec<Vec<T>> = (0..1 << all.len()).map(of_bits).collect();
     sets.sort_by_key(Vec::len);

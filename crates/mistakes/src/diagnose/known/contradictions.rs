@@ -1,7 +1,7 @@
 //! Finds mistakes that a trace contradicts, no matter which other mistakes it has: its stages are not empty, or its
 //! zones do not stop.
 use crate::diagnose::sampling::{
-    CLEAR_TOLERANCE, KeptStep, LoggedNumbers, ROUND_OFF, Scan, StepDifference, state_difference,
+    CLEAR_TOLERANCE, KeptStep, LoggedNumbers, ROUND_OFF, Scan, StepDifference, find_state_difference,
 };
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -12,9 +12,9 @@ use fosssim_student::{CATALOGUE, Mistake, Row};
 
 /// Returns the keys of mistakes by which a program never does something that this trace does: move a zone, make a pass,
 /// or log a right polynomial of a kind.
-pub(super) fn find_denied(scene: &Scene, scan: &Scan) -> Vec<String> {
-    let samples = || scan.wrong.iter().chain(&scan.right);
-    let kinds: Vec<PairKind> = samples().flat_map(|sample| right_kinds(scene, sample)).collect();
+pub(super) fn find_contradicted_keys(scene: &Scene, scan: &Scan) -> Vec<String> {
+    let samples = || scan.wrong_steps.iter().chain(&scan.right_steps);
+    let kinds: Vec<PairKind> = samples().flat_map(|sample| find_right_kinds(scene, sample)).collect();
     let is_hybrid = matches!(scene.collision, Collision::Hybrid { .. });
     let is_done = |row: &&Row| match row.mistake {
         Mistake::ParticleParticleEmpty
@@ -26,14 +26,14 @@ pub(super) fn find_denied(scene: &Scene, scan: &Scan) -> Vec<String> {
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => is_hybrid && samples().any(has_rounds),
         Mistake::GeometricEmpty => is_hybrid && samples().any(|sample| has_passes(sample) || is_moving(sample)),
         Mistake::FailsafeEmpty => is_hybrid && samples().any(is_moving),
-        Mistake::FailsafeAlwaysStops => is_hybrid && samples().any(|sample| is_moving(sample) && moves_on(sample)),
+        Mistake::FailsafeAlwaysStops => is_hybrid && samples().any(|sample| is_moving(sample) && leaves_start(sample)),
         _ => false,
     };
     CATALOGUE.iter().filter(is_done).map(|row| row.id.to_owned()).collect()
 }
 
 /// Returns the kinds of pairs whose first polynomials of the step are right.
-fn right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
+fn find_right_kinds(scene: &Scene, sample: &KeptStep) -> Vec<PairKind> {
     let logged = sample.records.end.polynomials.len();
     let right = match sample.difference {
         Some(StepDifference::Polynomial(index)) => index.min(logged),
@@ -68,12 +68,12 @@ fn has_passes(sample: &KeptStep) -> bool {
 fn is_moving(sample: &KeptStep) -> bool {
     let end = &sample.records.end.state;
     let is_sound = end.positions.iter().chain(&end.velocities).all(|value| value.is_finite());
-    let differs = |mid: &LoggedNumbers| state_difference(&mid.state, end, &ROUND_OFF).is_some();
+    let differs = |mid: &LoggedNumbers| find_state_difference(&mid.state, end, &ROUND_OFF).is_some();
     is_sound && sample.records.mid.as_ref().is_some_and(differs)
 }
 
 /// Returns whether the geometric part moves a particle and leaves it away from its start.
-fn moves_on(sample: &KeptStep) -> bool {
+fn leaves_start(sample: &KeptStep) -> bool {
     let Some(mid) = &sample.records.mid else { return false };
     let end = &sample.records.end.state.positions;
     let differs = |ours: &[f64], one: usize| {

@@ -2,7 +2,7 @@
 use super::resimulate::{ApproachForm, resimulate};
 use crate::diagnose::{
     Example, ExamplePlace, StepRecord,
-    sampling::{Capture, KeptStep, ROUND_OFF, Reference, StepDifference, same_impulse},
+    sampling::{Capture, KeptStep, ROUND_OFF, Reference, StepDifference, impulse_matches},
 };
 use fosssim_judge::Role;
 use fosssim_model::{scene::Scene, sim::State, trace::LoggedImpulse};
@@ -20,7 +20,7 @@ pub(super) fn find_example(
     // The step was simulated before, so it does not fail. If it failed, the lists below would be empty.
     let _end = reference.step(kept.step, &kept.before, &mut capture);
     if correct == ApproachForm::RightApproach {
-        let world = World::new(scene.clone(), correct.with(None));
+        let world = World::new(scene.clone(), correct.with_mistake(None));
         capture.records = resimulate(&world, &kept.before, &mut StepLog::default()).unwrap_or_default();
     }
     let (ours, theirs) = (&capture.records, &kept.records);
@@ -29,14 +29,19 @@ pub(super) fn find_example(
             let list = |log: &fosssim_model::trace::PolynomialLog| {
                 if index < log.len() { log.get(index).to_vec() } else { Vec::new() }
             };
-            let place = capture.place(index).map_or(ExamplePlace::NumberedPolynomial(index), |(pair, pass, number)| {
-                ExamplePlace::Polynomial { pair, pass: pass.index, role: Role::from_number(pair.kind, number) }
-            });
+            let place = capture.locate_polynomial(index).map_or(
+                ExamplePlace::NumberedPolynomial(index),
+                |(pair, pass, number)| ExamplePlace::Polynomial {
+                    pair,
+                    pass: pass.index,
+                    role: Role::from_number(pair.kind, number),
+                },
+            );
             (place, list(&ours.end.polynomials), list(&theirs.end.polynomials))
         }
         Some(StepDifference::PolynomialCount) => {
             let (ours, theirs) = (ours.end.polynomials.len(), theirs.end.polynomials.len());
-            (ExamplePlace::PolynomialCount, count(ours), count(theirs))
+            (ExamplePlace::PolynomialCount, count_value(ours), count_value(theirs))
         }
         Some(StepDifference::Impulses) => contact_example(&ours.end.impulses, &theirs.end.impulses),
         Some(StepDifference::MidState(particle)) => match (&ours.mid, &theirs.mid) {
@@ -62,7 +67,7 @@ fn contact_example(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (Example
     };
     for contact in ours {
         match theirs.iter().find(|other| key(other) == key(contact)) {
-            Some(other) if !same_impulse(contact, other, &ROUND_OFF) => {
+            Some(other) if !impulse_matches(contact, other, &ROUND_OFF) => {
                 return (place(contact), values(contact), values(other));
             }
             Some(_) => {}
@@ -71,7 +76,7 @@ fn contact_example(ours: &[LoggedImpulse], theirs: &[LoggedImpulse]) -> (Example
     }
     match theirs.iter().find(|contact| ours.iter().all(|other| key(other) != key(contact))) {
         Some(contact) => (place(contact), Vec::new(), values(contact)),
-        None => (ExamplePlace::ContactCount, count(ours.len()), count(theirs.len())),
+        None => (ExamplePlace::ContactCount, count_value(ours.len()), count_value(theirs.len())),
     }
 }
 
@@ -89,7 +94,7 @@ fn state_example(
     (ExamplePlace::Particle { particle, record }, values(ours), values(theirs))
 }
 
-fn count(number: usize) -> Vec<f64> {
+fn count_value(number: usize) -> Vec<f64> {
     #[expect(clippy::cast_precision_loss, reason = "a count of things in memory")]
     let number = number as f64;
     vec![number]

@@ -18,7 +18,7 @@ mod refute;
 mod resimulate;
 mod trials;
 
-pub use applicable_rows::can_show;
+pub use applicable_rows::may_change_trace;
 pub(super) use combinations::is_empty_stage;
 pub use refute::mistake_is_visible;
 pub(super) use refute::mistake_is_visible_within;
@@ -26,10 +26,10 @@ pub(super) use refute::mistake_is_visible_within;
 use super::{
     Detail, Explanation,
     about::About,
-    sampling::{ROUND_OFF, Reference, Scan, Source, TraceSamples, first_difference, sample_trace},
+    sampling::{ROUND_OFF, Reference, Scan, Source, TraceSamples, find_first_difference, sample_trace},
 };
 use candidates::Candidates;
-use combinations::SeveralRows;
+use combinations::RowCombination;
 use fosssim_model::{scene::Scene, trace::Layout};
 use fosssim_student::{Mistake, Row, RowKind, StepLog, StepMistake, World, find};
 use resimulate::{ApproachForm, resimulate};
@@ -40,8 +40,8 @@ use trials::Trials;
 /// The result is empty if all steps are right, if no mistake reproduces at least half of the wrong steps, or if a
 /// correct variant reproduces them as well. Otherwise it holds one explanation, or those of up to three mistakes that
 /// reproduce the steps together, in addition to empty stages. Further mistakes that reproduce the same steps are in
-/// [`Explanation::same_as`]. An empty stage comes first, otherwise the earliest in the assignment's order: polynomials,
-/// contact vectors, decisions, responses, loops, zones, failsafe, trace.
+/// [`Explanation::equivalent_rows`]. An empty stage comes first, otherwise the earliest in the assignment's order:
+/// polynomials, contact vectors, decisions, responses, loops, zones, failsafe, trace.
 ///
 /// `samples` and `reproduced` count wrong steps. Right steps that the mistake would make wrong exclude it. Traces of
 /// any content are accepted. Unreadable parts, damaged records, and bytes after the first 64 MiB are ignored. A trace
@@ -49,20 +49,20 @@ use trials::Trials;
 /// ([`Explanation::OTHER_SCENE`]).
 #[must_use]
 pub fn find_known(scene: &Scene, trace: &[u8]) -> Vec<Explanation> {
-    let TraceSamples { mut reference, scan, .. } = sample_trace(scene, Source::whole(trace));
-    known_or_open(&mut reference, scene, scan).explanations
+    let TraceSamples { mut reference, scan, .. } = sample_trace(scene, Source::from_trace(trace));
+    explain_kept_steps(&mut reference, scene, scan).explanations
 }
 
 /// Returns whether a right program with exactly one of the mistakes `keys` makes all kept wrong steps of a trace. This
 /// needs much less work than [`find_known`].
 #[must_use]
 pub fn reproduces(scene: &Scene, trace: &[u8], keys: &[&str]) -> bool {
-    let TraceSamples { reference, scan, .. } = sample_trace(scene, Source::whole(trace));
+    let TraceSamples { reference, scan, .. } = sample_trace(scene, Source::from_trace(trace));
     let rows: Vec<&'static Row> = keys.iter().filter_map(|key| find(key)).collect();
     [ApproachForm::Supplied, ApproachForm::RightApproach].into_iter().any(|correct| {
         let trials = Trials::new(&reference, scene, correct);
         let mut programs = rows.iter().map(|row| trials.program(&[row]));
-        programs.any(|program| scan.wrong.iter().all(|kept| trials.reproduced_share(&program, kept) >= 1.0))
+        programs.any(|program| scan.wrong_steps.iter().all(|kept| trials.reproduced_share(&program, kept) >= 1.0))
     })
 }
 
@@ -72,76 +72,77 @@ pub(super) struct KnownMistakes {
     /// The mistakes, the likeliest first.
     pub(super) explanations: Vec<Explanation>,
     /// The kept steps, if no mistake explains all of them.
-    pub(super) open: Option<Scan>,
+    pub(super) unexplained: Option<Scan>,
     /// The keys of empty stages that are visible in the trace.
-    pub(super) denies: Vec<String>,
+    pub(super) contradicted_keys: Vec<String>,
 }
 
 /// Returns the catalogue's explanations of kept steps, and the steps themselves if no mistake explains all of them.
-pub(super) fn known_or_open(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> KnownMistakes {
+pub(super) fn explain_kept_steps(reference: &mut Reference<'_>, scene: &Scene, mut scan: Scan) -> KnownMistakes {
     let only = |one: Explanation| KnownMistakes { explanations: vec![one], ..KnownMistakes::default() };
-    if let Some(missing) = alignment::missing_record(scene, &scan) {
+    if let Some(missing) = alignment::find_missing_record(scene, &scan) {
         return only(missing);
     }
-    if scan.outline.is_of_other_scene(scene) {
+    if scan.outline.belongs_to_other_scene(scene) {
         let (layout, outline) = (Layout::for_scene(scene), &scan.outline);
         let has_length = !outline.is_longer && outline.records.is_none_or(|records| records == layout.records());
         return only(Explanation::for_other_scene(has_length));
     }
-    let denies = contradictions::find_denied(scene, &scan);
+    let denies = contradictions::find_contradicted_keys(scene, &scan);
     let (mut explanations, is_settled) = explain_wrong_steps(reference, scene, &mut scan);
     explanations.retain(|one| one.is_complete() || !denies.contains(&one.key));
-    if !explanations.is_empty() || scan.outline.padded == 0 {
-        return KnownMistakes { explanations, open: (!is_settled).then_some(scan), denies };
+    if !explanations.is_empty() || scan.outline.padded_records == 0 {
+        return KnownMistakes { explanations, unexplained: (!is_settled).then_some(scan), contradicted_keys: denies };
     }
     // The reader drops coefficients that the course's library would have dropped, so padded steps look right.
-    let padded = find("log-padded").map(|row| explain(row, (scan.outline.padded, scan.outline.padded)));
-    KnownMistakes { explanations: padded.into_iter().collect(), open: None, denies }
+    let padded =
+        find("log-padded").map(|row| row_explanation(row, (scan.outline.padded_records, scan.outline.padded_records)));
+    KnownMistakes { explanations: padded.into_iter().collect(), unexplained: None, contradicted_keys: denies }
 }
 
 /// Returns the catalogue's explanations, and whether they are complete. It may replace the expected steps by those of a
 /// program with the right approach.
 fn explain_wrong_steps(reference: &mut Reference<'_>, scene: &Scene, scan: &mut Scan) -> (Vec<Explanation>, bool) {
-    if scan.wrong.is_empty() {
+    if scan.wrong_steps.is_empty() {
         return (Vec::new(), true);
     }
     let mut partly = None;
     for correct in [ApproachForm::Supplied, ApproachForm::RightApproach] {
         // The fair rules accept the right approach as well; it may hide a mistake of another kind.
-        if correct == ApproachForm::RightApproach && !take_right_approach(scan, scene) {
+        if correct == ApproachForm::RightApproach && !adopt_right_approach(scan, scene) {
             break;
         }
-        let (explanation, is_complete) = best(reference, scene, scan, correct);
+        let (explanation, is_complete) = find_best_mistake(reference, scene, scan, correct);
         if is_complete {
             return (explanation.into_iter().collect(), true);
         }
-        if let Some(several) = combinations::find_set(reference, scene, scan, correct) {
+        if let Some(several) = combinations::find_row_set(reference, scene, scan, correct) {
             return (explain_combination(reference, scene, scan, correct, &several), true);
         }
         partly = partly.or(explanation);
     }
-    (partly.into_iter().collect(), scan.wrong.is_empty())
+    (partly.into_iter().collect(), scan.wrong_steps.is_empty())
 }
 
 /// Compares the steps with a program whose particle-edge approach is mathematically right, which makes many wrong steps
 /// right. Returns false if all become right, or if the scene has no edge.
-fn take_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
+fn adopt_right_approach(scan: &mut Scan, scene: &Scene) -> bool {
     if scene.edges.is_empty() {
         return false;
     }
-    let world = World::new(scene.clone(), ApproachForm::RightApproach.with(None));
-    let samples = std::mem::take(&mut scan.wrong).into_iter().chain(std::mem::take(&mut scan.right));
+    let world = World::new(scene.clone(), ApproachForm::RightApproach.with_mistake(None));
+    let samples = std::mem::take(&mut scan.wrong_steps).into_iter().chain(std::mem::take(&mut scan.right_steps));
     for mut sample in samples {
         let logged = sample.records.end.polynomials.len();
         // A few more polynomials than were logged already show that some are missing; further ones are not needed.
         let guard = |index: usize, _: &[f64]| index < 2 * logged + MAX_SURPLUS_POLYNOMIALS;
         let expected = resimulate(&world, &sample.before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
         let Some(expected) = expected else { continue };
-        sample.difference = first_difference(&expected, &sample.records, &ROUND_OFF);
-        if sample.difference.is_some() { scan.wrong.push(sample) } else { scan.right.push(sample) }
+        sample.difference = find_first_difference(&expected, &sample.records, &ROUND_OFF);
+        if sample.difference.is_some() { scan.wrong_steps.push(sample) } else { scan.right_steps.push(sample) }
     }
-    scan.keep_fewer_right();
-    !scan.wrong.is_empty()
+    scan.limit_right_steps();
+    !scan.wrong_steps.is_empty()
 }
 
 /// The number of surplus polynomials, compared with the log, after which a step is stopped.
@@ -153,23 +154,23 @@ fn explain_combination(
     scene: &Scene,
     scan: &Scan,
     correct: ApproachForm,
-    several: &SeveralRows,
+    several: &RowCombination,
 ) -> Vec<Explanation> {
     let of_row = |(row, others): (&&'static Row, &Vec<&'static Row>)| {
-        let rivals = several.rivals.iter().filter(|_| is_empty_stage(row));
+        let rivals = several.rival_rows.iter().filter(|_| is_empty_stage(row));
         let same_as = others.iter().chain(rivals).map(|other| other.id.to_owned()).collect();
-        Explanation { same_as, ..explain(row, (several.samples, several.samples)) }
+        Explanation { same_as, ..row_explanation(row, (several.samples, several.samples)) }
     };
-    let mut all: Vec<Explanation> = several.rows.iter().zip(&several.same_as).map(of_row).collect();
+    let mut all: Vec<Explanation> = several.rows.iter().zip(&several.equivalent_rows).map(of_row).collect();
     if let Some(first) = all.first_mut() {
-        first.example = scan.wrong.first().map(|sample| example::find_example(reference, scene, correct, sample));
+        first.example = scan.wrong_steps.first().map(|sample| example::find_example(reference, scene, correct, sample));
     }
     all
 }
 
 /// Returns the mistake that reproduces most of the kept steps, and whether a row reproduces all of them. `None` if no
 /// row reproduces enough, or if a correct variant does.
-fn best(
+fn find_best_mistake(
     reference: &mut Reference<'_>,
     scene: &Scene,
     scan: &Scan,
@@ -177,7 +178,7 @@ fn best(
 ) -> (Option<Explanation>, bool) {
     let mut scores = Candidates::new(reference, scene, scan, correct).best_scores();
     scores.sort_by_key(|score| plausibility(score.row));
-    let (Some(best), Some(first)) = (scores.first(), scan.wrong.first()) else { return (None, false) };
+    let (Some(best), Some(first)) = (scores.first(), scan.wrong_steps.first()) else { return (None, false) };
     let complete = best.reproduced == best.samples;
     if scores.iter().any(|score| score.row.kind == RowKind::Variant) {
         return (None, complete);
@@ -185,7 +186,7 @@ fn best(
     let explanation = Explanation {
         example: Some(example::find_example(reference, scene, correct, first)),
         same_as: scores[1..].iter().map(|score| score.row.id.to_owned()).collect(),
-        ..explain(best.row, (best.reproduced, best.samples))
+        ..row_explanation(best.row, (best.reproduced, best.samples))
     };
     (Some(explanation), complete)
 }
@@ -214,7 +215,7 @@ fn plausibility(row: &Row) -> u8 {
 }
 
 /// Returns the explanation for a row, without an example.
-fn explain(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
+fn row_explanation(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     Explanation {
         details: vec![Detail::Term(row.id.into()), Detail::Look(row.area)],
         reproduced,

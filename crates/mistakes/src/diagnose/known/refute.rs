@@ -1,9 +1,9 @@
 //! Decides whether a mistake would show on a scene. A program that is right on such a scene does not make the mistake.
 use super::{
-    applicable_rows::can_show,
+    applicable_rows::may_change_trace,
     resimulate::{resimulate, step_work},
 };
-use crate::diagnose::sampling::{CLEAR_TOLERANCE, Capture, first_difference, same_polynomial};
+use crate::diagnose::sampling::{CLEAR_TOLERANCE, Capture, find_first_difference, polynomial_matches};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{RootSearch, Simulation},
@@ -24,7 +24,7 @@ pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
 
 /// Returns whether the mistake shows; `work` limits all searches together.
 pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
-    let Some(row) = find(key).filter(|row| can_show(scene, row)) else { return false };
+    let Some(row) = find(key).filter(|row| may_change_trace(scene, row)) else { return false };
     if row.area == Area::Response
         && matches!(scene.collision, Collision::ContinuousTime { .. } | Collision::Simple { .. })
     {
@@ -45,11 +45,11 @@ pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, w
         work.set(work.get() + each + expected.len() as u64);
         let guard = |index: usize, coefficients: &[f64]| {
             work.set(work.get() + 1);
-            index < expected.len() && same_polynomial(coefficients, expected.get(index), &CLEAR_TOLERANCE)
+            index < expected.len() && polynomial_matches(coefficients, expected.get(index), &CLEAR_TOLERANCE)
         };
         let is_seen = |world: &World| {
             let records = resimulate(world, &before, &mut StepLog { guard: Some(&guard), ..StepLog::default() });
-            records.is_none_or(|records| first_difference(&capture.records, &records, &CLEAR_TOLERANCE).is_some())
+            records.is_none_or(|records| find_first_difference(&capture.records, &records, &CLEAR_TOLERANCE).is_some())
         };
         if is_seen(&world) && !is_seen(&accepted) {
             return true;

@@ -17,7 +17,7 @@ pub(super) enum ApproachForm {
 
 impl ApproachForm {
     /// Returns a correct program of this form, with a mistake.
-    pub(super) fn with(self, mistake: Option<Mistake>) -> Student {
+    pub(super) fn with_mistake(self, mistake: Option<Mistake>) -> Student {
         let student = Student::new(mistake);
         match self {
             Self::Supplied => student,

@@ -1,7 +1,7 @@
 //! Runs programs with mistakes of the catalogue on kept steps.
 use super::resimulate::{ApproachForm, resimulate, step_work};
 use crate::diagnose::sampling::{
-    KeptStep, ROUND_OFF, Reference, StepDifference, Tolerance, first_difference, same_polynomial,
+    KeptStep, ROUND_OFF, Reference, StepDifference, Tolerance, find_first_difference, polynomial_matches,
 };
 use fosssim_model::scene::Scene;
 use fosssim_student::{Row, StepLog, Student, World};
@@ -11,13 +11,13 @@ use std::cell::Cell;
 pub(super) struct Trials<'a> {
     /// The scene, prepared for programs of all students.
     world: World,
-    correct: ApproachForm,
+    approach_form: ApproachForm,
     round_off: Tolerance,
     step_work: u64,
     /// The number of polynomials computed so far.
-    work: Cell<u64>,
+    used_work: Cell<u64>,
     /// The number of polynomials that all trials of an explanation may still compute.
-    left: &'a Cell<u64>,
+    remaining_work: &'a Cell<u64>,
 }
 
 /// A student's program on the scene.
@@ -28,23 +28,31 @@ impl<'a> Trials<'a> {
     pub(super) fn new(reference: &'a Reference<'_>, scene: &Scene, correct: ApproachForm) -> Self {
         let world = World::new(scene.clone(), Student::default());
         let (round_off, step_work) = (Tolerance::for_scene(scene), step_work(scene));
-        Self { world, correct, round_off, step_work, work: Cell::new(0), left: &reference.trials }
+        Self {
+            world,
+            approach_form: correct,
+            round_off,
+            step_work,
+            used_work: Cell::new(0),
+            remaining_work: &reference.trials,
+        }
     }
 
     /// Returns whether more than `most` polynomials were computed, or no work is left.
     pub(super) fn exceeds_limit(&self, most: u64) -> bool {
-        self.work.get() > most || self.left.get() == 0
+        self.used_work.get() > most || self.remaining_work.get() == 0
     }
 
     /// Resets the count of polynomials.
     pub(super) fn restart(&self) {
-        self.work.set(0);
+        self.used_work.set(0);
     }
 
     /// Creates a program with the mistakes of `rows`.
     pub(super) fn program(&self, rows: &[&'static Row]) -> Program {
-        let student: Student =
-            rows.iter().fold(self.correct.with(None), |student, row| student.with_mistake(Some(row.mistake)));
+        let student: Student = rows
+            .iter()
+            .fold(self.approach_form.with_mistake(None), |student, row| student.with_mistake(Some(row.mistake)));
         Program(self.world.for_student(student))
     }
 
@@ -56,7 +64,7 @@ impl<'a> Trials<'a> {
         let (asked, failed) = (Cell::new(self.step_work), Cell::new(None));
         let guard = |index: usize, coefficients: &[f64]| {
             asked.set(asked.get() + 1);
-            let goes_on = index < logged.len() && same_polynomial(coefficients, logged.get(index), &ROUND_OFF);
+            let goes_on = index < logged.len() && polynomial_matches(coefficients, logged.get(index), &ROUND_OFF);
             if !goes_on && failed.get().is_none() {
                 failed.set(Some(index));
             }
@@ -64,11 +72,11 @@ impl<'a> Trials<'a> {
         };
         let mut log = StepLog { guard: Some(&guard), ..StepLog::default() };
         let records = resimulate(&program.0, &kept.before, &mut log);
-        self.work.set(self.work.get() + asked.get() + log.long_searches);
-        self.left.set(self.left.get().saturating_sub(asked.get() + log.long_searches));
+        self.used_work.set(self.used_work.get() + asked.get() + log.long_searches);
+        self.remaining_work.set(self.remaining_work.get().saturating_sub(asked.get() + log.long_searches));
         let share = |index: usize| 0.5 * index as f64 / (logged.len() + 1) as f64;
         let Some(records) = records else { return failed.get().map_or(0.0, share) };
-        match first_difference(&records, &kept.records, &self.round_off) {
+        match find_first_difference(&records, &kept.records, &self.round_off) {
             None => 1.0,
             Some(StepDifference::Polynomial(index)) => share(index),
             Some(StepDifference::PolynomialCount) => share(records.end.polynomials.len().min(logged.len())),

@@ -6,7 +6,7 @@
 use fosssim_judge::fair::compare::compare;
 use fosssim_num::{
     bounded::{BoundedValue, UNIT_ROUNDOFF},
-    tolerances::{FAIR_NORM_UNITS, FAIR_UNITS, LEADING_COEFFICIENT},
+    tolerances::{FAIR_NORM_UNITS, FAIR_UNITS, MIN_LEADING_COEFFICIENT},
 };
 
 fosssim_model::drops_leading!();
@@ -29,13 +29,13 @@ pub(super) fn coefficient_matches(expected: BoundedValue, logged: Option<f64>, s
     let room = COEFFICIENT_TOLERANCE * scale.abs() * expected.bound;
     match logged {
         Some(value) => (value - scale * expected.value).abs() <= room,
-        None => (scale * expected.value).abs() <= LEADING_COEFFICIENT + room,
+        None => (scale * expected.value).abs() <= MIN_LEADING_COEFFICIENT + room,
     }
 }
 
 /// Returns whether the logged polynomial is `scale` times the expected one. A program may also compute its coefficients
 /// from values of the polynomial. Then all coefficients have the rounding error of the largest one.
-pub(super) fn matches(expected: &[BoundedValue], logged: &[f64], scale: f64) -> bool {
+pub(super) fn polynomial_matches(expected: &[BoundedValue], logged: &[f64], scale: f64) -> bool {
     let norm: f64 = expected.iter().map(|coefficient| coefficient.bound).sum();
     let least = FAIR_NORM_UNITS * UNIT_ROUNDOFF / COEFFICIENT_TOLERANCE * norm;
     (0..expected.len().max(logged.len())).all(|power| {
@@ -46,16 +46,20 @@ pub(super) fn matches(expected: &[BoundedValue], logged: &[f64], scale: f64) -> 
 
 /// Returns the scale that brings the expected polynomial closest to the logged one, with each coefficient weighted by
 /// its certainty; `None` if no certain coefficient is left, or if the scale is not positive.
-pub(super) fn fitted_scale(expected: &[BoundedValue], logged: &[f64]) -> Option<f64> {
-    scale_fitted_to(expected, logged, |_| true)
+pub(super) fn fit_scale(expected: &[BoundedValue], logged: &[f64]) -> Option<f64> {
+    fit_scale_to_powers(expected, logged, |_| true)
 }
 
-/// Returns the scale like [`fitted_scale`], from the coefficients of the given powers.
-pub(super) fn scale_fitted_to(expected: &[BoundedValue], logged: &[f64], power: impl Fn(usize) -> bool) -> Option<f64> {
+/// Returns the scale like [`fit_scale`], from the coefficients of the given powers.
+pub(super) fn fit_scale_to_powers(
+    expected: &[BoundedValue],
+    logged: &[f64],
+    power: impl Fn(usize) -> bool,
+) -> Option<f64> {
     let (mut above, mut below) = (0.0, 0.0);
     for power in (0..expected.len()).filter(|&index| power(index)) {
         let (coefficient, Some(value)) = (expected_at(expected, power), logged_at(logged, power)) else { continue };
-        if is_sure(coefficient) {
+        if exceeds_round_off(coefficient) {
             let share = coefficient.value / coefficient.bound.max(coefficient.value.abs());
             above += value / coefficient.value * share * share;
             below += share * share;
@@ -66,7 +70,7 @@ pub(super) fn scale_fitted_to(expected: &[BoundedValue], logged: &[f64], power: 
 }
 
 /// Returns whether a coefficient exceeds round-off.
-pub(super) fn is_sure(coefficient: BoundedValue) -> bool {
+pub(super) fn exceeds_round_off(coefficient: BoundedValue) -> bool {
     coefficient.value.abs() > FAIR_UNITS * UNIT_ROUNDOFF * coefficient.bound
 }
 
@@ -80,7 +84,7 @@ mod tests {
     use super::*;
 
     fn exact(values: &[f64]) -> Vec<BoundedValue> {
-        values.iter().map(|&value| BoundedValue::rounded(value)).collect()
+        values.iter().map(|&value| BoundedValue::from_rounded(value)).collect()
     }
 
     #[test]

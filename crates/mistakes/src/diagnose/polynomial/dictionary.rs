@@ -14,7 +14,7 @@ pub(super) struct Product {
     /// The product's degree in the displacements.
     pub order: u8,
     /// Whether the product contains a quantity from outside the formula.
-    pub foreign: bool,
+    pub is_foreign: bool,
 }
 
 /// The products of one formula.
@@ -39,17 +39,17 @@ impl Dictionary {
         match longest {
             1 => lists.extend((0..letters.len()).map(|one| vec![one])),
             2 => {
-                lists.extend(products_of_two(own));
+                lists.extend(two_letter_products(own));
                 lists.extend((0..own).map(|one| vec![one]));
                 lists.extend(foreign_products(subject, own));
             }
-            _ => lists.extend(products_of_three(own)),
+            _ => lists.extend(three_letter_products(own)),
         }
         let products = lists
             .into_iter()
             .map(|list| Product {
                 order: list.iter().map(|&index| letters[index].order).sum(),
-                foreign: list.iter().any(|&index| index >= own),
+                is_foreign: list.iter().any(|&index| index >= own),
                 letters: list,
             })
             .collect();
@@ -57,7 +57,7 @@ impl Dictionary {
     }
 
     /// Returns the values of all products, in order.
-    pub fn values(&self, inputs: &Inputs) -> Vec<BoundedValue> {
+    pub fn evaluate(&self, inputs: &Inputs) -> Vec<BoundedValue> {
         let letters: Vec<BoundedValue> = self.letters.iter().map(|letter| (letter.value)(inputs)).collect();
         self.products.iter().map(|entry| product(&letters, &entry.letters)).collect()
     }
@@ -82,11 +82,11 @@ impl Dictionary {
     }
 }
 
-fn products_of_two(count: usize) -> impl Iterator<Item = Vec<usize>> {
+fn two_letter_products(count: usize) -> impl Iterator<Item = Vec<usize>> {
     (0..count).flat_map(move |one| (one..count).map(move |two| vec![one, two]))
 }
 
-fn products_of_three(count: usize) -> impl Iterator<Item = Vec<usize>> {
+fn three_letter_products(count: usize) -> impl Iterator<Item = Vec<usize>> {
     (0..count)
         .flat_map(move |one| (one..count).flat_map(move |two| (two..count).map(move |three| vec![one, two, three])))
 }

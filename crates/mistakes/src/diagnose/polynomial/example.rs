@@ -8,8 +8,8 @@ use fosssim_student::assignments::t2m2::Input;
 fosssim_model::drops_leading!();
 
 /// Returns the example of a study, with the number of characters of its inputs.
-pub(super) fn smallest_example(study: &PolynomialStudy) -> Option<(usize, Example)> {
-    let wrong = study.cases.iter().filter(|case| !case.right);
+pub(super) fn find_smallest_example(study: &PolynomialStudy) -> Option<(usize, Example)> {
+    let wrong = study.cases.iter().filter(|case| !case.is_right);
     let best = wrong.min_by_key(|case| (count_digits(case), case.sample.step, case.sample.pass))?;
     Some((count_digits(best), build_example(study, best)))
 }

@@ -26,7 +26,7 @@ use super::{
     Detail, Explanation, PolynomialDetail, Weight,
     about::{About, OfPolynomials},
     guess::{CoefficientGuess, Guess, digest},
-    sampling::{ROUND_OFF, same_polynomial},
+    sampling::{ROUND_OFF, polynomial_matches},
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::assignments::t2m2::{NAMED_EDITS, NamedEdit, Subject};
@@ -56,22 +56,22 @@ const MAX_COST_DIFFERENCE: f64 = 1.6;
 #[must_use]
 pub fn explain(samples: &[Sample]) -> Vec<Explanation> {
     let subjects = PairKind::ALL.into_iter().flat_map(Subject::all_of_kind).copied();
-    let mut open: Vec<Suspect> = subjects
+    let mut open: Vec<WrongPolynomial> = subjects
         .filter_map(|subject| PolynomialStudy::new(subject, samples))
-        .map(|study| Suspect { candidates: collect_candidates(&study), study })
+        .map(|study| WrongPolynomial { candidates: collect_candidates(&study), study })
         .collect();
-    let mut explanations: Vec<Explanation> = open.iter().filter_map(nearly_right).collect();
-    open.retain(|suspect| nearly_right(suspect).is_none());
-    while let Some(key) = best_shared_key(&open) {
-        let (covered, rest): (Vec<Suspect>, Vec<Suspect>) = open
+    let mut explanations: Vec<Explanation> = open.iter().filter_map(explain_nearly_right).collect();
+    open.retain(|suspect| explain_nearly_right(suspect).is_none());
+    while let Some(key) = find_best_shared_key(&open) {
+        let (covered, rest): (Vec<WrongPolynomial>, Vec<WrongPolynomial>) = open
             .into_iter()
             .partition(|suspect| suspect.complete_guesses().any(|candidate| candidate.guess.key() == key));
         explanations.push(explain_shared(&covered, &key));
         open = rest;
     }
-    let (hopeless, open): (Vec<Suspect>, Vec<Suspect>) =
+    let (hopeless, open): (Vec<WrongPolynomial>, Vec<WrongPolynomial>) =
         open.into_iter().partition(|suspect| suspect.candidates.is_empty());
-    explanations.extend(open.iter().map(Suspect::explanation));
+    explanations.extend(open.iter().map(WrongPolynomial::explanation));
     explanations.extend(summarize_unexplained(&hopeless));
     explanations.extend(explain_missing(samples));
     explanations.sort_by_key(|explanation| explanation.reproduced < explanation.samples);
@@ -102,12 +102,12 @@ fn explain_missing(samples: &[Sample]) -> Option<Explanation> {
 }
 
 /// A wrong polynomial with the guesses about it, the best first.
-struct Suspect<'a> {
+struct WrongPolynomial<'a> {
     study: PolynomialStudy<'a>,
     candidates: Vec<Candidate>,
 }
 
-impl Suspect<'_> {
+impl WrongPolynomial<'_> {
     /// Returns the guesses that reproduce all samples.
     fn complete_guesses(&self) -> impl Iterator<Item = &Candidate> {
         self.candidates.iter().filter(|candidate| candidate.reproduced == self.study.cases.len())
@@ -118,7 +118,7 @@ impl Suspect<'_> {
     fn list_claims<'a>(&self, guesses: impl Iterator<Item = &'a Candidate>) -> Vec<String> {
         let subject = self.study.subject;
         let guesses = guesses.flat_map(|guess| list_claims(subject, guess)).take(MAX_CLAIMS);
-        let all: Vec<String> = guesses.chain(known_makers(&self.study)).collect();
+        let all: Vec<String> = guesses.chain(find_known_mistakes(&self.study)).collect();
         if all.is_empty() { vec![format!("{subject:?}//")] } else { all }
     }
 
@@ -134,10 +134,10 @@ impl Suspect<'_> {
         };
         let found = OfPolynomials::Guess(best.guess.clone());
         Explanation {
-            details: best.details.iter().cloned().map(|one| detail(one, &[self.study.subject])).collect(),
+            details: best.details.iter().cloned().map(|one| guess_detail(one, &[self.study.subject])).collect(),
             reproduced: best.reproduced as u64,
             samples,
-            example: example::smallest_example(&self.study).map(|(_, example)| example),
+            example: example::find_smallest_example(&self.study).map(|(_, example)| example),
             same_as: take_distinct(
                 self.candidates.iter().filter(equal).map(|other| other.guess.key().to_owned()),
                 MAX_OTHER_KEYS,
@@ -156,11 +156,11 @@ fn list_claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     }
     let only = std::slice::from_ref(&candidate.details);
     let forms = if candidate.forms.is_empty() { only } else { &candidate.forms };
-    forms.iter().map(|form| form_claim(subject, &candidate.guess, form)).collect()
+    forms.iter().map(|form| claim_of_form(subject, &candidate.guess, form)).collect()
 }
 
 /// Returns the claim of one exact form. The sentences about coefficients follow from it.
-pub(super) fn form_claim(subject: Subject, guess: &Guess, form: &[PolynomialDetail]) -> String {
+pub(super) fn claim_of_form(subject: Subject, guess: &Guess, form: &[PolynomialDetail]) -> String {
     let guess = match guess {
         Guess::Coefficients { .. } => Guess::Coefficients { powers: Vec::new(), wrong: CoefficientGuess::Several },
         other => other.clone(),
@@ -176,7 +176,7 @@ pub(super) fn form_claim(subject: Subject, guess: &Guess, form: &[PolynomialDeta
 
 /// Returns the known mistakes in the formulas of this kind, or in passing them on, that give the logged polynomial in
 /// all samples.
-fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
+fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
     let kind = study.subject.kind();
     let Some(number) = Subject::all_of_kind(kind).iter().position(|&other| other == study.subject) else {
         return Vec::new();
@@ -189,7 +189,7 @@ fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
     let makes = |row: &&Row| {
         study.cases.iter().all(|case| {
             let made = polynomials_of(Student::new(Some(row.mistake)), &case.sample.motion);
-            let same = |made: &Vec<f64>| same_polynomial(made, case.logged, &ROUND_OFF);
+            let same = |made: &Vec<f64>| polynomial_matches(made, case.logged, &ROUND_OFF);
             made.get(number).is_some_and(same)
         })
     };
@@ -197,7 +197,7 @@ fn known_makers(study: &PolynomialStudy<'_>) -> Vec<String> {
 }
 
 /// Returns one detail of the exact form of a guess about `subjects`.
-fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
+fn guess_detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     if let PolynomialDetail::Named { of_edges, .. } = &mut detail {
         *of_edges = subjects.iter().all(|subject| subject.kind() == PairKind::ParticleEdge);
     }
@@ -207,7 +207,7 @@ fn detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
 /// Returns all guesses about a polynomial. The guess that reproduces most comes first; on a tie, the likeliest.
 fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::collect_candidates(study);
-    all.extend(misunderstandings(study));
+    all.extend(collect_misunderstandings(study));
     all.extend(slips::collect_candidates(study));
     all.extend(terms::collect_candidates(study));
     // A guess that reproduces no more than the right formula is not an explanation.
@@ -218,11 +218,11 @@ fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
 }
 
 /// Returns the guesses that the student misunderstood something, such as the end positions.
-fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
+fn collect_misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
     let of = |named: &NamedEdit| {
         named.polynomial(study.subject, &study.cases.first()?.inputs)?;
         let predict = |case: &Case| named.polynomial(study.subject, &case.inputs).unwrap_or_default();
-        let (reproduced, scaled) = study.count(predict)?;
+        let (reproduced, scaled) = study.count_predicted(predict)?;
         Some(Candidate {
             guess: Guess::Named(named.key.into()),
             details: vec![PolynomialDetail::Named { key: named.key.into(), of_edges: false }],
@@ -236,13 +236,13 @@ fn misunderstandings(study: &PolynomialStudy) -> Vec<Candidate> {
 
 /// Returns the explanation of a polynomial that is right except for more round-off than the rules allow, if no guess is
 /// better.
-fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
+fn explain_nearly_right(suspect: &WrongPolynomial) -> Option<Explanation> {
     let study = &suspect.study;
-    let (error, samples) = (study.error(), study.cases.len() as u64);
+    let (error, samples) = (study.max_error(), study.cases.len() as u64);
     (error < NEARLY_RIGHT_ERROR && suspect.complete_guesses().next().is_none()).then(|| Explanation {
         details: vec![Detail::Polynomial(PolynomialDetail::RightUpTo(error))],
         samples,
-        example: example::smallest_example(study).map(|(_, example)| example),
+        example: example::find_smallest_example(study).map(|(_, example)| example),
         ..Explanation::about(
             Explanation::NEARLY_RIGHT,
             About::Polynomials { subjects: vec![study.subject], found: OfPolynomials::NearlyRight },
@@ -251,16 +251,16 @@ fn nearly_right(suspect: &Suspect) -> Option<Explanation> {
 }
 
 /// Returns one explanation with all unexplained polynomials.
-fn summarize_unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
+fn summarize_unexplained(hopeless: &[WrongPolynomial]) -> Option<Explanation> {
     let first = hopeless.first()?;
-    let lines = |suspect: &Suspect| {
+    let lines = |suspect: &WrongPolynomial| {
         let subject = (hopeless.len() > 1).then_some(suspect.study.subject);
-        suspect.study.differences(subject).into_iter().map(Detail::Polynomial)
+        suspect.study.count_differences(subject).into_iter().map(Detail::Polynomial)
     };
     Some(Explanation {
         details: take_distinct(hopeless.iter().flat_map(lines), MAX_OTHER_KEYS),
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
-        example: example::smallest_example(&first.study).map(|(_, example)| example),
+        example: example::find_smallest_example(&first.study).map(|(_, example)| example),
         claims: take_distinct(hopeless.iter().flat_map(|suspect| suspect.list_claims(std::iter::empty())), usize::MAX),
         ..Explanation::about(
             Explanation::UNEXPLAINED,
@@ -275,7 +275,7 @@ fn summarize_unexplained(hopeless: &[Suspect]) -> Option<Explanation> {
 /// Returns the key of general guesses that reproduces all samples of the most polynomials; on a tie, the likeliest. A
 /// polynomial's own likeliest guess counts for that polynomial. `None` if no key reproduces all samples of a
 /// polynomial.
-fn best_shared_key(open: &[Suspect]) -> Option<String> {
+fn find_best_shared_key(open: &[WrongPolynomial]) -> Option<String> {
     let mut keys: BTreeMap<&str, (usize, f64)> = BTreeMap::new();
     for suspect in open {
         let mut seen: Vec<&str> = Vec::new();
@@ -293,7 +293,7 @@ fn best_shared_key(open: &[Suspect]) -> Option<String> {
 }
 
 /// Returns one explanation for several polynomials.
-fn explain_shared(covered: &[Suspect], key: &str) -> Explanation {
+fn explain_shared(covered: &[WrongPolynomial], key: &str) -> Explanation {
     let guesses: Vec<&Candidate> = covered
         .iter()
         .filter_map(|suspect| suspect.complete_guesses().find(|candidate| candidate.guess.key() == key))
@@ -306,8 +306,8 @@ fn explain_shared(covered: &[Suspect], key: &str) -> Explanation {
             && covered.iter().all(|suspect| suspect.complete_guesses().any(|candidate| candidate.guess.key() == *other))
     });
     let samples = covered.iter().map(|suspect| suspect.study.cases.len() as u64).sum();
-    let examples = covered.iter().filter_map(|suspect| example::smallest_example(&suspect.study));
-    let details = guesses.iter().flat_map(|guess| &guess.details).map(|one| detail(one.clone(), &subjects));
+    let examples = covered.iter().filter_map(|suspect| example::find_smallest_example(&suspect.study));
+    let details = guesses.iter().flat_map(|guess| &guess.details).map(|one| guess_detail(one.clone(), &subjects));
     let found = OfPolynomials::Guess(guesses[0].guess.clone());
     Explanation {
         details: take_distinct(details, MAX_OTHER_KEYS),

@@ -9,7 +9,7 @@ use fosssim_student::assignments::t2m2::{
 };
 
 /// A quantity that is tried instead of a letter.
-enum Trial<'a> {
+enum SlipTrial<'a> {
     /// The letter itself, multiplied by a factor.
     Scaled(f64),
     /// The letter with this index instead.
@@ -20,13 +20,13 @@ enum Trial<'a> {
     One,
 }
 
-impl Trial<'_> {
+impl SlipTrial<'_> {
     fn value(&self, slot: usize, values: &[BoundedValue], inputs: &Inputs) -> BoundedValue {
         match self {
             Self::Scaled(factor) => *factor * values[slot],
             Self::Letter(other) => values[*other],
             Self::Dot(one, two, sign) => *sign * (one.value)(inputs).dot((two.value)(inputs)),
-            Self::One => BoundedValue::exact(1.0),
+            Self::One => BoundedValue::from_exact(1.0),
         }
     }
 
@@ -63,10 +63,10 @@ impl Trial<'_> {
 
 /// Returns the one-letter slips that reproduce at least half of the wrong samples.
 pub(super) fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
-    study.formulas().flat_map(|(reading, formula)| in_formula(study, formula, reading)).collect()
+    study.formula_readings().flat_map(|(reading, formula)| collect_formula_slips(study, formula, reading)).collect()
 }
 
-fn in_formula(study: &PolynomialStudy, formula: &Formula, reading: Reading) -> Vec<Candidate> {
+fn collect_formula_slips(study: &PolynomialStudy, formula: &Formula, reading: Reading) -> Vec<Candidate> {
     let pool = ingredients(study.subject.kind());
     let mut found = Vec::new();
     for (slot, letter) in formula.letters.iter().enumerate() {
@@ -74,13 +74,13 @@ fn in_formula(study: &PolynomialStudy, formula: &Formula, reading: Reading) -> V
         if uses == 0 {
             continue;
         }
-        let scaled = [-1.0, 0.0, 2.0, 0.5].into_iter().filter(|_| uses > 1).map(Trial::Scaled);
-        let letters = (0..formula.letters.len()).filter(|&other| other != slot).map(Trial::Letter);
+        let scaled = [-1.0, 0.0, 2.0, 0.5].into_iter().filter(|_| uses > 1).map(SlipTrial::Scaled);
+        let letters = (0..formula.letters.len()).filter(|&other| other != slot).map(SlipTrial::Letter);
         let dots = pool.iter().enumerate().flat_map(|(index, one)| {
-            pool[index..].iter().flat_map(move |two| [1.0, -1.0].map(|sign| Trial::Dot(one, two, sign)))
+            pool[index..].iter().flat_map(move |two| [1.0, -1.0].map(|sign| SlipTrial::Dot(one, two, sign)))
         });
-        for trial in scaled.chain(letters).chain(dots).chain([Trial::One]) {
-            let counted = study.count(|case| {
+        for trial in scaled.chain(letters).chain(dots).chain([SlipTrial::One]) {
+            let counted = study.count_predicted(|case| {
                 let mut values = formula.values(&case.inputs);
                 values[slot] = trial.value(slot, &values, &case.inputs);
                 formula.evaluate(&values)

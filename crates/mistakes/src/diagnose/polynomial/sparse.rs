@@ -7,7 +7,7 @@
 use nalgebra::{DMatrix, DVector};
 
 /// A proposal: ascending column indices and their weights.
-pub(super) type Support = Vec<(usize, f64)>;
+pub(super) type WeightedColumns = Vec<(usize, f64)>;
 
 /// The squared residual that counts as zero, relative to the target. The normal equations are not more accurate.
 const SMALL_RESIDUAL: f64 = 1e-10;
@@ -67,13 +67,17 @@ impl DesignMatrix {
 
     /// Finds proposals for `target`, in the order of their sizes. `accept` is called with each proposal, and returns
     /// whether the proposal is correct. Returns the accepted ones of the smallest size.
-    pub fn supports(&self, target: &[f64], mut accept: impl FnMut(&Support) -> bool) -> Vec<Support> {
+    pub fn find_supports(
+        &self,
+        target: &[f64],
+        mut accept: impl FnMut(&WeightedColumns) -> bool,
+    ) -> Vec<WeightedColumns> {
         let square = dot(target, target);
         if !(square > 0.0 && square.is_finite()) {
             return Vec::new();
         }
         let fits: Vec<f64> = self.unit.iter().map(|column| dot(column, target)).collect();
-        let problem = Problem { columns: self, fits: &fits, square };
+        let problem = FitProblem { columns: self, fits: &fits, square };
         let all = self.indices.len();
         let of_triples = if all > MAX_FOR_TRIPLES { self.likely.min(MAX_FOR_TRIPLES) } else { all };
         for (size, among) in [(1, all), (2, all), (3, of_triples), (4, self.likely.min(MAX_FOR_QUADRUPLES))] {
@@ -89,12 +93,12 @@ impl DesignMatrix {
                 return accepted;
             }
         }
-        let pursued = [self.likely, self.indices.len()].map(|among| self.pursue(target, &fits, among));
+        let pursued = [self.likely, self.indices.len()].map(|among| self.find_by_pursuit(target, &fits, among));
         pursued.into_iter().flatten().find(|support| accept(support)).into_iter().collect()
     }
 
     /// Runs matching pursuit among the first `among` columns.
-    fn pursue(&self, target: &[f64], fits: &[f64], among: usize) -> Option<Support> {
+    fn find_by_pursuit(&self, target: &[f64], fits: &[f64], among: usize) -> Option<WeightedColumns> {
         let square = dot(target, target);
         let mut chosen: Vec<usize> = Vec::new();
         let mut residual = target.to_vec();
@@ -117,9 +121,9 @@ impl DesignMatrix {
     }
 
     /// Returns the weights of the original columns.
-    fn solve(&self, chosen: &[usize], fits: &[f64]) -> Option<Support> {
+    fn solve(&self, chosen: &[usize], fits: &[f64]) -> Option<WeightedColumns> {
         let weights = self.weights(chosen, fits)?;
-        let mut support: Support = chosen
+        let mut support: WeightedColumns = chosen
             .iter()
             .zip(weights)
             .map(|(&column, weight)| (self.indices[column], weight / self.norms[column]))
@@ -142,7 +146,7 @@ impl DesignMatrix {
     }
 }
 
-struct Problem<'a> {
+struct FitProblem<'a> {
     columns: &'a DesignMatrix,
     fits: &'a [f64],
     square: f64,
@@ -158,7 +162,7 @@ struct PartialSelection {
     explained: f64,
 }
 
-impl Problem<'_> {
+impl FitProblem<'_> {
     /// Reports all choices of `size` columns among the first `among` that leave no residual.
     fn search(
         &self,
@@ -245,7 +249,7 @@ mod tests {
             vec![(1, 1.0), (2, 1.0), (3, -1.0), (19, 2.0)],
             vec![(0, 3.0), (7, 1.0), (9, -2.0), (12, 1.5), (18, 2.0), (25, 1.0)],
         ] {
-            let found = prepared.supports(&combined(&all, &support), |_| true);
+            let found = prepared.find_supports(&combined(&all, &support), |_| true);
             assert_eq!(found.len(), 1, "{support:?}: {found:?}");
             assert_eq!(found[0].len(), support.len(), "{support:?}: {found:?}");
             for (ours, right) in found[0].iter().zip(&support) {
@@ -259,7 +263,7 @@ mod tests {
     fn columns_that_cannot_be_told_apart_are_all_reported() {
         let mut all = columns(6, 50);
         all[4] = all[1].iter().map(|value| 2.0 * value).collect();
-        let found = DesignMatrix::new(&all, |_| true).supports(&all[1], |_| true);
+        let found = DesignMatrix::new(&all, |_| true).find_supports(&all[1], |_| true);
         assert_eq!(found.len(), 2);
         assert_eq!((found[0][0].0, found[1][0].0), (1, 4));
         assert!((found[1][0].1 - 0.5).abs() < 1e-12);
@@ -268,6 +272,6 @@ mod tests {
     #[test]
     fn nothing_is_proposed_for_noise() {
         let all = columns(30, 100);
-        assert!(DesignMatrix::new(&all[1..], |_| true).supports(&all[0], |_| true).is_empty());
+        assert!(DesignMatrix::new(&all[1..], |_| true).find_supports(&all[0], |_| true).is_empty());
     }
 }

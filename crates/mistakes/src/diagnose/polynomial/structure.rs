@@ -1,12 +1,12 @@
 //! Guesses about the whole list of coefficients: reversed, negated, cut, another polynomial's, or NaN.
 use super::{
-    compare::{expected_at, logged_at, matches},
+    compare::{expected_at, logged_at, polynomial_matches},
     study::{Candidate, Case, PolynomialStudy, median, ratio},
 };
 use crate::diagnose::{Guess, ListGuess, PolynomialDetail};
 use fosssim_num::{
     bounded::BoundedValue,
-    tolerances::{FAIR_UNITS, LEADING_COEFFICIENT},
+    tolerances::{FAIR_UNITS, MIN_LEADING_COEFFICIENT},
 };
 use fosssim_student::assignments::t2m2::{Subject, formulas::readings};
 
@@ -22,7 +22,7 @@ pub(super) fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     add_rearrangements(study, &mut found);
     add_other_polynomials(study, &mut found);
     add_cuts(study, &mut found);
-    found.extend(scaled_displacements(study));
+    found.extend(guess_scaled_displacements(study));
     found
 }
 
@@ -51,17 +51,19 @@ fn add_properties(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
             case.logged.len() > 1 && case.logged.iter().all(|&other| other == value)
         });
     }
-    check(ListGuess::SinglePrecision, Some(PolynomialDetail::SinglePrecision), 2.0, &|case| is_single(case));
+    check(ListGuess::SinglePrecision, Some(PolynomialDetail::SinglePrecision), 2.0, &|case| is_single_precision(case));
     check(ListGuess::Monic, None, 1.5, &|case| {
         let leading = case.logged.first() == Some(&1.0);
         let power = case.logged.len().saturating_sub(1);
-        case.right || leading && matches(&case.expected, case.logged, 1.0 / expected_at(&case.expected, power).value)
+        case.is_right
+            || leading
+                && polynomial_matches(&case.expected, case.logged, 1.0 / expected_at(&case.expected, power).value)
     });
-    check(ListGuess::TooLong, None, 8.0, &|case| case.right || case.logged.len() > case.expected.len());
+    check(ListGuess::TooLong, None, 8.0, &|case| case.is_right || case.logged.len() > case.expected.len());
 }
 
 /// Returns whether all logged numbers are single-precision and close to the expected ones.
-fn is_single(case: &Case) -> bool {
+fn is_single_precision(case: &Case) -> bool {
     let single = |value: f64| {
         #[expect(clippy::cast_possible_truncation, reason = "whether the truncation changes it is the question")]
         let rounded = value as f32;
@@ -72,17 +74,17 @@ fn is_single(case: &Case) -> bool {
         let expected = expected_at(&case.expected, power);
         let value = logged_at(case.logged, power).unwrap_or(0.0);
         let room = units * (case.scale * expected.bound + value.abs());
-        (value - case.scale * expected.value).abs() <= room + LEADING_COEFFICIENT
+        (value - case.scale * expected.value).abs() <= room + MIN_LEADING_COEFFICIENT
     };
     let is_short = case.logged.len() <= case.expected.len();
     is_short && case.logged.iter().all(|&value| single(value)) && (0..case.expected.len()).all(close)
 }
 
-fn negate(list: &[BoundedValue]) -> Vec<BoundedValue> {
+fn negate_coefficients(list: &[BoundedValue]) -> Vec<BoundedValue> {
     list.iter().map(|&coefficient| -coefficient).collect()
 }
 
-fn reverse(list: &[BoundedValue]) -> Vec<BoundedValue> {
+fn reverse_coefficients(list: &[BoundedValue]) -> Vec<BoundedValue> {
     list.iter().rev().copied().collect()
 }
 
@@ -93,7 +95,7 @@ fn predict(
     cost: f64,
     predict: impl Fn(&Case) -> Vec<BoundedValue>,
 ) -> Option<Candidate> {
-    let (reproduced, scaled) = study.count(predict)?;
+    let (reproduced, scaled) = study.count_predicted(predict)?;
     Some(new_candidate(guess, detail, cost + if scaled { 1.0 } else { 0.0 }, reproduced))
 }
 
@@ -102,10 +104,10 @@ fn add_rearrangements(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
     let mut check = |guess, cost, change: &dyn Fn(&[BoundedValue]) -> Vec<BoundedValue>| {
         found.extend(predict(study, guess, None, cost, |case| change(&case.expected)));
     };
-    check(ListGuess::Reversed, 1.0, &reverse);
-    check(ListGuess::Negated, 1.0, &negate);
-    check(ListGuess::ReversedNegated, 2.5, &|list| negate(&reverse(list)));
-    check(ListGuess::TrailingZero, 2.5, &|list| list.iter().copied().chain([BoundedValue::exact(0.0)]).collect());
+    check(ListGuess::Reversed, 1.0, &reverse_coefficients);
+    check(ListGuess::Negated, 1.0, &negate_coefficients);
+    check(ListGuess::ReversedNegated, 2.5, &|list| negate_coefficients(&reverse_coefficients(list)));
+    check(ListGuess::TrailingZero, 2.5, &|list| list.iter().copied().chain([BoundedValue::from_exact(0.0)]).collect());
     for degree in 1..=study.subject.degree() {
         for other in 0..degree {
             let detail = Some(PolynomialDetail::Exchanged { powers: [degree, other] });
@@ -129,7 +131,7 @@ fn add_other_polynomials(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
         let detail = || Some(PolynomialDetail::InPlaceOf { stands: other, belongs: study.subject });
         let formed = |case: &Case| formula.polynomial(&case.inputs);
         found.extend(predict(study, ListGuess::OtherPolynomial, detail(), 1.5, formed));
-        let negative = |case: &Case| negate(&formed(case));
+        let negative = |case: &Case| negate_coefficients(&formed(case));
         found.extend(predict(study, ListGuess::OtherPolynomialNegated, detail(), 3.0, negative));
     }
 }
@@ -148,7 +150,7 @@ fn add_cuts(study: &PolynomialStudy, found: &mut Vec<Candidate>) {
 
 /// Returns the guess that every displacement has the same factor (velocities, for example), so that each coefficient
 /// has a power of this factor.
-fn scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
+fn guess_scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     let step = |case: &Case| Some(ratio(case, 1)? / ratio(case, 0)?);
     let factor = median(study.probes().filter_map(step).collect())?;
     let is_new = factor > 0.0 && (factor - 1.0).abs() > 1e-9;
@@ -158,12 +160,12 @@ fn scaled_displacements(study: &PolynomialStudy) -> Option<Candidate> {
     let factor = BoundedValue { value: factor, bound: 16.0 * factor };
     let detail = PolynomialDetail::Displacements(factor.value);
     predict(study, ListGuess::DisplacementScale, Some(detail), 3.0, |case| {
-        let mut power = BoundedValue::exact(1.0);
-        let mut list = reverse(&case.expected);
+        let mut power = BoundedValue::from_exact(1.0);
+        let mut list = reverse_coefficients(&case.expected);
         for coefficient in &mut list {
             *coefficient = *coefficient * power;
             power = power * factor;
         }
-        reverse(&list)
+        reverse_coefficients(&list)
     })
 }

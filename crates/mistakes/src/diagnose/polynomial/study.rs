@@ -1,11 +1,14 @@
 //! All samples of one polynomial of one kind of pair, and a measure of how well a guess reproduces them.
 use super::{
     Sample,
-    compare::{coefficient_matches, expected_at, fitted_scale, is_right, is_sure, logged_at, matches, scale_fitted_to},
+    compare::{
+        coefficient_matches, exceeds_round_off, expected_at, fit_scale, fit_scale_to_powers, is_right, logged_at,
+        polynomial_matches,
+    },
 };
 use crate::diagnose::{Guess, PolynomialDetail};
 use fosssim_judge::fair::formulas::BoundedPairMotion;
-use fosssim_num::{bounded::BoundedValue, tolerances::LEADING_COEFFICIENT};
+use fosssim_num::{bounded::BoundedValue, tolerances::MIN_LEADING_COEFFICIENT};
 use fosssim_student::assignments::t2m2::{
     Inputs, Reading, Subject,
     formulas::{Formula, readings},
@@ -37,7 +40,7 @@ pub(super) struct Case<'a> {
     /// The coefficients that should have been logged; the quintic in the supplied form.
     pub expected: Vec<BoundedValue>,
     /// Whether the logged polynomials are right, in any accepted form.
-    pub right: bool,
+    pub is_right: bool,
     /// The positive factor that the submission's polynomials seem to have in this sample.
     pub scale: f64,
 }
@@ -49,7 +52,7 @@ pub(super) struct PolynomialStudy<'a> {
     /// The samples that have the polynomial, with finite inputs.
     pub cases: Vec<Case<'a>>,
     /// The number of wrong polynomials.
-    pub wrong: usize,
+    pub wrong_count: usize,
     probes: Vec<usize>,
 }
 
@@ -85,17 +88,17 @@ impl<'a> PolynomialStudy<'a> {
                     || judged.other_form(number).is_some_and(|other| is_right(other, logged));
                 let finite = expected.iter().all(|coefficient| coefficient.bound.is_finite())
                     && logged.iter().all(|value| value.is_finite());
-                finite.then_some(Case { sample, logged, inputs, expected, right, scale: 1.0 })
+                finite.then_some(Case { sample, logged, inputs, expected, is_right: right, scale: 1.0 })
             })
             .collect();
         forgive_small_scales(&mut cases);
-        if cases.iter().all(|case| case.right) {
+        if cases.iter().all(|case| case.is_right) {
             return None;
         }
         let cases = thin_out(cases);
-        let all_wrong: Vec<usize> = (0..cases.len()).filter(|&index| !cases[index].right).collect();
+        let all_wrong: Vec<usize> = (0..cases.len()).filter(|&index| !cases[index].is_right).collect();
         let probes = spread_indices(all_wrong.len(), PROBE_COUNT).map(|index| all_wrong[index]).collect();
-        let mut study = Self { subject, cases, wrong: all_wrong.len(), probes };
+        let mut study = Self { subject, cases, wrong_count: all_wrong.len(), probes };
         study.find_scales();
         Some(study)
     }
@@ -108,10 +111,10 @@ impl<'a> PolynomialStudy<'a> {
     /// Returns the number of samples that a predicted polynomial reproduces, with the submission's usual scale or
     /// without one, or otherwise with any positive scale; `None` if it reproduces fewer than half of the wrong samples.
     /// The flag is set if another scale was needed.
-    pub fn count(&self, predict: impl Fn(&Case) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
+    pub fn count_predicted(&self, predict: impl Fn(&Case) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &Case| {
             let predicted = predict(case);
-            matches(&predicted, case.logged, case.scale) || matches(&predicted, case.logged, 1.0)
+            polynomial_matches(&predicted, case.logged, case.scale) || polynomial_matches(&predicted, case.logged, 1.0)
         };
         let (usual, free) =
             (self.count_if(at_usual_scale), self.count_if(|case| fits_at_any_scale(&predict(case), case)));
@@ -125,7 +128,7 @@ impl<'a> PolynomialStudy<'a> {
     /// Returns the number of samples with a property; `None` if fewer than half of the wrong ones have it, if the first
     /// wrong one lacks it, or if right ones contradict it.
     pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
-        if self.cases.iter().find(|case| !case.right).is_some_and(|first| !holds(first)) {
+        if self.cases.iter().find(|case| !case.is_right).is_some_and(|first| !holds(first)) {
             return None;
         }
         let mut failed = 0;
@@ -138,33 +141,34 @@ impl<'a> PolynomialStudy<'a> {
         let (mut wrong, mut right) = (0, 0);
         for case in &self.cases {
             if holds(case) {
-                *(if case.right { &mut right } else { &mut wrong }) += 1;
+                *(if case.is_right { &mut right } else { &mut wrong }) += 1;
             }
         }
-        let all_right = self.cases.len() - self.wrong;
+        let all_right = self.cases.len() - self.wrong_count;
         // A mistake that reproduces all wrong samples may occur only under a condition, so right samples do not
         // contradict it.
-        let is_enough =
-            wrong == self.wrong || (2 * wrong >= self.wrong && all_right - right <= all_right / SAMPLES_PER_EXCEPTION);
+        let is_enough = wrong == self.wrong_count
+            || (2 * wrong >= self.wrong_count && all_right - right <= all_right / SAMPLES_PER_EXCEPTION);
         is_enough.then_some(wrong + right)
     }
 
     /// Returns the number of samples that the right formula reproduces within the tolerance of a guess.
     pub fn count_reproduced(&self) -> usize {
-        let holds =
-            |case: &&Case| matches(&case.expected, case.logged, case.scale) || fits_at_any_scale(&case.expected, case);
+        let holds = |case: &&Case| {
+            polynomial_matches(&case.expected, case.logged, case.scale) || fits_at_any_scale(&case.expected, case)
+        };
         self.cases.iter().filter(holds).count()
     }
 
     /// Returns the largest deviation of a coefficient, relative to the size of its terms.
-    pub fn error(&self) -> f64 {
+    pub fn max_error(&self) -> f64 {
         let of_case = |case: &Case| {
-            let scale = fitted_scale(&case.expected, case.logged).unwrap_or(case.scale);
+            let scale = fit_scale(&case.expected, case.logged).unwrap_or(case.scale);
             let powers = 0..case.expected.len().max(case.logged.len());
             let errors = powers.map(|power| {
                 let expected = expected_at(&case.expected, power);
                 let residual = (logged_at(case.logged, power).unwrap_or(0.0) - scale * expected.value).abs();
-                let missing = if power < case.logged.len() { 0.0 } else { LEADING_COEFFICIENT };
+                let missing = if power < case.logged.len() { 0.0 } else { MIN_LEADING_COEFFICIENT };
                 if residual <= missing { 0.0 } else { residual / (scale * expected.bound) }
             });
             // NaN counts as the largest error.
@@ -178,29 +182,29 @@ impl<'a> PolynomialStudy<'a> {
     fn find_scales(&mut self) {
         // A scale other than 1 must match a tenth more coefficients, because the median ratio always matches some
         // coefficient.
-        let unscaled = self.agreement(|_| 1.0) * 1.05 + 0.1 * self.cases.len() as f64 + 1.0;
+        let unscaled = self.count_agreements(|_| 1.0) * 1.05 + 0.1 * self.cases.len() as f64 + 1.0;
         let mut best: (f64, Option<Vec<f64>>) = (unscaled, None);
         for anchor in 0..=self.subject.degree() {
             let ratios: Vec<Option<f64>> = self.cases.iter().map(|case| ratio(case, anchor)).collect();
             let Some(usual) = median(ratios.iter().copied().flatten().collect()).filter(|&usual| usual > 0.0) else {
                 continue;
             };
-            let agreement = self.agreement(|_| usual) * 1.02;
+            let agreement = self.count_agreements(|_| usual) * 1.02;
             if agreement > best.0 {
                 best = (agreement, Some(vec![usual; self.cases.len()]));
             }
-            let powers = self.agreeing_powers(&ratios);
+            let powers = self.find_agreeing_powers(&ratios);
             if powers.len() < 2 {
                 continue;
             }
             let each: Vec<f64> = self
                 .cases
                 .iter()
-                .map(|case| scale_fitted_to(&case.expected, case.logged, |power| powers.contains(&power)))
+                .map(|case| fit_scale_to_powers(&case.expected, case.logged, |power| powers.contains(&power)))
                 .map(|scale| scale.unwrap_or(usual))
                 .collect();
             // A scale that is fitted to each sample always matches one coefficient of it.
-            let agreement = self.agreement(|index| each[index]) - self.cases.len() as f64;
+            let agreement = self.count_agreements(|index| each[index]) - self.cases.len() as f64;
             if agreement > best.0 {
                 best = (agreement, Some(each));
             }
@@ -212,7 +216,7 @@ impl<'a> PolynomialStudy<'a> {
 
     /// Returns the powers whose coefficients have the same ratio to the expected ones as the given power, in nearly all
     /// samples.
-    fn agreeing_powers(&self, ratios: &[Option<f64>]) -> Vec<usize> {
+    fn find_agreeing_powers(&self, ratios: &[Option<f64>]) -> Vec<usize> {
         let agrees = |case: &Case, anchor: Option<f64>, power: usize| {
             let (anchor, other) = (anchor?, ratio(case, power)?);
             Some(anchor > 0.0 && (other - anchor).abs() <= RATIO_TOLERANCE * anchor)
@@ -233,11 +237,11 @@ impl<'a> PolynomialStudy<'a> {
 
     /// Returns the number of logged coefficients that match the expected ones with the given scales. Dropped
     /// coefficients are not counted, because with a small scale all of them could be right.
-    fn agreement(&self, scale: impl Fn(usize) -> f64) -> f64 {
+    fn count_agreements(&self, scale: impl Fn(usize) -> f64) -> f64 {
         let agreeing = |(index, case): (usize, &Case)| {
             let agrees = |power: &usize| {
                 let (expected, logged) = (expected_at(&case.expected, *power), logged_at(case.logged, *power));
-                logged.is_some() && is_sure(expected) && coefficient_matches(expected, logged, scale(index))
+                logged.is_some() && exceeds_round_off(expected) && coefficient_matches(expected, logged, scale(index))
             };
             (0..case.expected.len()).filter(agrees).count()
         };
@@ -246,7 +250,7 @@ impl<'a> PolynomialStudy<'a> {
 
     /// Counts the samples in which each coefficient differs, one line per different coefficient, with `subject` as the
     /// polynomial.
-    pub fn differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
+    pub fn count_differences(&self, subject: Option<Subject>) -> Vec<PolynomialDetail> {
         let differs = |case: &&Case, power: usize| {
             !coefficient_matches(expected_at(&case.expected, power), logged_at(case.logged, power), case.scale)
         };
@@ -258,7 +262,7 @@ impl<'a> PolynomialStudy<'a> {
     }
 
     /// Returns the readings of this polynomial.
-    pub fn formulas(&self) -> impl Iterator<Item = (Reading, &'static Formula)> + use<> {
+    pub fn formula_readings(&self) -> impl Iterator<Item = (Reading, &'static Formula)> + use<> {
         let subject = self.subject;
         readings(subject).iter().enumerate().map(move |(number, formula)| (Reading { subject, number }, formula))
     }
@@ -286,19 +290,19 @@ pub(super) fn spread_indices(length: usize, count: usize) -> impl Iterator<Item 
 /// Returns whether a polynomial has only one certain coefficient. It then fits any coefficient of the same sign at some
 /// scale, which proves nothing.
 fn fits_at_any_scale(predicted: &[BoundedValue], case: &Case) -> bool {
-    if predicted.iter().filter(|coefficient| is_sure(**coefficient)).count() < 2 {
-        return matches(predicted, case.logged, case.scale);
+    if predicted.iter().filter(|coefficient| exceeds_round_off(**coefficient)).count() < 2 {
+        return polynomial_matches(predicted, case.logged, case.scale);
     }
-    fitted_scale(predicted, case.logged).is_some_and(|scale| matches(predicted, case.logged, scale))
+    fit_scale(predicted, case.logged).is_some_and(|scale| polynomial_matches(predicted, case.logged, scale))
 }
 
 /// Treats wrong samples as right if they match with the usual scale of right samples. With a small scale, the course's
 /// library drops coefficients that matter, so the scale cannot be fitted to each sample.
 fn forgive_small_scales(cases: &mut [Case]) {
-    let scales = cases.iter().filter(|case| case.right).filter_map(|case| fitted_scale(&case.expected, case.logged));
+    let scales = cases.iter().filter(|case| case.is_right).filter_map(|case| fit_scale(&case.expected, case.logged));
     let Some(usual) = median(scales.collect()) else { return };
-    for case in cases.iter_mut().filter(|case| !case.right) {
-        case.right = matches(&case.expected, case.logged, usual);
+    for case in cases.iter_mut().filter(|case| !case.is_right) {
+        case.is_right = polynomial_matches(&case.expected, case.logged, usual);
     }
 }
 
@@ -308,7 +312,7 @@ fn thin_out(cases: Vec<Case>) -> Vec<Case> {
         return cases;
     }
     let chosen = |right: bool, count: usize| {
-        let of_kind: Vec<usize> = (0..cases.len()).filter(|&index| cases[index].right == right).collect();
+        let of_kind: Vec<usize> = (0..cases.len()).filter(|&index| cases[index].is_right == right).collect();
         spread_indices(of_kind.len(), count).map(|index| of_kind[index]).collect::<Vec<_>>()
     };
     let wrong = chosen(false, MAX_CASES * 3 / 4);

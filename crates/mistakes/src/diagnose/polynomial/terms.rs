@@ -3,7 +3,7 @@
 use super::{
     compare::{coefficient_matches, expected_at, logged_at},
     dictionary::Dictionary,
-    sparse::{DesignMatrix, Support},
+    sparse::{DesignMatrix, WeightedColumns},
     study::{Candidate, Case, PolynomialStudy, median, spread_indices},
 };
 use crate::diagnose::{CoefficientGuess, Guess, PolynomialDetail, Weight};
@@ -36,7 +36,7 @@ const MAX_FORMS: usize = 64;
 const UNKNOWN_COST: f64 = 20.0;
 
 /// A change of one coefficient.
-enum Edit {
+enum CoefficientEdit {
     /// The coefficient has an additional factor.
     Factor(BoundedValue),
     /// The weights of some products in the coefficient are changed by these amounts.
@@ -48,26 +48,26 @@ enum Edit {
 /// The guesses about one coefficient, the likeliest first; at least one.
 struct FormulaGuess {
     power: usize,
-    edits: Vec<(Edit, f64)>,
+    edits: Vec<(CoefficientEdit, f64)>,
 }
 
 impl FormulaGuess {
-    fn edit(&self) -> &Edit {
+    fn edit(&self) -> &CoefficientEdit {
         &self.edits[0].0
     }
 }
 
 /// Returns the guesses about all wrong coefficients, if at least one coefficient can be explained.
 pub(super) fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
-    study.formulas().filter_map(|(reading, formula)| candidate(study, formula, reading)).collect()
+    study.formula_readings().filter_map(|(reading, formula)| candidate(study, formula, reading)).collect()
 }
 
 fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Reading) -> Option<Candidate> {
-    let fitting = Fitting::new(study, formula, reading);
+    let fitting = TermFit::new(study, formula, reading);
     let wrong = (0..=formula.degree).rev().filter(|&power| fitting.is_wrong(power));
     let guesses: Vec<FormulaGuess> = wrong.map(|power| fitting.explain(power)).collect();
     // A polynomial without an explained coefficient is not a candidate.
-    guesses.iter().find(|guess| !matches!(guess.edit(), Edit::Unknown))?;
+    guesses.iter().find(|guess| !matches!(guess.edit(), CoefficientEdit::Unknown))?;
     let holds = |index: usize| {
         let case = &study.cases[index];
         case.logged.len() <= formula.degree + 1
@@ -91,7 +91,7 @@ fn candidate(study: &PolynomialStudy, formula: &'static Formula, reading: Readin
 }
 
 /// The samples with the values of all products.
-struct Fitting<'a> {
+struct TermFit<'a> {
     study: &'a PolynomialStudy<'a>,
     formula: &'static Formula,
     reading: Reading,
@@ -100,11 +100,11 @@ struct Fitting<'a> {
     products: Vec<Vec<BoundedValue>>,
 }
 
-impl<'a> Fitting<'a> {
+impl<'a> TermFit<'a> {
     fn new(study: &'a PolynomialStudy<'a>, formula: &'static Formula, reading: Reading) -> Self {
         let dictionary = Dictionary::new(study.subject, formula);
         let expected = study.cases.iter().map(|case| formula.polynomial(&case.inputs)).collect();
-        let products = study.cases.iter().map(|case| dictionary.values(&case.inputs)).collect();
+        let products = study.cases.iter().map(|case| dictionary.evaluate(&case.inputs)).collect();
         Self { study, formula, reading, dictionary, expected, products }
     }
 
@@ -116,44 +116,46 @@ impl<'a> Fitting<'a> {
         expected_at(&self.expected[index], power)
     }
 
-    fn holds(&self, index: usize, power: usize, predicted: BoundedValue) -> bool {
+    fn is_reproduced(&self, index: usize, power: usize, predicted: BoundedValue) -> bool {
         let case = self.case(index);
         coefficient_matches(predicted, logged_at(case.logged, power), case.scale)
     }
 
     fn is_wrong(&self, power: usize) -> bool {
-        (0..self.study.cases.len()).any(|index| !self.holds(index, power, self.coefficient(index, power)))
+        (0..self.study.cases.len()).any(|index| !self.is_reproduced(index, power, self.coefficient(index, power)))
     }
 
-    fn predict(&self, index: usize, power: usize, edit: Option<&Edit>) -> BoundedValue {
+    fn predict(&self, index: usize, power: usize, edit: Option<&CoefficientEdit>) -> BoundedValue {
         let expected = self.coefficient(index, power);
         match edit {
-            None | Some(Edit::Unknown) => expected,
-            Some(Edit::Factor(factor)) => *factor * expected,
-            Some(Edit::Terms(changes)) => {
+            None | Some(CoefficientEdit::Unknown) => expected,
+            Some(CoefficientEdit::Factor(factor)) => *factor * expected,
+            Some(CoefficientEdit::Terms(changes)) => {
                 changes.iter().fold(expected, |sum, &(product, weight)| sum + weight * self.products[index][product])
             }
         }
     }
 
-    fn explains_all(&self, power: usize, edit: &Edit) -> bool {
-        (0..self.study.cases.len()).all(|index| self.holds(index, power, self.predict(index, power, Some(edit))))
+    fn explains_all(&self, power: usize, edit: &CoefficientEdit) -> bool {
+        (0..self.study.cases.len())
+            .all(|index| self.is_reproduced(index, power, self.predict(index, power, Some(edit))))
     }
 
     /// Returns the explanations of a coefficient that hold for all samples.
     fn explain(&self, power: usize) -> FormulaGuess {
-        let terms = self.term_changes(power).into_iter().map(|(changes, cost)| (Edit::Terms(changes), cost));
-        let factor = self.factor(power).map(|(factor, cost)| (Edit::Factor(factor), cost));
-        let mut edits: Vec<(Edit, f64)> = terms.chain(factor).collect();
+        let terms =
+            self.find_term_changes(power).into_iter().map(|(changes, cost)| (CoefficientEdit::Terms(changes), cost));
+        let factor = self.find_constant_factor(power).map(|(factor, cost)| (CoefficientEdit::Factor(factor), cost));
+        let mut edits: Vec<(CoefficientEdit, f64)> = terms.chain(factor).collect();
         edits.sort_by(|one, two| one.1.total_cmp(&two.1));
         if edits.is_empty() {
-            edits.push((Edit::Unknown, UNKNOWN_COST));
+            edits.push((CoefficientEdit::Unknown, UNKNOWN_COST));
         }
         FormulaGuess { power, edits }
     }
 
     /// Returns the constant factor by which the coefficient is wrong, if there is one.
-    fn factor(&self, power: usize) -> Option<(BoundedValue, f64)> {
+    fn find_constant_factor(&self, power: usize) -> Option<(BoundedValue, f64)> {
         let ratios = (0..self.study.cases.len()).filter_map(|index| {
             let (case, expected) = (self.case(index), self.coefficient(index, power));
             let value = logged_at(case.logged, power).unwrap_or(0.0);
@@ -164,7 +166,7 @@ impl<'a> Fitting<'a> {
         let simple = (factor * 12.0).round() / 12.0 + 0.0;
         let is_simple = (factor - simple).abs() < 1e-12;
         let factor = if is_simple {
-            BoundedValue::exact(simple)
+            BoundedValue::from_exact(simple)
         } else {
             BoundedValue { value: factor, bound: 16.0 * factor.abs() }
         };
@@ -173,12 +175,12 @@ impl<'a> Fitting<'a> {
             _ if is_simple => 5.0,
             _ => 6.0,
         };
-        self.explains_all(power, &Edit::Factor(factor)).then_some((factor, cost))
+        self.explains_all(power, &CoefficientEdit::Factor(factor)).then_some((factor, cost))
     }
 
     /// Returns the changes of the fewest terms that explain the coefficient in all samples, with their costs.
-    fn term_changes(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
-        let rows = self.rows(power);
+    fn find_term_changes(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
+        let rows = self.fit_rows(power);
         let scaled = |index: usize, value: f64| value / self.coefficient(index, power).bound;
         let target: Vec<f64> = rows
             .iter()
@@ -194,30 +196,32 @@ impl<'a> Fitting<'a> {
         let order = self.natural_order(power);
         let prepared = DesignMatrix::new(&columns, |product| {
             let product = &self.dictionary.products[product];
-            product.order == order && !product.foreign
+            product.order == order && !product.is_foreign
         });
         let mut found = Vec::new();
-        prepared.supports(&target, |support| {
+        prepared.find_supports(&target, |support| {
             let Some(changes) = snap(support) else { return false };
-            let edit = Edit::Terms(changes);
+            let edit = CoefficientEdit::Terms(changes);
             let holds = self.explains_all(power, &edit);
-            if let (true, Edit::Terms(changes)) = (holds, edit) {
+            if let (true, CoefficientEdit::Terms(changes)) = (holds, edit) {
                 let cost = changes.iter().map(|change| self.cost(power, order, *change)).sum();
                 found.push((changes, cost));
             }
             holds
         });
-        if found.is_empty() { self.lost_products(power) } else { found }
+        if found.is_empty() { self.find_lost_products(power) } else { found }
     }
 
     /// Returns changes in which the letters of a term are added instead of multiplied.
-    fn lost_products(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
+    fn find_lost_products(&self, power: usize) -> Vec<(Vec<(usize, f64)>, f64)> {
         let sums = (0..self.dictionary.products.len()).filter_map(|product| {
             let weight = self.dictionary.weight(self.formula, power, product);
             let letters = self.dictionary.factors(product)?;
             (weight != 0.0).then(|| vec![(product, -weight), (letters[0], weight), (letters[1], weight)])
         });
-        sums.filter(|sum| self.explains_all(power, &Edit::Terms(sum.clone()))).map(|sum| (sum, 6.0)).collect()
+        sums.filter(|sum| self.explains_all(power, &CoefficientEdit::Terms(sum.clone())))
+            .map(|sum| (sum, 6.0))
+            .collect()
     }
 
     /// Returns the degree in the displacements of a coefficient's terms.
@@ -231,7 +235,7 @@ impl<'a> Fitting<'a> {
         let weight = self.dictionary.weight(self.formula, power, product);
         let entry = &self.dictionary.products[product];
         if weight == 0.0 {
-            let strange = if entry.order == order { 0.0 } else { 1.5 } + if entry.foreign { 0.5 } else { 0.0 };
+            let strange = if entry.order == order { 0.0 } else { 1.5 } + if entry.is_foreign { 0.5 } else { 0.0 };
             return strange + if change.abs() == 1.0 || change.abs() == 2.0 { 4.5 } else { 5.5 };
         }
         match (weight + change) / weight {
@@ -243,7 +247,7 @@ impl<'a> Fitting<'a> {
     }
 
     /// Returns the samples of a fit: those with a wrong coefficient, and several others.
-    fn rows(&self, power: usize) -> Vec<usize> {
+    fn fit_rows(&self, power: usize) -> Vec<usize> {
         let usable = |&index: &usize| {
             let logged = logged_at(self.case(index).logged, power);
             self.coefficient(index, power).bound > 0.0 && logged.unwrap_or(0.0).is_finite()
@@ -254,7 +258,7 @@ impl<'a> Fitting<'a> {
         let present: Vec<usize> = all.iter().copied().filter(logged).collect();
         let (right, wrong): (Vec<usize>, Vec<usize>) = if present.len() < MIN_ROWS { all } else { present }
             .into_iter()
-            .partition(|&index| self.holds(index, power, self.coefficient(index, power)));
+            .partition(|&index| self.is_reproduced(index, power, self.coefficient(index, power)));
         let few = |list: &[usize], count: usize| {
             spread_indices(list.len(), count).map(|index| list[index]).collect::<Vec<_>>()
         };
@@ -265,7 +269,7 @@ impl<'a> Fitting<'a> {
 }
 
 /// Rounds weights to multiples of [`WEIGHT_STEP`]; `None` if they are not close to multiples.
-fn snap(support: &Support) -> Option<Vec<(usize, f64)>> {
+fn snap(support: &WeightedColumns) -> Option<Vec<(usize, f64)>> {
     support
         .iter()
         .map(|&(product, weight)| {
@@ -278,7 +282,7 @@ fn snap(support: &Support) -> Option<Vec<(usize, f64)>> {
 }
 
 /// Converts guesses into the reported values.
-impl Fitting<'_> {
+impl TermFit<'_> {
     fn weights(&self, power: usize, (product, change): (usize, f64)) -> (f64, f64) {
         let expected = self.dictionary.weight(self.formula, power, product);
         (expected, expected + change)
@@ -287,12 +291,12 @@ impl Fitting<'_> {
     fn wrong_coefficient(&self, guesses: &[FormulaGuess]) -> CoefficientGuess {
         let [guess] = guesses else { return CoefficientGuess::Several };
         match guess.edit() {
-            Edit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,
-            Edit::Factor(factor) if factor.value == -1.0 => CoefficientGuess::Sign,
-            Edit::Factor(_) => CoefficientGuess::Factor,
+            CoefficientEdit::Factor(factor) if factor.value == 0.0 => CoefficientGuess::Zero,
+            CoefficientEdit::Factor(factor) if factor.value == -1.0 => CoefficientGuess::Sign,
+            CoefficientEdit::Factor(_) => CoefficientGuess::Factor,
             // An unexplained coefficient does not make a guess of its own (see `candidate`).
-            Edit::Unknown => CoefficientGuess::Several,
-            Edit::Terms(changes) => match changes[..] {
+            CoefficientEdit::Unknown => CoefficientGuess::Several,
+            CoefficientEdit::Terms(changes) => match changes[..] {
                 [change] => match self.weights(guess.power, change) {
                     (0.0, _) => CoefficientGuess::TermForeign,
                     (_, 0.0) => CoefficientGuess::TermMissing,
@@ -307,7 +311,7 @@ impl Fitting<'_> {
     /// Returns all polynomials that follow from the guesses, the likeliest first.
     fn forms(&self, guesses: &[FormulaGuess]) -> Vec<Vec<PolynomialDetail>> {
         guesses.iter().fold(vec![Vec::new()], |forms, guess| {
-            let of_edit = |(edit, _): &(Edit, f64)| self.lines(guess.power, edit);
+            let of_edit = |(edit, _): &(CoefficientEdit, f64)| self.detail_lines(guess.power, edit);
             let edits: Vec<Vec<PolynomialDetail>> = guess.edits.iter().map(of_edit).collect();
             let with = |form: &Vec<PolynomialDetail>| {
                 edits.iter().map(|lines| [form.as_slice(), lines].concat()).collect::<Vec<_>>()
@@ -316,27 +320,27 @@ impl Fitting<'_> {
         })
     }
 
-    fn lines(&self, power: usize, edit: &Edit) -> Vec<PolynomialDetail> {
+    fn detail_lines(&self, power: usize, edit: &CoefficientEdit) -> Vec<PolynomialDetail> {
         match edit {
-            Edit::Factor(factor) => vec![PolynomialDetail::Factor { power, factor: factor.value }],
-            Edit::Unknown => vec![PolynomialDetail::Unknown { power }],
-            Edit::Terms(changes) => {
+            CoefficientEdit::Factor(factor) => vec![PolynomialDetail::Factor { power, factor: factor.value }],
+            CoefficientEdit::Unknown => vec![PolynomialDetail::Unknown { power }],
+            CoefficientEdit::Terms(changes) => {
                 changes.iter().map(|change| PolynomialDetail::Weight(self.weight(power, *change))).collect()
             }
         }
     }
 
     fn details(&self, guess: &FormulaGuess) -> Vec<PolynomialDetail> {
-        let as_well = |(edit, _): &(Edit, f64)| match edit {
-            Edit::Terms(changes) => {
+        let as_well = |(edit, _): &(CoefficientEdit, f64)| match edit {
+            CoefficientEdit::Terms(changes) => {
                 let weights = changes.iter().map(|change| self.weight(guess.power, *change)).collect();
                 Some(PolynomialDetail::Alternative(weights))
             }
             _ => None,
         };
-        let is_of_terms = matches!(guess.edit(), Edit::Terms(_));
+        let is_of_terms = matches!(guess.edit(), CoefficientEdit::Terms(_));
         let others = guess.edits[1..].iter().filter(|_| is_of_terms).filter_map(as_well);
-        self.lines(guess.power, guess.edit()).into_iter().chain(others.take(MAX_ALTERNATIVES)).collect()
+        self.detail_lines(guess.power, guess.edit()).into_iter().chain(others.take(MAX_ALTERNATIVES)).collect()
     }
 
     fn weight(&self, power: usize, change: (usize, f64)) -> Weight {

@@ -20,7 +20,7 @@ pub struct Capture {
     pub detections: Vec<(Pair, Pass, usize)>,
     /// The events of the step, as bits for each kind of pair and stage with a collision, for the number of rounds, and
     /// for each kind of zone. Zero if nothing collided.
-    pub events: u32,
+    pub event_bits: u32,
 }
 
 impl Capture {
@@ -33,14 +33,14 @@ impl Capture {
 
     /// Returns the place of a polynomial: pair, pass, number within the pair; `None` if the reference has no such
     /// polynomial.
-    pub fn place(&self, index: usize) -> Option<(Pair, Pass, usize)> {
+    pub fn locate_polynomial(&self, index: usize) -> Option<(Pair, Pass, usize)> {
         let after = self.detections.partition_point(|&(_, _, first)| first <= index);
         let &(pair, pass, first) = self.detections.get(after.checked_sub(1)?)?;
         (index < self.records.end.polynomials.len()).then_some((pair, pass, index - first))
     }
 
-    fn event(&mut self, bit: u32) {
-        self.events |= 1 << bit;
+    fn note_event(&mut self, bit: u32) {
+        self.event_bits |= 1 << bit;
     }
 }
 
@@ -55,7 +55,7 @@ impl Observer for Capture {
         end.impulses.clear();
         end.polynomials.clear();
         self.detections.clear();
-        self.events = 0;
+        self.event_bits = 0;
     }
 
     fn begin_pass(&mut self, pass: Pass) {
@@ -64,10 +64,10 @@ impl Observer for Capture {
             Stage::Simple | Stage::ContinuousTime => {}
             Stage::Impulses { round } => {
                 if round > 0 {
-                    self.event(9 + round.min(3));
+                    self.note_event(9 + round.min(3));
                 }
             }
-            Stage::Geometric { round } => self.event(13 + round.min(3)),
+            Stage::Geometric { round } => self.note_event(13 + round.min(3)),
         }
     }
 
@@ -82,7 +82,7 @@ impl Observer for Capture {
                     Stage::Impulses { .. } => 3,
                     Stage::Geometric { .. } => 6,
                 };
-                self.event(stage + detection.pair.kind.code().unsigned_abs());
+                self.note_event(stage + detection.pair.kind.code().unsigned_abs());
             }
         }
     }
@@ -102,12 +102,12 @@ impl Observer for Capture {
     }
 
     fn observe_failsafe(&mut self, _round: u32, zone: &Zone<'_>) {
-        self.event(17 + 2 * u32::from(zone.half_plane) + u32::from(zone.particles.len() > 2));
+        self.note_event(17 + 2 * u32::from(zone.half_plane) + u32::from(zone.particles.len() > 2));
     }
 
     fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         if zones.len() > 1 {
-            self.event(21);
+            self.note_event(21);
         }
     }
 

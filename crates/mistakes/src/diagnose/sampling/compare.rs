@@ -11,8 +11,8 @@ use fosssim_num::{
     bounded::BoundedValue,
     polynomial::trim,
     tolerances::{
-        KNOWN_COEFFICIENT, KNOWN_COEFFICIENT_FLOOR, KNOWN_DROPPED, KNOWN_NEWTON_STATE, KNOWN_NORMAL, KNOWN_STATE,
-        KNOWN_TIME,
+        KNOWN_COEFFICIENT_ERROR, KNOWN_COEFFICIENT_FLOOR, KNOWN_DROPPED_COEFFICIENT, KNOWN_NEWTON_STATE_ERROR,
+        KNOWN_NORMAL_ERROR, KNOWN_STATE_ERROR, KNOWN_TIME_ERROR,
     },
     vector::Vec2,
 };
@@ -39,18 +39,18 @@ pub struct Tolerance {
 
 /// The tolerance of round-off.
 pub const ROUND_OFF: Tolerance = Tolerance {
-    coefficient: KNOWN_COEFFICIENT,
+    coefficient: KNOWN_COEFFICIENT_ERROR,
     floor: KNOWN_COEFFICIENT_FLOOR,
-    state: KNOWN_STATE,
-    normal: KNOWN_NORMAL,
-    time: KNOWN_TIME,
+    state: KNOWN_STATE_ERROR,
+    normal: KNOWN_NORMAL_ERROR,
+    time: KNOWN_TIME_ERROR,
 };
 
 impl Tolerance {
     /// Returns the tolerance of round-off in steps of a scene.
     pub fn for_scene(scene: &Scene) -> Self {
         let is_newton = scene.integrator == Integrator::ImplicitEuler && !Layout::for_scene(scene).has_polynomials;
-        Self { state: if is_newton { KNOWN_NEWTON_STATE } else { KNOWN_STATE }, ..ROUND_OFF }
+        Self { state: if is_newton { KNOWN_NEWTON_STATE_ERROR } else { KNOWN_STATE_ERROR }, ..ROUND_OFF }
     }
 }
 
@@ -143,9 +143,9 @@ impl From<Record> for LoggedNumbers {
 }
 
 /// Returns the first difference in the order of a step's computation; `None` if the records are equal up to round-off.
-pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<StepDifference> {
+pub fn find_first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<StepDifference> {
     let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
-    let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !same_polynomial(ours, theirs, by));
+    let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !polynomial_matches(ours, theirs, by));
     if let Some(index) = wrong {
         return Some(StepDifference::Polynomial(index));
     }
@@ -153,20 +153,20 @@ pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Toler
         return Some(StepDifference::PolynomialCount);
     }
     if let (Some(ours), Some(theirs)) = (&expected.mid, &actual.mid)
-        && let Some(particle) = state_difference(&ours.state, &theirs.state, by)
+        && let Some(particle) = find_state_difference(&ours.state, &theirs.state, by)
     {
         return Some(StepDifference::MidState(particle));
     }
-    if !same_impulses(&expected.end.impulses, &actual.end.impulses, by) {
+    if !impulses_match(&expected.end.impulses, &actual.end.impulses, by) {
         return Some(StepDifference::Impulses);
     }
-    if let Some(particle) = state_difference(&expected.end.state, &actual.end.state, by) {
+    if let Some(particle) = find_state_difference(&expected.end.state, &actual.end.state, by) {
         return Some(StepDifference::EndState(particle));
     }
     let same_mid = match (&expected.mid, &actual.mid) {
         (Some(ours), Some(theirs)) => {
-            same_impulses(&ours.impulses, &theirs.impulses, by)
-                && same_polynomials(&ours.polynomials, &theirs.polynomials, by)
+            impulses_match(&ours.impulses, &theirs.impulses, by)
+                && polynomials_match(&ours.polynomials, &theirs.polynomials, by)
         }
         (ours, theirs) => ours.is_none() == theirs.is_none(),
     };
@@ -174,26 +174,29 @@ pub fn first_difference(expected: &StepRecords, actual: &StepRecords, by: &Toler
 }
 
 /// Returns whether two lists contain the same polynomials in the same order.
-pub fn same_polynomials(ours: &PolynomialLog, theirs: &PolynomialLog, by: &Tolerance) -> bool {
-    ours.len() == theirs.len() && ours.iter().zip(theirs.iter()).all(|(ours, theirs)| same_polynomial(ours, theirs, by))
+pub fn polynomials_match(ours: &PolynomialLog, theirs: &PolynomialLog, by: &Tolerance) -> bool {
+    ours.len() == theirs.len()
+        && ours.iter().zip(theirs.iter()).all(|(ours, theirs)| polynomial_matches(ours, theirs, by))
 }
 
 /// Returns whether one polynomial is a positive multiple of the other (both with the highest power first and without
 /// small leading coefficients).
-pub fn same_polynomial(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
+pub fn polynomial_matches(expected: &[f64], actual: &[f64], by: &Tolerance) -> bool {
     if is_multiple(expected, actual, 1.0, by) {
         return true;
     }
     let length = expected.len().max(actual.len());
-    let dot = |a: &[f64], b: &[f64]| -> f64 { (0..length).map(|power| power_of(a, power) * power_of(b, power)).sum() };
+    let dot = |a: &[f64], b: &[f64]| -> f64 {
+        (0..length).map(|power| coefficient_of_power(a, power) * coefficient_of_power(b, power)).sum()
+    };
     let factor = dot(actual, expected) / dot(expected, expected);
     factor > 0.0 && factor.is_finite() && is_multiple(expected, actual, factor, by)
 }
 
 /// Returns whether two polynomials are equal, for formulas whose coefficients were not dropped.
-pub fn same_formula(expected: &[BoundedValue], actual: &[f64], by: &Tolerance) -> bool {
+pub fn formula_matches(expected: &[BoundedValue], actual: &[f64], by: &Tolerance) -> bool {
     let values: Vec<f64> = expected.iter().map(|coefficient| coefficient.value).collect();
-    same_polynomial(trim(&values), actual, by)
+    polynomial_matches(trim(&values), actual, by)
 }
 
 /// Returns whether `actual` is `factor * expected`.
@@ -201,24 +204,25 @@ fn is_multiple(expected: &[f64], actual: &[f64], factor: f64, by: &Tolerance) ->
     let largest = expected.iter().fold(0.0_f64, |largest, c| largest.max((factor * c).abs()));
     let length = expected.len().max(actual.len());
     (0..length).all(|power| {
-        let (e, a) = (factor * power_of(expected, power), power_of(actual, power));
+        let (e, a) = (factor * coefficient_of_power(expected, power), coefficient_of_power(actual, power));
         // A coefficient that was dropped on one side is at most as large as the limit for dropping.
-        let dropped = if power < expected.len().min(actual.len()) { 0.0 } else { KNOWN_DROPPED * factor.max(1.0) };
-        same_number(e, a, by.coefficient * e.abs() + by.floor * largest + dropped)
+        let dropped =
+            if power < expected.len().min(actual.len()) { 0.0 } else { KNOWN_DROPPED_COEFFICIENT * factor.max(1.0) };
+        number_matches(e, a, by.coefficient * e.abs() + by.floor * largest + dropped)
     })
 }
 
 /// Returns the coefficient of `t^power`, or zero if the list is too short.
-fn power_of(coefficients: &[f64], power: usize) -> f64 {
+fn coefficient_of_power(coefficients: &[f64], power: usize) -> f64 {
     coefficients.len().checked_sub(power + 1).map_or(0.0, |index| coefficients[index])
 }
 
 /// Returns whether two lists contain the same contacts in any order.
-fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Tolerance) -> bool {
+fn impulses_match(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Tolerance) -> bool {
     if ours.len() != theirs.len() {
         return false;
     }
-    let same = |(ours, theirs): (&LoggedImpulse, &LoggedImpulse)| same_impulse(ours, theirs, by);
+    let same = |(ours, theirs): (&LoggedImpulse, &LoggedImpulse)| impulse_matches(ours, theirs, by);
     if ours.iter().zip(theirs).all(same) {
         return true;
     }
@@ -231,24 +235,24 @@ fn same_impulses(ours: &[LoggedImpulse], theirs: &[LoggedImpulse], by: &Toleranc
 }
 
 /// Returns whether two contacts are equal up to round-off.
-pub fn same_impulse(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
-    let within = by.normal * (1.0 + largest(ours.normal));
+pub fn impulse_matches(ours: &LoggedImpulse, theirs: &LoggedImpulse, by: &Tolerance) -> bool {
+    let within = by.normal * (1.0 + largest_component(ours.normal));
     (ours.kind, ours.first, ours.second) == (theirs.kind, theirs.first, theirs.second)
-        && same_number(ours.normal.x, theirs.normal.x, within)
-        && same_number(ours.normal.y, theirs.normal.y, within)
-        && same_number(ours.time, theirs.time, by.time)
+        && number_matches(ours.normal.x, theirs.normal.x, within)
+        && number_matches(ours.normal.y, theirs.normal.y, within)
+        && number_matches(ours.time, theirs.time, by.time)
 }
 
-fn largest(v: Vec2) -> f64 {
+fn largest_component(v: Vec2) -> f64 {
     v.x.abs().max(v.y.abs())
 }
 
 /// Returns the first particle whose position or velocity differs.
-pub fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<usize> {
+pub fn find_state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<usize> {
     let different = |ours: &[f64], theirs: &[f64]| {
         let largest = ours.iter().filter(|value| value.is_finite()).fold(0.0_f64, |largest, v| largest.max(v.abs()));
         let within = by.state * (1.0 + largest);
-        let index = ours.iter().zip(theirs).position(|(&ours, &theirs)| !same_number(ours, theirs, within));
+        let index = ours.iter().zip(theirs).position(|(&ours, &theirs)| !number_matches(ours, theirs, within));
         index.map(|index| index / 2)
     };
     let (position, velocity) =
@@ -256,7 +260,7 @@ pub fn state_difference(ours: &State, theirs: &State, by: &Tolerance) -> Option<
     position.into_iter().chain(velocity).min()
 }
 
-fn same_number(ours: f64, theirs: f64, within: f64) -> bool {
+fn number_matches(ours: f64, theirs: f64, within: f64) -> bool {
     let distance = (ours - theirs).abs();
     // An infinite number has an infinite bound, so only the same infinity counts as equal.
     ours == theirs || (ours.is_nan() && theirs.is_nan()) || (distance <= within && distance.is_finite())
@@ -267,7 +271,7 @@ mod tests {
     use super::*;
 
     fn same(expected: &[f64], actual: &[f64]) -> bool {
-        same_polynomial(expected, actual, &ROUND_OFF)
+        polynomial_matches(expected, actual, &ROUND_OFF)
     }
 
     #[test]
@@ -295,8 +299,8 @@ mod tests {
     fn contacts_may_come_in_any_order() {
         let contact = |first, time| LoggedImpulse { kind: 0, first, second: 9, normal: Vec2::new(1.0, 0.0), time };
         let list = [contact(0, 0.5), contact(1, 0.25)];
-        assert!(same_impulses(&list, &[list[1], list[0]], &ROUND_OFF));
-        assert!(!same_impulses(&list, &list[..1], &ROUND_OFF));
-        assert!(!same_impulses(&list, &[list[0], contact(1, 0.26)], &ROUND_OFF));
+        assert!(impulses_match(&list, &[list[1], list[0]], &ROUND_OFF));
+        assert!(!impulses_match(&list, &list[..1], &ROUND_OFF));
+        assert!(!impulses_match(&list, &[list[0], contact(1, 0.26)], &ROUND_OFF));
     }
 }

@@ -33,7 +33,7 @@ pub struct Sample {
 }
 
 /// Returns the particles of a pair, in the order of the assignment, without the ends of a missing edge.
-pub fn bodies(scene: &Scene, pair: Pair) -> Vec<usize> {
+pub fn pair_particles(scene: &Scene, pair: Pair) -> Vec<usize> {
     let (first, second) = (pair.first as usize, pair.second as usize);
     match pair.kind {
         PairKind::ParticleParticle => vec![first, second],
@@ -52,56 +52,68 @@ const MAX_RIGHT: usize = 200;
 /// The samples of a trace, collected step by step; scenes without polynomials have none.
 pub struct Detections<'a> {
     scene: &'a Scene,
-    kinds: PairKindMap<KindSamples>,
+    samples_by_kind: PairKindMap<KindSamples>,
 }
 
 #[derive(Default)]
 struct KindSamples {
     samples: Vec<Sample>,
-    wrong: usize,
-    right: usize,
+    wrong_count: usize,
+    right_count: usize,
 }
 
 impl<'a> Detections<'a> {
     /// Creates the collection for traces of a scene.
     pub fn new(scene: &'a Scene) -> Self {
-        Self { scene, kinds: PairKindMap::default() }
+        Self { scene, samples_by_kind: PairKindMap::default() }
     }
 
     /// Collects the samples of a step. If a step has no result, the rest of the trace is not used, and the samples so
     /// far are kept.
     pub fn examine_step(&mut self, reference: &mut Reference<'_>, step: u32, frames: &StepFrames) {
-        let is_full = self.kinds.values().all(|kind| kind.wrong >= MAX_WRONG);
+        let is_full = self.samples_by_kind.values().all(|kind| kind.wrong_count >= MAX_WRONG);
         if is_full || !Layout::for_scene(self.scene).has_polynomials {
             return;
         }
         let (mid, log) = (&frames.mid, &frames.end.polynomials);
-        let sizes = sizes(pairs(self.scene).counts(), mid.polynomials.len(), log.len());
-        let (scene, kinds) = (self.scene, &mut self.kinds);
-        reference.step(step, &frames.before.state, &mut Gatherer { scene, step, mid, log, kinds, sizes, next: None });
+        let sizes = polynomial_counts(pairs(self.scene).counts(), mid.polynomials.len(), log.len());
+        let (scene, kinds) = (self.scene, &mut self.samples_by_kind);
+        reference.step(
+            step,
+            &frames.before.state,
+            &mut SampleCollector {
+                scene,
+                step,
+                mid,
+                log,
+                samples_by_kind: kinds,
+                polynomial_counts: sizes,
+                next_polynomial: None,
+            },
+        );
     }
 
     /// Returns the collected samples.
     pub fn into_samples(self) -> Vec<Sample> {
-        self.kinds.into_values().flat_map(|kind| kind.samples).collect()
+        self.samples_by_kind.into_values().flat_map(|kind| kind.samples).collect()
     }
 }
 
 /// The observer of one step.
-struct Gatherer<'a> {
+struct SampleCollector<'a> {
     scene: &'a Scene,
     step: u32,
     mid: &'a LenientFrame,
     log: &'a PolynomialLog,
-    kinds: &'a mut PairKindMap<KindSamples>,
+    samples_by_kind: &'a mut PairKindMap<KindSamples>,
     /// The number of logged polynomials of each detection, usually all.
-    sizes: Option<PairKindMap<usize>>,
+    polynomial_counts: Option<PairKindMap<usize>>,
     /// The number of the pass, and the index of its next polynomial in the list; `None` in passes that are not
     /// examined.
-    next: Option<(u32, usize)>,
+    next_polynomial: Option<(u32, usize)>,
 }
 
-impl Gatherer<'_> {
+impl SampleCollector<'_> {
     /// Returns whether the submission lists a contact of the pair, which only `continuous-time` does.
     fn is_hit(&self, pair: Pair) -> bool {
         matches!(self.scene.collision, Collision::ContinuousTime { .. })
@@ -111,7 +123,7 @@ impl Gatherer<'_> {
 
 /// Returns the number of polynomials that each detection logs, such that the list consists of whole passes: all
 /// polynomials if possible, otherwise as many as possible. `None` if no numbers fit. `pairs` are the pairs of one pass.
-fn sizes(pairs: PairKindMap<usize>, before: usize, all: usize) -> Option<PairKindMap<usize>> {
+fn polynomial_counts(pairs: PairKindMap<usize>, before: usize, all: usize) -> Option<PairKindMap<usize>> {
     let fits = |sizes: &PairKindMap<usize>| {
         let pass: usize = pairs.iter().map(|(kind, pairs)| pairs * sizes[kind]).sum();
         pass > 0 && before.is_multiple_of(pass) && all.is_multiple_of(pass) && all > 0
@@ -142,9 +154,9 @@ fn sizes(pairs: PairKindMap<usize>, before: usize, all: usize) -> Option<PairKin
     (!is_open).then_some(first)
 }
 
-impl Observer for Gatherer<'_> {
+impl Observer for SampleCollector<'_> {
     fn begin_pass(&mut self, pass: Pass) {
-        self.next = match (pass.stage, pass.index) {
+        self.next_polynomial = match (pass.stage, pass.index) {
             (_, 0) => Some((0, 0)),
             (Stage::Geometric { round: 0 }, index) if matches!(self.scene.collision, Collision::Hybrid { .. }) => {
                 Some((index, self.mid.polynomials.len()))
@@ -158,15 +170,15 @@ impl Observer for Gatherer<'_> {
     }
 }
 
-impl StepController for Gatherer<'_> {
+impl StepController for SampleCollector<'_> {
     fn adjust_polynomials(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], _polynomials: &mut [Polynomial]) {
-        let (Some((pass, index)), Some(sizes)) = (self.next, self.sizes) else { return };
+        let (Some((pass, index)), Some(sizes)) = (self.next_polynomial, self.polynomial_counts) else { return };
         let size = sizes[pair.kind];
         let lists = index..index + size;
         // After a contact of the submission, polynomials depend on a response that is not logged.
-        self.next = (!self.is_hit(pair)).then_some((pass, lists.end));
+        self.next_polynomial = (!self.is_hit(pair)).then_some((pass, lists.end));
         if lists.end > self.log.len() {
-            self.next = None;
+            self.next_polynomial = None;
             return;
         }
         let polynomials: Vec<Vec<f64>> = lists.map(|index| self.log.get(index).to_vec()).collect();
@@ -180,13 +192,13 @@ impl StepController for Gatherer<'_> {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
                 forms.into_iter().flatten().any(|form| compare(form, logged, &[1.0]).is_ok())
             });
-        let kind = &self.kinds[pair.kind];
-        if if is_right { kind.right >= MAX_RIGHT } else { kind.wrong >= MAX_WRONG } {
+        let kind = &self.samples_by_kind[pair.kind];
+        if if is_right { kind.right_count >= MAX_RIGHT } else { kind.wrong_count >= MAX_WRONG } {
             return;
         }
         let motion = PairMotion::from_positions(self.scene, pair, q_start, q_end);
-        let kind = &mut self.kinds[pair.kind];
-        *(if is_right { &mut kind.right } else { &mut kind.wrong }) += 1;
+        let kind = &mut self.samples_by_kind[pair.kind];
+        *(if is_right { &mut kind.right_count } else { &mut kind.wrong_count }) += 1;
         kind.samples.push(Sample { step: self.step, pass, pair, motion, polynomials });
     }
 
@@ -194,7 +206,7 @@ impl StepController for Gatherer<'_> {
         // Later pairs of a continuous-time pass use positions after the submission's responses, which are not logged.
         if matches!(self.scene.collision, Collision::ContinuousTime { .. }) && matches!(decision, Decision::Hit { .. })
         {
-            self.next = None;
+            self.next_polynomial = None;
         }
         decision
     }

@@ -9,15 +9,15 @@ mod source;
 
 pub use capture::Capture;
 pub use compare::{
-    CLEAR_TOLERANCE, LoggedNumbers, ROUND_OFF, StepDifference, StepRecords, Tolerance, first_difference, same_formula,
-    same_impulse, same_polynomial, state_difference,
+    CLEAR_TOLERANCE, LoggedNumbers, ROUND_OFF, StepDifference, StepRecords, Tolerance, find_first_difference,
+    find_state_difference, formula_matches, impulse_matches, polynomial_matches,
 };
-pub use detections::{Detections, Sample, bodies};
+pub use detections::{Detections, Sample, pair_particles};
 pub use reference::Reference;
 pub use scan::{KeptStep, Scan, Scanner};
 pub use source::{Source, StepFrames, StepReader};
 
-use super::{Explanation, not_finite::FirstNotFinite};
+use super::{Explanation, non_finite::NonFiniteSearch};
 use fosssim_model::scene::Scene;
 
 /// The data for explanations.
@@ -36,8 +36,8 @@ pub struct TraceSamples<'a> {
 pub fn sample_trace<'a>(scene: &'a Scene, source: Source<'a>) -> TraceSamples<'a> {
     let (mut steps, mut reference) = (StepReader::new(scene, source), Reference::new(scene));
     let (mut first, mut scanner, mut detections) =
-        (FirstNotFinite::default(), Scanner::new(scene), Detections::new(scene));
-    first.begin(&steps.frames);
+        (NonFiniteSearch::default(), Scanner::new(scene), Detections::new(scene));
+    first.check_first_record(&steps.frames);
     while let Some(step) = steps.next() {
         first.examine_step(&mut reference, scene, step, &steps.frames);
         scanner.examine_step(&mut reference, step, &steps.frames);

@@ -2,8 +2,8 @@
 use super::{
     capture::Capture,
     compare::{
-        LoggedNumbers, ROUND_OFF, SINGLE_PRECISION, StepDifference, StepRecords, Tolerance, first_difference,
-        same_polynomial,
+        LoggedNumbers, ROUND_OFF, SINGLE_PRECISION, StepDifference, StepRecords, Tolerance, find_first_difference,
+        polynomial_matches,
     },
     reference::Reference,
     source::{Outline, StepFrames},
@@ -13,17 +13,17 @@ use fosssim_model::{
     sim::State,
     trace::{Layout, LenientFrame},
 };
-use fosssim_num::tolerances::KNOWN_STATE;
+use fosssim_num::tolerances::KNOWN_STATE_ERROR;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// The maximum number of kept steps, wrong and right.
 const MAX_WRONG: usize = 200;
 const MAX_RIGHT: usize = 40;
 /// The first this many similar wrong steps are all kept; of further ones, only some are kept.
-const SIMILAR_KEPT: u32 = 8;
+const MAX_SIMILAR_WRONG: u32 = 8;
 const SIMILAR_SAMPLING_RATE: u32 = 16;
 /// The number of similar right steps that are kept.
-const RIGHT_ALIKE: u32 = 3;
+const MAX_SIMILAR_RIGHT: u32 = 3;
 /// The number of wrong steps that are tried first.
 const PROBE_STEPS: usize = 8;
 /// The maximum memory of kept steps, in bytes.
@@ -41,39 +41,39 @@ pub struct KeptStep {
     /// The first difference from the reference; `None` for right steps.
     pub difference: Option<StepDifference>,
     /// Facts that depend on the step and the previous one.
-    pub context: Context,
+    pub context: StepContext,
     /// A number that similar steps share.
     pub signature: u64,
 }
 
 /// Facts that follow from the step and the previous one.
 #[derive(Debug, Clone, Copy, Default)]
-pub struct Context {
+pub struct StepContext {
     /// Whether the record would be right if the polynomials of the previous step were removed from its front.
-    pub polynomials_kept: bool,
+    pub keeps_polynomials: bool,
     /// Whether the record would be right if the impulses of the previous step were removed from its front.
-    pub impulses_kept: bool,
+    pub keeps_impulses: bool,
     /// Whether all positions or all velocities have single precision, and the step is right apart from this.
-    pub single_precision: bool,
+    pub has_single_precision: bool,
     /// Whether velocities change by the expected change plus their change in the previous step.
-    pub forces_kept: bool,
+    pub keeps_forces: bool,
 }
 
 /// The parts of a trace on which the rows of the catalogue are tried.
 #[derive(Debug, Default)]
 pub struct Scan {
     /// The wrong steps, in order.
-    pub wrong: Vec<KeptStep>,
+    pub wrong_steps: Vec<KeptStep>,
     /// The right steps, in order.
-    pub right: Vec<KeptStep>,
+    pub right_steps: Vec<KeptStep>,
     /// Facts about the trace in addition to its steps.
     pub outline: Outline,
 }
 
 impl Scan {
     /// Removes right steps down to the maximum number.
-    pub fn keep_fewer_right(&mut self) {
-        self.right.truncate(MAX_RIGHT);
+    pub fn limit_right_steps(&mut self) {
+        self.right_steps.truncate(MAX_RIGHT);
     }
 
     /// Returns the wrong steps to be tried first: one of each kind, the cheapest first. The first difference is always
@@ -81,7 +81,7 @@ impl Scan {
     pub fn probes(&self) -> Vec<&KeptStep> {
         let mut signatures = BTreeSet::new();
         let is_probe = |kept: &&KeptStep| signatures.insert(kept.signature);
-        let mut probes: Vec<&KeptStep> = self.wrong.iter().filter(is_probe).take(PROBE_STEPS).collect();
+        let mut probes: Vec<&KeptStep> = self.wrong_steps.iter().filter(is_probe).take(PROBE_STEPS).collect();
         probes.sort_by_key(|kept| kept.records.end.polynomials.len());
         probes
     }
@@ -93,12 +93,12 @@ pub struct Scanner {
     round_off: Tolerance,
     capture: Capture,
     scan: Scan,
-    seen: BTreeMap<(bool, u64), u32>,
+    signature_counts: BTreeMap<(bool, u64), u32>,
     memory: usize,
     /// Wrong steps with events that end in values that are not finite.
-    not_finite: Vec<KeptStep>,
+    non_finite_steps: Vec<KeptStep>,
     /// The number of the previous step, and the change of its velocities.
-    last: Option<(u32, Vec<f64>)>,
+    last_positions: Option<(u32, Vec<f64>)>,
 }
 
 impl Scanner {
@@ -109,18 +109,18 @@ impl Scanner {
             round_off: Tolerance::for_scene(scene),
             capture: Capture::new(&scene.collision),
             scan: Scan::default(),
-            seen: BTreeMap::new(),
+            signature_counts: BTreeMap::new(),
             memory: 0,
-            not_finite: Vec::new(),
-            last: None,
+            non_finite_steps: Vec::new(),
+            last_positions: None,
         }
     }
 
     /// Returns the kept steps, with the outline of their trace. Steps that end in values that are not finite count only
     /// if no other step is wrong, because several mistakes give the same NaN.
     pub fn into_scan(self, outline: Outline) -> Scan {
-        let wrong = if self.scan.wrong.is_empty() { self.not_finite } else { self.scan.wrong };
-        Scan { outline, wrong, ..self.scan }
+        let wrong = if self.scan.wrong_steps.is_empty() { self.non_finite_steps } else { self.scan.wrong_steps };
+        Scan { outline, wrong_steps: wrong, ..self.scan }
     }
 
     /// Examines one step, and keeps it if it is useful.
@@ -132,42 +132,43 @@ impl Scanner {
             return;
         }
         let actual = StepRecords { mid: self.has_mid.then(|| mid.into()), end: end.into() };
-        let difference = first_difference(&self.capture.records, &actual, &self.round_off);
+        let difference = find_first_difference(&self.capture.records, &actual, &self.round_off);
         let signature = self.signature(difference, &actual);
         if !actual.is_finite() {
-            if self.capture.events != 0 && self.not_finite.len() < PROBE_STEPS {
-                let (before, context) = (before.state.clone(), Context::default());
-                self.not_finite.push(KeptStep { step, before, records: actual, difference, context, signature });
+            if self.capture.event_bits != 0 && self.non_finite_steps.len() < PROBE_STEPS {
+                let (before, context) = (before.state.clone(), StepContext::default());
+                self.non_finite_steps.push(KeptStep { step, before, records: actual, difference, context, signature });
             }
             return;
         }
         let change = before.state.velocities.iter().zip(&actual.end.state.velocities).map(|(old, new)| new - old);
-        let last = self.last.replace((step, change.collect())).filter(|(number, _)| number + 1 == step);
-        let count = self.seen.entry((difference.is_some(), signature)).or_default();
+        let last = self.last_positions.replace((step, change.collect())).filter(|(number, _)| number + 1 == step);
+        let count = self.signature_counts.entry((difference.is_some(), signature)).or_default();
         let number = *count;
         *count += 1;
         let wanted = if difference.is_some() {
-            self.scan.wrong.len() < MAX_WRONG && (number < SIMILAR_KEPT || number.is_multiple_of(SIMILAR_SAMPLING_RATE))
+            self.scan.wrong_steps.len() < MAX_WRONG
+                && (number < MAX_SIMILAR_WRONG || number.is_multiple_of(SIMILAR_SAMPLING_RATE))
         } else {
-            self.scan.right.len() < MAX_RIGHT && number < RIGHT_ALIKE
+            self.scan.right_steps.len() < MAX_RIGHT && number < MAX_SIMILAR_RIGHT
         };
         // The first wrong step is always kept, so that there is something to explain.
-        if !wanted || (self.memory > MAX_MEMORY && !self.scan.wrong.is_empty()) {
+        if !wanted || (self.memory > MAX_MEMORY && !self.scan.wrong_steps.is_empty()) {
             return;
         }
-        let context = difference.map_or(Context::default(), |_| {
-            self.context(before, &actual, last.as_ref().map(|(_, change)| change.as_slice()))
+        let context = difference.map_or(StepContext::default(), |_| {
+            self.step_context(before, &actual, last.as_ref().map(|(_, change)| change.as_slice()))
         });
         let kept = KeptStep { step, before: before.state.clone(), records: actual, difference, context, signature };
         self.memory += kept.bytes();
-        if difference.is_some() { self.scan.wrong.push(kept) } else { self.scan.right.push(kept) }
+        if difference.is_some() { self.scan.wrong_steps.push(kept) } else { self.scan.right_steps.push(kept) }
     }
 
     /// Returns a number that similar steps share: they have the same events, and the same first difference.
     fn signature(&self, difference: Option<StepDifference>, actual: &StepRecords) -> u64 {
         let first = match difference {
             None => 0,
-            Some(StepDifference::Polynomial(index)) => match self.capture.place(index) {
+            Some(StepDifference::Polynomial(index)) => match self.capture.locate_polynomial(index) {
                 Some((pair, pass, number)) => {
                     8 + u64::from(pass.index.min(2)) * 32
                         + u64::from(pair.kind.code().unsigned_abs()) * 8
@@ -182,20 +183,24 @@ impl Scanner {
             Some(StepDifference::MidLists) => 6,
         };
         let logged = actual.end.impulses.iter().fold(0, |bits, impulse| bits | 1 << impulse.kind.clamp(0, 3));
-        u64::from(self.capture.events) | first << 32 | logged << 48
+        u64::from(self.capture.event_bits) | first << 32 | logged << 48
     }
 
-    fn context(&self, before: &LenientFrame, actual: &StepRecords, last: Option<&[f64]>) -> Context {
+    fn step_context(&self, before: &LenientFrame, actual: &StepRecords, last: Option<&[f64]>) -> StepContext {
         let expected = &self.capture.records;
         let (ours, theirs) = (&expected.end.state, &actual.end.state);
         let is_single = (are_single_precision(&theirs.positions) && !are_single_precision(&ours.positions))
             || (are_single_precision(&theirs.velocities) && !are_single_precision(&ours.velocities));
-        Context {
-            polynomials_kept: self.right_without(before, actual, |records, previous| {
+        StepContext {
+            keeps_polynomials: self.is_right_without(before, actual, |records, previous| {
                 let kept = previous.polynomials.len();
                 let theirs = &mut records.polynomials;
                 let begins = theirs.len() >= kept
-                    && previous.polynomials.iter().zip(theirs.iter()).all(|(a, b)| same_polynomial(a, b, &ROUND_OFF));
+                    && previous
+                        .polynomials
+                        .iter()
+                        .zip(theirs.iter())
+                        .all(|(a, b)| polynomial_matches(a, b, &ROUND_OFF));
                 if begins && kept > 0 {
                     let start = theirs.coefficient_ends[kept - 1];
                     theirs.coefficients.drain(..start);
@@ -204,26 +209,26 @@ impl Scanner {
                 }
                 begins
             }),
-            impulses_kept: self.right_without(before, actual, |records, previous| {
+            keeps_impulses: self.is_right_without(before, actual, |records, previous| {
                 let begins = records.impulses.starts_with(&previous.impulses);
                 if begins {
                     records.impulses.drain(..previous.impulses.len());
                 }
                 begins
             }),
-            single_precision: is_single && first_difference(expected, actual, &SINGLE_PRECISION).is_none(),
-            forces_kept: last.is_some_and(|last| {
+            has_single_precision: is_single && find_first_difference(expected, actual, &SINGLE_PRECISION).is_none(),
+            keeps_forces: last.is_some_and(|last| {
                 let changes = before.state.velocities.iter().zip(&expected.end.state.velocities).zip(last);
                 let mut kept = changes.zip(&actual.end.state.velocities);
                 kept.all(|(((_, expected), last), end)| {
-                    (expected + last - end).abs() <= KNOWN_STATE * (1.0 + expected.abs() + last.abs())
+                    (expected + last - end).abs() <= KNOWN_STATE_ERROR * (1.0 + expected.abs() + last.abs())
                 })
             }),
         }
     }
 
     /// Returns whether the step is right after `strip` has removed the previous step's lists from its records.
-    fn right_without(
+    fn is_right_without(
         &self,
         before: &LenientFrame,
         actual: &StepRecords,
@@ -231,7 +236,7 @@ impl Scanner {
     ) -> bool {
         let mut records = actual.clone();
         let stripped = records.mid.as_mut().is_none_or(|mid| strip(mid, before)) && strip(&mut records.end, before);
-        stripped && first_difference(&self.capture.records, &records, &self.round_off).is_none()
+        stripped && find_first_difference(&self.capture.records, &records, &self.round_off).is_none()
     }
 }
 

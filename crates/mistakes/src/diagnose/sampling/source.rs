@@ -1,12 +1,12 @@
 //! Reads the records of a trace for explanations, step by step, up to the end of the kept part.
 use super::compare::LoggedNumbers;
-use fosssim_judge::kept::{KeptTrace, MAX_KEPT_BYTES};
+use fosssim_judge::kept_trace::{KeptTrace, MAX_KEPT_BYTES};
 use fosssim_model::{
     scene::Scene,
     sim::{RootSearch, Simulation},
     trace::{Layout, LenientFrame, LenientReader, ReadFailure, record_memory},
 };
-use fosssim_num::tolerances::FIRST_RECORD;
+use fosssim_num::tolerances::FIRST_RECORD_ERROR;
 
 /// The number of records at the beginning of the trace that are always kept.
 const OPENING_RECORDS: usize = 25;
@@ -22,7 +22,7 @@ pub struct Source<'a> {
 
 impl<'a> Source<'a> {
     /// Creates the source of a complete trace.
-    pub fn whole(trace: &'a [u8]) -> Self {
+    pub fn from_trace(trace: &'a [u8]) -> Self {
         Self { beginning: trace, is_whole: true }
     }
 }
@@ -51,7 +51,7 @@ pub struct Outline {
     pub opening: Vec<LoggedNumbers>,
     opening_memory: usize,
     /// The number of records that contain small leading coefficients, which the course's library would drop.
-    pub padded: u64,
+    pub padded_records: u64,
     /// The number of records of the trace, if its end was reached.
     pub records: Option<u64>,
     /// Whether the trace continues after the scene's last step.
@@ -61,13 +61,13 @@ pub struct Outline {
 impl Outline {
     /// Returns whether the first record belongs to another scene. Programs only copy this record, so it differs from
     /// the scene's initial state at most by rounding to single precision.
-    pub fn is_of_other_scene(&self, scene: &Scene) -> bool {
+    pub fn belongs_to_other_scene(&self, scene: &Scene) -> bool {
         let Some(first) = self.opening.first() else { return false };
         let simulation = Simulation::new(scene, RootSearch::OnDemand);
         let differs = |ours: &[f64], theirs: &[f64]| {
             let largest = ours.iter().fold(1.0_f64, |largest, value| largest.max(value.abs()));
             // All values of a scene are finite.
-            ours.iter().zip(theirs).any(|(o, t)| t.is_finite() && (o - t).abs() > FIRST_RECORD * largest)
+            ours.iter().zip(theirs).any(|(o, t)| t.is_finite() && (o - t).abs() > FIRST_RECORD_ERROR * largest)
         };
         let initial = simulation.state();
         differs(&initial.positions, &first.state.positions) || differs(&initial.velocities, &first.state.velocities)
@@ -75,11 +75,11 @@ impl Outline {
 
     /// Reads a record. Returns `false` after the last undamaged record, because the rest of a damaged trace does not
     /// prove a mistake.
-    fn read(&mut self, reader: &mut LenientReader<&[u8]>, frame: &mut LenientFrame) -> bool {
+    fn read_record(&mut self, reader: &mut LenientReader<&[u8]>, frame: &mut LenientFrame) -> bool {
         match reader.next(frame) {
             Ok(()) if frame.note.is_some() => false,
             Ok(()) => {
-                self.padded += u64::from(!frame.is_unchanged);
+                self.padded_records += u64::from(!frame.is_unchanged);
                 if self.opening.len() < OPENING_RECORDS && self.opening_memory < OPENING_MEMORY {
                     let logged = LoggedNumbers::from(&*frame);
                     self.opening_memory += logged.bytes();
@@ -103,7 +103,7 @@ pub struct StepReader<'a> {
     reader: LenientReader<&'a [u8]>,
     is_whole: bool,
     /// The number of the next step; `None` after the end.
-    next: Option<u32>,
+    next_step: Option<u32>,
     /// The records of the last step read; before the first step, the first record of the trace, if there is one.
     pub frames: StepFrames,
     /// Facts about the trace in addition to its steps.
@@ -116,16 +116,16 @@ impl<'a> StepReader<'a> {
         let layout = Layout::for_scene(scene);
         let mut reader = LenientReader::from_slice(source.beginning, layout).with_limit(record_memory(scene));
         let (mut frames, mut outline) = (StepFrames::default(), Outline::default());
-        let next = outline.read(&mut reader, &mut frames.before).then_some(1);
-        Self { layout, reader, is_whole: source.is_whole, next, frames, outline }
+        let next = outline.read_record(&mut reader, &mut frames.before).then_some(1);
+        Self { layout, reader, is_whole: source.is_whole, next_step: next, frames, outline }
     }
 
     /// Reads the next step, and returns its number.
     pub fn next(&mut self) -> Option<u32> {
-        if let Some(step) = self.next.take()
+        if let Some(step) = self.next_step.take()
             && self.read_step(step)
         {
-            self.next = Some(step + 1);
+            self.next_step = Some(step + 1);
             return Some(step);
         }
         if !self.is_whole {
@@ -149,7 +149,7 @@ impl<'a> StepReader<'a> {
         if step > 1 {
             std::mem::swap(before, end);
         }
-        let mut read = |frame| self.outline.read(&mut self.reader, frame);
+        let mut read = |frame| self.outline.read_record(&mut self.reader, frame);
         (!self.layout.has_polynomials || read(mid)) && read(end)
     }
 }

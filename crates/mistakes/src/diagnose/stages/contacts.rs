@@ -3,11 +3,11 @@
 use super::{
     Explanation, RATIO_TOLERANCE, common_value,
     events::{Hit, StepFacts},
-    observation, range, ratios,
+    new_observation, range, ratios,
 };
 use crate::diagnose::{
     StageDetail, StageFault, WrongDecisions, WrongVectors,
-    sampling::{ROUND_OFF, same_impulse, same_polynomial},
+    sampling::{ROUND_OFF, impulse_matches, polynomial_matches},
 };
 use fosssim_model::{sim::PairKind, trace::LoggedImpulse};
 use fosssim_num::vector::{Vec2, length};
@@ -18,7 +18,7 @@ pub(super) fn explain_order(facts: &[StepFacts]) -> Option<Explanation> {
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula()).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();
     (permuted > 0 && 2 * permuted > wrong.len())
-        .then(|| observation(StageFault::Order, vec![StageDetail::Order], permuted))
+        .then(|| new_observation(StageFault::Order, vec![StageDetail::Order], permuted))
 }
 
 /// Returns whether nearly all pairs of the first pass are complete but some are out of order. Pairs that an earlier
@@ -44,7 +44,7 @@ fn is_permuted(facts: &StepFacts) -> bool {
         let is_here = |&(_, first, end): &(usize, usize, usize)| {
             at + end - first <= size
                 && (first..end)
-                    .all(|index| same_polynomial(ours.get(index), theirs.get(at + index - first), &ROUND_OFF))
+                    .all(|index| polynomial_matches(ours.get(index), theirs.get(at + index - first), &ROUND_OFF))
         };
         // The expected pair is tried first, then the following ones, because pairs may be similar.
         let own = left.iter().position(|block| block.1 == at && is_here(block));
@@ -71,9 +71,9 @@ const INEXACT_ERROR: f64 = 1e-5;
 #[derive(Default)]
 struct ContactStage {
     /// The kinds and times of impact of right contacts.
-    right: Vec<(PairKind, f64)>,
-    missed: Vec<(PairKind, f64)>,
-    superfluous: Vec<(PairKind, f64)>,
+    right_contacts: Vec<(PairKind, f64)>,
+    missed_contacts: Vec<(PairKind, f64)>,
+    superfluous_contacts: Vec<(PairKind, f64)>,
     vectors: Vec<(PairKind, Vec2, Vec2)>,
     times: Vec<(f64, f64)>,
 }
@@ -92,7 +92,7 @@ pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)
     let mut contacts = ContactStage::default();
     for (ours, theirs) in steps {
         let first = (0..ours.len().max(theirs.len())).find(|&index| {
-            ours.get(index).zip(theirs.get(index)).is_none_or(|(one, other)| !same_impulse(one, other, &ROUND_OFF))
+            ours.get(index).zip(theirs.get(index)).is_none_or(|(one, other)| !impulse_matches(one, other, &ROUND_OFF))
         });
         let Some(first) = first else { continue };
         let has = |list: &[LoggedImpulse], one: &LoggedImpulse| list.iter().any(|other| other.pair() == one.pair());
@@ -100,19 +100,19 @@ pub(super) fn explain_overlaps(steps: &[(Vec<LoggedImpulse>, Vec<LoggedImpulse>)
             (Some(one), Some(other)) if one.pair() == other.pair() => {
                 contacts.vectors.push((one.pair()?.kind, one.normal, other.normal));
             }
-            (Some(one), _) if !has(theirs, one) => contacts.missed.push((one.pair()?.kind, 0.0)),
-            (_, Some(other)) => contacts.superfluous.push((other.pair()?.kind, 0.0)),
+            (Some(one), _) if !has(theirs, one) => contacts.missed_contacts.push((one.pair()?.kind, 0.0)),
+            (_, Some(other)) => contacts.superfluous_contacts.push((other.pair()?.kind, 0.0)),
             _ => {}
         }
     }
-    let wrong = match (contacts.missed.is_empty(), contacts.superfluous.is_empty()) {
+    let wrong = match (contacts.missed_contacts.is_empty(), contacts.superfluous_contacts.is_empty()) {
         (true, true) => return contacts.explain_vectors(),
         (false, true) => WrongDecisions::Missed,
         (true, false) => WrongDecisions::Superfluous,
         (false, false) => WrongDecisions::Both,
     };
-    let listed = [contacts.missed.as_slice(), &contacts.superfluous].concat();
-    Some(observation(StageFault::Overlaps { kind: only_kind(&listed), wrong }, Vec::new(), listed.len()))
+    let listed = [contacts.missed_contacts.as_slice(), &contacts.superfluous_contacts].concat();
+    Some(new_observation(StageFault::Overlaps { kind: common_kind(&listed), wrong }, Vec::new(), listed.len()))
 }
 
 impl ContactStage {
@@ -132,22 +132,22 @@ impl ContactStage {
         for hit in &facts.hits {
             let next = theirs.peek().map(|theirs| (**theirs, place(theirs)));
             match next {
-                Some((impulse, Some(at))) if at == hit.place => {
-                    if !is_certain(at) || !self.compare(hit, &impulse) {
+                Some((impulse, Some(at))) if at == hit.detection_index => {
+                    if !is_certain(at) || !self.is_right_hit(hit, &impulse) {
                         return;
                     }
                     theirs.next();
                 }
-                Some((impulse, Some(at))) if at < hit.place => {
+                Some((impulse, Some(at))) if at < hit.detection_index => {
                     if is_whole && is_certain(at) {
-                        self.superfluous.push((facts.detections[at].0.kind, impulse.time));
+                        self.superfluous_contacts.push((facts.detections[at].0.kind, impulse.time));
                     }
                     return;
                 }
                 Some((_, None)) => return,
                 _ => {
-                    if is_certain(hit.place) {
-                        self.missed.push((hit.pair.kind, hit.time));
+                    if is_certain(hit.detection_index) {
+                        self.missed_contacts.push((hit.pair.kind, hit.time));
                     }
                     return;
                 }
@@ -157,20 +157,20 @@ impl ContactStage {
             && let Some(at) = place(impulse).filter(|_| is_whole)
             && is_certain(at)
         {
-            self.superfluous.push((facts.detections[at].0.kind, impulse.time));
+            self.superfluous_contacts.push((facts.detections[at].0.kind, impulse.time));
         }
     }
 
     /// Returns whether the vector and the time are right.
-    fn compare(&mut self, hit: &Hit, impulse: &LoggedImpulse) -> bool {
+    fn is_right_hit(&mut self, hit: &Hit, impulse: &LoggedImpulse) -> bool {
         let kind = hit.pair.kind;
         let expected = LoggedImpulse { normal: hit.normal, time: hit.time, ..*impulse };
-        if same_impulse(&expected, impulse, &ROUND_OFF) {
-            self.right.push((kind, hit.time));
+        if impulse_matches(&expected, impulse, &ROUND_OFF) {
+            self.right_contacts.push((kind, hit.time));
             return true;
         }
         // The contact vector is evaluated at the impact time, so a wrong time implies a wrong vector.
-        if same_impulse(&LoggedImpulse { normal: impulse.normal, ..expected }, impulse, &ROUND_OFF) {
+        if impulse_matches(&LoggedImpulse { normal: impulse.normal, ..expected }, impulse, &ROUND_OFF) {
             self.vectors.push((kind, hit.normal, impulse.normal));
         } else {
             self.times.push((hit.time, impulse.time));
@@ -179,16 +179,16 @@ impl ContactStage {
     }
 
     fn explain_decisions(&self) -> Option<Explanation> {
-        let wrong = match (self.missed.is_empty(), self.superfluous.is_empty()) {
+        let wrong = match (self.missed_contacts.is_empty(), self.superfluous_contacts.is_empty()) {
             (true, true) => return None,
             (false, true) => WrongDecisions::Missed,
             (true, false) => WrongDecisions::Superfluous,
             (false, false) => WrongDecisions::Both,
         };
-        let listed = [self.missed.as_slice(), &self.superfluous].concat();
-        let kind = only_kind(&listed);
+        let listed = [self.missed_contacts.as_slice(), &self.superfluous_contacts].concat();
+        let kind = common_kind(&listed);
         let is_rival = |(other, _): &&(PairKind, f64)| kind.is_none_or(|kind| kind == *other);
-        let rivals: Vec<(PairKind, f64)> = self.right.iter().filter(is_rival).copied().collect();
+        let rivals: Vec<(PairKind, f64)> = self.right_contacts.iter().filter(is_rival).copied().collect();
         let impacts = |right: bool, contacts: &[(PairKind, f64)]| {
             let (low, high) = range(contacts.iter().map(|(_, time)| *time));
             StageDetail::Impacts { right, count: contacts.len(), low, high }
@@ -198,7 +198,7 @@ impl ContactStage {
             _ if rivals.is_empty() => vec![impacts(false, &listed)],
             _ => vec![impacts(false, &listed), impacts(true, &rivals)],
         };
-        Some(observation(StageFault::Decisions { kind, wrong }, details, listed.len()))
+        Some(new_observation(StageFault::Decisions { kind, wrong }, details, listed.len()))
     }
 
     fn explain_vectors(&self) -> Option<Explanation> {
@@ -232,8 +232,8 @@ impl ContactStage {
             WrongVectors::Zero => Vec::new(),
             _ => vec![StageDetail::Vectors(ratios(&along))],
         };
-        let fault = StageFault::ContactVectors { kind: only_kind(&listed), wrong };
-        Some(observation(fault, details, listed.len()))
+        let fault = StageFault::ContactVectors { kind: common_kind(&listed), wrong };
+        Some(new_observation(fault, details, listed.len()))
     }
 
     fn explain_times(&self) -> Option<Explanation> {
@@ -249,12 +249,12 @@ impl ContactStage {
         }
         details.extend(common_value(&offsets).map(StageDetail::TimesOff));
         details.push(StageDetail::TimesUsed);
-        Some(observation(StageFault::ContactTimes, details, self.times.len()))
+        Some(new_observation(StageFault::ContactTimes, details, self.times.len()))
     }
 }
 
 /// Returns the kind that all contacts have in common.
-fn only_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
+fn common_kind(listed: &[(PairKind, f64)]) -> Option<PairKind> {
     let first = listed.first()?.0;
     listed.iter().all(|(kind, _)| *kind == first).then_some(first)
 }

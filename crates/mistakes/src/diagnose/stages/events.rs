@@ -1,7 +1,7 @@
 //! The reference's work in a step from the submission's own state, event by event.
 use crate::diagnose::sampling::{
-    Capture, KeptStep, LoggedNumbers, ROUND_OFF, Reference, StepRecords, first_difference, same_formula, same_impulse,
-    same_polynomial, state_difference,
+    Capture, KeptStep, LoggedNumbers, ROUND_OFF, Reference, StepRecords, find_first_difference, find_state_difference,
+    formula_matches, impulse_matches, polynomial_matches,
 };
 use fosssim_judge::fair::formulas::BoundedPairMotion;
 use fosssim_model::{
@@ -23,7 +23,7 @@ pub(super) struct Hit {
     /// The pass that finds the contact, from 0.
     pub(super) pass: usize,
     /// The index of the detection among all detections of the step.
-    pub(super) place: usize,
+    pub(super) detection_index: usize,
 }
 
 /// A detection pass of the reference.
@@ -59,7 +59,7 @@ struct Events {
 #[derive(Debug)]
 struct StepEvents<'a> {
     scene: &'a Scene,
-    heard: Events,
+    events: Events,
 }
 
 impl StepEvents<'_> {
@@ -74,29 +74,29 @@ impl StepEvents<'_> {
         if let Some(other) = expected.other_form(APPROACH_INDEX).map(values)
             && other != values(expected.polynomial(APPROACH_INDEX))
         {
-            self.heard.other_forms.push((self.heard.polynomials + APPROACH_INDEX, other));
+            self.events.other_forms.push((self.events.polynomials + APPROACH_INDEX, other));
         }
     }
 }
 
 impl Observer for StepEvents<'_> {
     fn begin_pass(&mut self, pass: Pass) {
-        let first = self.heard.polynomials;
-        self.heard.passes.push(PassFacts { stage: pass.stage, first, end: Vec::new() });
+        let first = self.events.polynomials;
+        self.events.passes.push(PassFacts { stage: pass.stage, first, end: Vec::new() });
     }
 
     fn observe_positions(&mut self, _q_start: &[f64], q_end: &[f64]) {
-        if let Some(pass) = self.heard.passes.last_mut() {
+        if let Some(pass) = self.events.passes.last_mut() {
             pass.end = q_end.to_vec();
         }
     }
 
     fn observe_detection(&mut self, detection: &Detection<'_>) {
         self.keep_other_form(detection);
-        let heard = &mut self.heard;
+        let heard = &mut self.events;
         if let Decision::Hit { time, normal } = detection.decision {
             let (pass, place) = (heard.passes.len().saturating_sub(1), heard.detections.len());
-            heard.hits.push(Hit { pair: detection.pair, normal, time, pass, place });
+            heard.hits.push(Hit { pair: detection.pair, normal, time, pass, detection_index: place });
         }
         heard.detections.push((detection.pair, heard.polynomials));
         heard.polynomials += detection.polynomials.len();
@@ -104,7 +104,7 @@ impl Observer for StepEvents<'_> {
 
     fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {
         let particles = zone.particles.iter().map(|&particle| particle as usize).collect();
-        self.heard.zones.push(ZoneFacts { round, particles, half_plane: zone.half_plane });
+        self.events.zones.push(ZoneFacts { round, particles, half_plane: zone.half_plane });
     }
 }
 
@@ -142,15 +142,15 @@ impl StepFacts {
     /// Returns the facts about a step; `None` if the reference has no result.
     pub(super) fn for_step(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
         let prediction = reference.step(kept.step, &kept.before, &mut SteeringObserver(NoCollisions))?.clone();
-        let mut observers = (Capture::new(&scene.collision), StepEvents { scene, heard: Events::default() });
+        let mut observers = (Capture::new(&scene.collision), StepEvents { scene, events: Events::default() });
         reference.step(kept.step, &kept.before, &mut observers)?;
-        let (capture, StepEvents { heard: events, .. }) = observers;
+        let (capture, StepEvents { events, .. }) = observers;
         let (mut expected, actual) = (capture.records, kept.records.clone());
-        take_other_forms(&mut expected, &actual, &events.other_forms);
+        accept_other_forms(&mut expected, &actual, &events.other_forms);
         let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
-        let is_right = |(ours, theirs): &(&[f64], &[f64])| same_polynomial(ours, theirs, &ROUND_OFF);
+        let is_right = |(ours, theirs): &(&[f64], &[f64])| polynomial_matches(ours, theirs, &ROUND_OFF);
         let right_polynomials = ours.iter().zip(theirs.iter()).take_while(is_right).count();
-        let is_wrong = first_difference(&expected, &actual, &ROUND_OFF).is_some();
+        let is_wrong = find_first_difference(&expected, &actual, &ROUND_OFF).is_some();
         let (before, Events { hits, passes, zones, detections, .. }) = (kept.before.clone(), events);
         Some(Self {
             is_wrong,
@@ -174,7 +174,8 @@ impl StepFacts {
     /// Returns whether the impulse list is the expected one.
     pub(super) fn has_right_impulses(&self) -> bool {
         let (ours, theirs) = (&self.expected.end.impulses, &self.actual.end.impulses);
-        ours.len() == theirs.len() && ours.iter().zip(theirs).all(|(one, other)| same_impulse(one, other, &ROUND_OFF))
+        ours.len() == theirs.len()
+            && ours.iter().zip(theirs).all(|(one, other)| impulse_matches(one, other, &ROUND_OFF))
     }
 
     /// Returns the number of polynomials of a pass.
@@ -183,23 +184,23 @@ impl StepFacts {
     }
 
     /// Returns the expected and the actual mid state.
-    pub(super) fn middles(&self) -> Option<(&LoggedNumbers, &LoggedNumbers)> {
+    pub(super) fn mid_states(&self) -> Option<(&LoggedNumbers, &LoggedNumbers)> {
         Some((self.expected.mid.as_ref()?, self.actual.mid.as_ref()?))
     }
 
     /// Returns whether the middle of the step is right: the state, and the number of polynomials logged until then.
-    pub(super) fn has_right_middle(&self) -> bool {
-        self.middles().is_some_and(|(expected, actual)| {
+    pub(super) fn has_right_mid_state(&self) -> bool {
+        self.mid_states().is_some_and(|(expected, actual)| {
             expected.polynomials.len() == actual.polynomials.len()
                 && self.right_polynomials >= actual.polynomials.len()
-                && state_difference(&expected.state, &actual.state, &ROUND_OFF).is_none()
+                && find_state_difference(&expected.state, &actual.state, &ROUND_OFF).is_none()
         })
     }
 
     /// Returns the numbers of passes that the submission logged before and after the middle of the step; `None` if the
     /// polynomials do not fill whole passes.
     pub(super) fn logged_passes(&self) -> Option<(usize, usize)> {
-        let (size, (_, middle)) = (self.pass_size(), self.middles()?);
+        let (size, (_, middle)) = (self.pass_size(), self.mid_states()?);
         let (first, all) = (middle.polynomials.len(), self.actual.end.polynomials.len());
         let is_whole = size > 0 && first <= all && first.is_multiple_of(size) && all.is_multiple_of(size);
         is_whole.then(|| (first / size, (all - first) / size))
@@ -218,7 +219,7 @@ impl StepFacts {
             (0..expected.count()).all(|number| {
                 let forms = [Some(expected.polynomial(number)), expected.other_form(number)];
                 let index = pass * size + first + number;
-                forms.into_iter().flatten().any(|form| same_formula(form, logged.get(index), &ROUND_OFF))
+                forms.into_iter().flatten().any(|form| formula_matches(form, logged.get(index), &ROUND_OFF))
             })
         })
     }
@@ -226,27 +227,28 @@ impl StepFacts {
     /// Returns whether a polynomial is wrong that depends only on the state before the step.
     pub(super) fn has_wrong_formula(&self) -> bool {
         let (ours, theirs) = (self.expected.end.polynomials.len(), self.actual.end.polynomials.len());
-        self.right_polynomials < ours.min(theirs).min(self.certain_polynomials())
+        self.right_polynomials < ours.min(theirs).min(self.count_certain_polynomials())
     }
 
     /// Returns the number of polynomials that depend only on the state before the step: those of the first pass, in
     /// `continuous-time` up to the first contact.
-    fn certain_polynomials(&self) -> usize {
+    fn count_certain_polynomials(&self) -> usize {
         let contact = self.hits.first().filter(|_| self.is_continuous());
-        let behind = contact.and_then(|hit| self.detections.get(hit.place + 1));
+        let behind = contact.and_then(|hit| self.detections.get(hit.detection_index + 1));
         behind.map_or(self.pass_size(), |(_, first)| *first)
     }
 }
 
 /// Replaces the expected approach of an edge by its other form if the trace logged that, because both are right.
-fn take_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[(usize, Vec<f64>)]) {
+fn accept_other_forms(expected: &mut StepRecords, actual: &StepRecords, others: &[(usize, Vec<f64>)]) {
     let theirs = &actual.end.polynomials;
-    let is_right = |index: usize| same_polynomial(expected.end.polynomials.get(index), theirs.get(index), &ROUND_OFF);
+    let is_right =
+        |index: usize| polynomial_matches(expected.end.polynomials.get(index), theirs.get(index), &ROUND_OFF);
     let is_taken = |(index, other): &&(usize, Vec<f64>)| {
         let index = *index;
         index < theirs.len().min(expected.end.polynomials.len())
             && !is_right(index)
-            && same_polynomial(other, theirs.get(index), &ROUND_OFF)
+            && polynomial_matches(other, theirs.get(index), &ROUND_OFF)
             && (index - APPROACH_INDEX..index).all(is_right)
     };
     let taken: Vec<usize> = others.iter().filter(is_taken).map(|(index, _)| *index).collect();

@@ -7,9 +7,9 @@
 //! reported if an earlier one may have affected it, or if a polynomial with known inputs is wrong.
 mod contacts;
 mod events;
-mod loops;
 mod responses;
 mod rigid;
+mod rounds;
 mod states;
 mod zones;
 
@@ -63,12 +63,12 @@ pub(super) fn explain<'a>(
     let responses = responses::Responses::new(scene, &facts);
     contacts::explain_detection(&facts)
         .or_else(|| responses.explain(&facts))
-        .or_else(|| loops::explain(scene, &facts, &responses))
+        .or_else(|| rounds::explain(scene, &facts, &responses))
         .or_else(|| rigid::explain(scene, &facts))
 }
 
 /// Returns an observation, which reproduces nothing.
-fn observation(fault: StageFault, details: Vec<StageDetail>, samples: usize) -> Explanation {
+fn new_observation(fault: StageFault, details: Vec<StageDetail>, samples: usize) -> Explanation {
     Explanation {
         details: details.into_iter().map(Detail::Stage).collect(),
         samples: samples as u64,

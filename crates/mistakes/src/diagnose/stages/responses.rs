@@ -2,9 +2,11 @@
 use super::{
     Explanation, RATIO_TOLERANCE, common_value,
     events::{Hit, StepFacts},
-    observation, ratios,
+    new_observation, ratios,
 };
-use crate::diagnose::{Amount, ChangedQuantity, Quantity, StageDetail, StageFault, WrongResponses, sampling::bodies};
+use crate::diagnose::{
+    Amount, ChangedQuantity, Quantity, StageDetail, StageFault, WrongResponses, sampling::pair_particles,
+};
 use fosssim_model::{
     scene::{Collision, Scene},
     sim::{PairKind, Stage, State},
@@ -21,7 +23,7 @@ struct Change {
     /// The ratio to the expected value along the contact vector; `None` if the expected value is zero.
     ratio: Option<f64>,
     /// Whether the component perpendicular to the contact vector also changed.
-    across: bool,
+    is_across: bool,
     is_right: bool,
 }
 
@@ -31,24 +33,24 @@ pub(super) struct Responses {
     contacts: usize,
     /// The number of contacts of impulse rounds that changed nothing; whether the program found them is unknown.
     unresolved: usize,
-    in_rounds: bool,
+    has_rounds: bool,
 }
 
 impl Responses {
     pub(super) fn new(scene: &Scene, facts: &[StepFacts]) -> Self {
         let in_rounds = matches!(scene.collision, Collision::Hybrid { .. });
-        let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0, in_rounds };
+        let mut all = Self { changes: BTreeMap::new(), contacts: 0, unresolved: 0, has_rounds: in_rounds };
         for facts in facts {
             for (hit, expected, actual) in find_isolated(scene, facts) {
                 let mut changes: Vec<(ChangedQuantity, Change)> = Vec::new();
-                for (body, particle) in bodies(scene, hit.pair).into_iter().enumerate() {
+                for (body, particle) in pair_particles(scene, hit.pair).into_iter().enumerate() {
                     for quantity in [Quantity::Position, Quantity::Velocity] {
                         let states = [&facts.prediction, expected, actual];
-                        let change = change(particle, quantity, states, unit(hit.normal));
+                        let change = measure_change(particle, quantity, states, unit(hit.normal));
                         changes.push((ChangedQuantity { kind: hit.pair.kind, body, quantity }, change));
                     }
                 }
-                let is_nothing = |change: &Change| !change.across && change.ratio.is_none_or(|ratio| ratio == 0.0);
+                let is_nothing = |change: &Change| !change.is_across && change.ratio.is_none_or(|ratio| ratio == 0.0);
                 if !facts.is_continuous() && changes.iter().all(|(_, change)| is_nothing(change)) {
                     all.unresolved += 1;
                     continue;
@@ -63,7 +65,7 @@ impl Responses {
     }
 
     /// Returns whether there are isolated contacts of this kind, and all are right.
-    pub(super) fn is_right(&self, kind: PairKind) -> bool {
+    pub(super) fn are_right(&self, kind: PairKind) -> bool {
         let of_kind = || self.changes.iter().filter(|(changed, _)| changed.kind == kind);
         of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))
     }
@@ -86,17 +88,18 @@ impl Responses {
             _ => None,
         };
         let whose = || wrong.keys().copied().collect();
-        let what = if wrong.values().flatten().all(|change| !change.across && change.ratio == Some(0.0)) {
+        let what = if wrong.values().flatten().all(|change| !change.is_across && change.ratio == Some(0.0)) {
             let all = wrong.len() == changes.keys().filter(|changed| kinds.contains(&changed.kind)).count();
             if all { WrongResponses::Nothing } else { WrongResponses::Unchanged(whose()) }
-        } else if wrong.values().flatten().any(|change| change.across) {
+        } else if wrong.values().flatten().any(|change| change.is_across) {
             WrongResponses::Across(whose())
         } else {
             WrongResponses::Amount(whose())
         };
-        let details = wrong.iter().map(|(changed, wrong)| detail(*changed, wrong, changes[changed].len())).collect();
-        Some(observation(
-            StageFault::Responses { kind, wrong: what, in_rounds: self.in_rounds },
+        let details =
+            wrong.iter().map(|(changed, wrong)| change_detail(*changed, wrong, changes[changed].len())).collect();
+        Some(new_observation(
+            StageFault::Responses { kind, wrong: what, in_rounds: self.has_rounds },
             details,
             self.contacts,
         ))
@@ -105,7 +108,7 @@ impl Responses {
     /// Returns the explanation of contacts in impulse rounds that are not resolved.
     fn explain_unresolved(&self) -> Option<Explanation> {
         let fault = StageFault::Unresolved { all: self.contacts == 0 };
-        (self.unresolved > 0).then(|| observation(fault, Vec::new(), self.unresolved))
+        (self.unresolved > 0).then(|| new_observation(fault, Vec::new(), self.unresolved))
     }
 }
 
@@ -115,16 +118,18 @@ fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'
     let rounds = facts.passes.iter().filter(|pass| !matches!(pass.stage, Stage::Geometric { .. })).count();
     let hits = || facts.hits.iter().filter(move |hit| hit.pass < rounds);
     let is_alone = |hit: &&Hit| {
-        let own = bodies(scene, hit.pair);
-        let touches =
-            |other: &Hit| other.place != hit.place && bodies(scene, other.pair).iter().any(|one| own.contains(one));
+        let own = pair_particles(scene, hit.pair);
+        let touches = |other: &Hit| {
+            other.detection_index != hit.detection_index
+                && pair_particles(scene, other.pair).iter().any(|one| own.contains(one))
+        };
         !hits().any(touches) && is_final(scene, facts, hit)
     };
     let (expected, actual) = match facts.passes.first().map(|pass| pass.stage) {
         Some(Stage::ContinuousTime) if !facts.has_right_impulses() => return Vec::new(),
         Some(Stage::ContinuousTime) => (&facts.expected.end.state, &facts.actual.end.state),
         Some(Stage::Impulses { .. }) => {
-            let Some((expected, actual)) = facts.middles() else { return Vec::new() };
+            let Some((expected, actual)) = facts.mid_states() else { return Vec::new() };
             // If a loop has used all its rounds, its result is checked separately.
             let ran_out = rounds < facts.passes.len();
             if ran_out || expected.polynomials.len() != actual.polynomials.len() {
@@ -140,7 +145,7 @@ fn find_isolated<'a>(scene: &'a Scene, facts: &'a StepFacts) -> Vec<(&'a Hit, &'
 /// Returns whether the bodies of an impulse round's contact do not change again: all later passes use the positions
 /// after the loop.
 fn is_final(scene: &Scene, facts: &StepFacts, hit: &Hit) -> bool {
-    let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return true };
+    let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.mid_states()) else { return true };
     facts.is_continuous()
         || (hit.pass + 1..passes)
             .all(|pass| facts.detects(scene, pass, &middle.state.positions, |pair| pair == hit.pair))
@@ -156,10 +161,10 @@ fn explain_many(facts: &[StepFacts]) -> Option<Explanation> {
             && facts.has_right_impulses()
     };
     let count = facts.iter().filter(is_right).count();
-    (count > 0).then(|| observation(StageFault::ManyContacts, Vec::new(), count))
+    (count > 0).then(|| new_observation(StageFault::ManyContacts, Vec::new(), count))
 }
 
-fn change(particle: usize, quantity: Quantity, states: [&State; 3], u: Vec2) -> Change {
+fn measure_change(particle: usize, quantity: Quantity, states: [&State; 3], u: Vec2) -> Change {
     let [before, expected, actual] = states.map(|state: &State| match quantity {
         Quantity::Position => vector_at(&state.positions, particle),
         Quantity::Velocity => vector_at(&state.velocities, particle),
@@ -172,18 +177,18 @@ fn change(particle: usize, quantity: Quantity, states: [&State; 3], u: Vec2) -> 
             let ratio = along / ours.dot(&u);
             if along.abs() <= small { 0.0 } else { ratio }
         }),
-        across: length(theirs - along * u) > small.max(RATIO_TOLERANCE * length(ours)),
+        is_across: length(theirs - along * u) > small.max(RATIO_TOLERANCE * length(ours)),
         is_right: length(theirs - ours) <= small.max(RATIO_TOLERANCE * length(ours)),
     }
 }
 
-fn detail(changed: ChangedQuantity, wrong: &[Change], of: usize) -> StageDetail {
+fn change_detail(changed: ChangedQuantity, wrong: &[Change], of: usize) -> StageDetail {
     let along: Vec<f64> = wrong.iter().filter_map(|change| change.ratio).collect();
     let amount = match common_value(&along) {
         _ if along.is_empty() => Amount::Unwanted,
         Some(ratio) if ratio == 1.0 || (ratio - 1.0).abs() <= RATIO_TOLERANCE => Amount::Right,
         _ => Amount::Ratio(ratios(&along)),
     };
-    let across = wrong.iter().any(|change| change.across);
+    let across = wrong.iter().any(|change| change.is_across);
     StageDetail::Change { changed, amount, across, wrong: wrong.len(), of }
 }

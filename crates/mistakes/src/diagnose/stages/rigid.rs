@@ -5,8 +5,8 @@
 use super::{
     Explanation, RATIO_TOLERANCE, common_value,
     events::StepFacts,
-    loops, observation, ratios,
-    zones::{Fate, FirstRound, Group, ROUND_OFF_LIMIT, are_near, center, spin},
+    new_observation, ratios, rounds,
+    zones::{FirstRound, ParticleGroup, ROUND_OFF_LIMIT, ZoneResult, are_near, center_of_mass, rotation_angle},
 };
 use crate::diagnose::{StageDetail, StageFault, WrongMotion, WrongPositions, WrongZoneRounds, WrongZones};
 use fosssim_model::{
@@ -23,16 +23,16 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
     if !matches!(scene.collision, Collision::Hybrid { .. }) {
         return None;
     }
-    let is_seen = |facts: &&StepFacts| facts.has_right_middle() && !may_be_round_off(scene, facts);
+    let is_seen = |facts: &&StepFacts| facts.has_right_mid_state() && !may_be_round_off(scene, facts);
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong).filter(is_seen).collect();
     // The other steps have a different fault, which may affect these steps as well.
-    if wrong.is_empty() || facts.iter().any(|facts| facts.is_wrong && !facts.has_right_middle()) {
+    if wrong.is_empty() || facts.iter().any(|facts| facts.is_wrong && !facts.has_right_mid_state()) {
         return None;
     }
-    if let Some(geometric) = loops::explain_geometric(facts) {
+    if let Some(geometric) = rounds::explain_geometric(facts) {
         return Some(geometric);
     }
-    if let Some(positions) = first_positions(scene, &wrong) {
+    if let Some(positions) = explain_first_positions(scene, &wrong) {
         return Some(positions);
     }
     let mut moved = ZoneMotions::default();
@@ -48,47 +48,48 @@ pub(super) fn explain(scene: &Scene, facts: &[StepFacts]) -> Option<Explanation>
 /// Returns whether the first geometric pass differs only by round-off. It is right for the positions after the rounds,
 /// which are right within round-off, and small coefficients depend on that.
 fn may_be_round_off(scene: &Scene, facts: &StepFacts) -> bool {
-    let Some((_, middle)) = facts.middles().filter(|_| facts.logged_passes().is_some()) else { return false };
-    let pass = count_after(facts, 0) / facts.pass_size();
-    let differs = facts.right_polynomials < count_after(facts, 1).min(facts.expected.end.polynomials.len());
+    let Some((_, middle)) = facts.mid_states().filter(|_| facts.logged_passes().is_some()) else { return false };
+    let pass = polynomial_index_after(facts, 0) / facts.pass_size();
+    let differs = facts.right_polynomials < polynomial_index_after(facts, 1).min(facts.expected.end.polynomials.len());
     differs && facts.detects(scene, pass, &middle.state.positions, |_| true)
 }
 
 /// Returns the index of the first polynomial after `passes` passes of the geometric part.
-fn count_after(facts: &StepFacts, passes: usize) -> usize {
-    facts.middles().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
+fn polynomial_index_after(facts: &StepFacts, passes: usize) -> usize {
+    facts.mid_states().map_or(0, |(_, middle)| middle.polynomials.len()) + passes * facts.pass_size()
 }
 
 /// Returns the explanation of a first geometric pass that does not use the positions after the impulse rounds.
-fn first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
-    let is_wrong =
-        |facts: &&&StepFacts| facts.logged_passes().is_some() && facts.right_polynomials < count_after(facts, 1);
+fn explain_first_positions(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
+    let is_wrong = |facts: &&&StepFacts| {
+        facts.logged_passes().is_some() && facts.right_polynomials < polynomial_index_after(facts, 1)
+    };
     let seen: Vec<&&StepFacts> = wrong.iter().filter(is_wrong).collect();
     if seen.is_empty() {
         return None;
     }
     let is_prediction = |facts: &&&StepFacts| {
-        let pass = count_after(facts, 0) / facts.pass_size();
+        let pass = polynomial_index_after(facts, 0) / facts.pass_size();
         facts.detects(scene, pass, &facts.prediction.positions, |_| true)
     };
     let positions = if seen.iter().all(is_prediction) { WrongPositions::Prediction } else { WrongPositions::First };
-    Some(observation(StageFault::ZonePositions(positions), Vec::new(), seen.len()))
+    Some(new_observation(StageFault::ZonePositions(positions), Vec::new(), seen.len()))
 }
 
 /// Returns the explanation of a second geometric pass that uses the positions before the failsafe, although the
 /// failsafe moves a zone.
 fn explain_positions_before_failsafe(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let is_so = |facts: &&&StepFacts| {
-        let Some((_, middle)) = facts.middles() else { return false };
+        let Some((_, middle)) = facts.mid_states() else { return false };
         let (middle, end) = (&middle.state.positions, &facts.actual.end.state.positions);
-        let pass = count_after(facts, 1) / facts.pass_size();
-        facts.right_polynomials < count_after(facts, 2)
+        let pass = polynomial_index_after(facts, 1) / facts.pass_size();
+        facts.right_polynomials < polynomial_index_after(facts, 2)
             && middle.iter().zip(end).any(|(ours, theirs)| (ours - theirs).abs() > ROUND_OFF_LIMIT * (1.0 + ours.abs()))
             && facts.detects(scene, pass, middle, |_| true)
     };
     let count = wrong.iter().filter(is_so).count();
     let fault = StageFault::ZonePositions(WrongPositions::BeforeFailsafe);
-    (count == wrong.len()).then(|| observation(fault, Vec::new(), count))
+    (count == wrong.len()).then(|| new_observation(fault, Vec::new(), count))
 }
 
 /// Returns the fault after the first round of zones.
@@ -101,10 +102,10 @@ fn explain_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
             ends.push(*facts);
         } else if all_right && facts.logged_passes().is_some() {
             *(if theirs < ours { &mut fewer } else { &mut more }) += 1;
-        } else if facts.right_polynomials >= count_after(facts, 2) {
+        } else if facts.right_polynomials >= polynomial_index_after(facts, 2) {
             later += 1;
         } else {
-            return Some(observation(StageFault::AfterRounds, Vec::new(), wrong.len()));
+            return Some(new_observation(StageFault::AfterRounds, Vec::new(), wrong.len()));
         }
     }
     let rounds = match (fewer, more, later, ends.len()) {
@@ -113,9 +114,9 @@ fn explain_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
         (_, 0, 0, 0) => WrongZoneRounds::Fewer,
         (0, _, 0, 0) => WrongZoneRounds::More,
         (.., 0) => WrongZoneRounds::Later,
-        _ => return Some(observation(StageFault::AfterRounds, Vec::new(), wrong.len())),
+        _ => return Some(new_observation(StageFault::AfterRounds, Vec::new(), wrong.len())),
     };
-    Some(observation(StageFault::ZoneRounds(rounds), Vec::new(), wrong.len()))
+    Some(new_observation(StageFault::ZoneRounds(rounds), Vec::new(), wrong.len()))
 }
 
 /// Returns the explanation of steps whose polynomials are right but whose end states are wrong: the velocities of zones
@@ -126,34 +127,34 @@ fn explain_velocities(scene: &Scene, ends: &[&StepFacts]) -> Explanation {
         let (expected, actual) = (&facts.expected.end.state, &facts.actual.end.state);
         let count = scene.particles.len();
         if !(0..count).all(|one| are_near(vector_at(&expected.positions, one), vector_at(&actual.positions, one))) {
-            return observation(StageFault::AfterRounds, Vec::new(), ends.len());
+            return new_observation(StageFault::AfterRounds, Vec::new(), ends.len());
         }
         let Some(last) = facts.zones.iter().map(|zone| zone.round).max() else { continue };
         for zone in facts.zones.iter().filter(|zone| zone.round == last) {
-            let group = Group { particles: zone.particles.clone(), half_plane: zone.half_plane };
-            if group.stops(scene) {
-                return observation(StageFault::AfterRounds, Vec::new(), ends.len());
+            let group = ParticleGroup { particles: zone.particles.clone(), half_plane: zone.half_plane };
+            if group.must_stop(scene) {
+                return new_observation(StageFault::AfterRounds, Vec::new(), ends.len());
             }
             measured.measure_velocities(scene, &facts.before, actual, &group);
         }
     }
     let (wrong, details) = measured.describe();
     if wrong.is_empty() {
-        return observation(StageFault::AfterRounds, Vec::new(), ends.len());
+        return new_observation(StageFault::AfterRounds, Vec::new(), ends.len());
     }
-    observation(StageFault::Motion { wrong, or_zones: false }, details, ends.len())
+    new_observation(StageFault::Motion { wrong, or_zones: false }, details, ends.len())
 }
 
 /// The results of the zones of first rounds.
 #[derive(Default)]
 struct ZoneMotions {
-    fates: Vec<Fate>,
+    results: Vec<ZoneResult>,
     /// The ratios of the new to the previous velocities of zones that must stop.
-    stopped: Vec<f64>,
+    stop_ratios: Vec<f64>,
     has_stopped_otherwise: bool,
     /// The number of zones of several contacts whose particles do not keep their distances.
-    bent_of_many: usize,
-    bent_of_one: usize,
+    bent_large_zones: usize,
+    bent_single_zones: usize,
     bent_stops: usize,
     measured: MotionErrors,
 }
@@ -162,18 +163,19 @@ impl ZoneMotions {
     fn compare(&mut self, scene: &Scene, facts: &StepFacts) {
         let Some(first) = FirstRound::for_scene(scene, facts) else { return };
         for zone in &first.zones {
-            if !first.is_seen(zone) && (first.is_at_rest(zone) || !first.is_split(zone)) {
+            if !first.is_visible(zone) && (first.is_at_rest(zone) || !first.is_split(zone)) {
                 continue;
             }
-            let fate = if first.is_seen(zone) { first.fate(zone) } else { Fate::Wrong(WrongZones::NotMerged) };
-            self.fates.push(fate);
+            let fate =
+                if first.is_visible(zone) { first.zone_result(zone) } else { ZoneResult::Wrong(WrongZones::NotMerged) };
+            self.results.push(fate);
             match fate {
-                Fate::Wrong(WrongZones::KeepVelocities) => self.note_kept_velocities(&first, zone),
-                Fate::Bent if zone.stops(scene) => self.bent_stops += 1,
-                Fate::Bent | Fate::Rigid => {
-                    let is_one = first.contacts_of(zone).len() < 2;
-                    if fate == Fate::Bent {
-                        *(if is_one { &mut self.bent_of_one } else { &mut self.bent_of_many }) += 1;
+                ZoneResult::Wrong(WrongZones::KeepVelocities) => self.note_kept_velocities(&first, zone),
+                ZoneResult::Bent if zone.must_stop(scene) => self.bent_stops += 1,
+                ZoneResult::Bent | ZoneResult::Rigid => {
+                    let is_one = first.zone_contacts(zone).len() < 2;
+                    if fate == ZoneResult::Bent {
+                        *(if is_one { &mut self.bent_single_zones } else { &mut self.bent_large_zones }) += 1;
                     }
                     self.measured.measure_motion(scene, &first, zone);
                 }
@@ -182,25 +184,25 @@ impl ZoneMotions {
         }
     }
 
-    fn note_kept_velocities(&mut self, first: &FirstRound<'_>, zone: &Group) {
+    fn note_kept_velocities(&mut self, first: &FirstRound<'_>, zone: &ParticleGroup) {
         for &one in &zone.particles {
             let (was, is) = (vector_at(&first.middle.velocities, one), vector_at(&first.end.velocities, one));
             if length(was) > ROUND_OFF_LIMIT {
                 let ratio = is.dot(&was) / was.dot(&was);
                 self.has_stopped_otherwise |= !are_near(is, ratio * was);
-                self.stopped.push(ratio);
+                self.stop_ratios.push(ratio);
             }
         }
     }
 
-    fn count(&self, fate: Fate) -> usize {
-        self.fates.iter().filter(|one| **one == fate).count()
+    fn count_results(&self, fate: ZoneResult) -> usize {
+        self.results.iter().filter(|one| **one == fate).count()
     }
 
     fn explain(&self) -> Option<Explanation> {
-        let all = self.fates.len();
-        let wrong = all - self.count(Fate::Right);
-        let count = |fault: WrongZones| self.count(Fate::Wrong(fault));
+        let all = self.results.len();
+        let wrong = all - self.count_results(ZoneResult::Right);
+        let count = |fault: WrongZones| self.count_results(ZoneResult::Wrong(fault));
         // Check first the results that prove the failsafe right.
         let faults = [
             WrongZones::NotMerged,
@@ -216,24 +218,24 @@ impl ZoneMotions {
         ];
         if let Some(fault) = faults.into_iter().find(|fault| count(*fault) > 0) {
             let details = match fault {
-                WrongZones::KeepVelocities if self.has_stopped_otherwise || self.stopped.is_empty() => Vec::new(),
-                WrongZones::KeepVelocities => vec![StageDetail::Stopped(ratios(&self.stopped))],
+                WrongZones::KeepVelocities if self.has_stopped_otherwise || self.stop_ratios.is_empty() => Vec::new(),
+                WrongZones::KeepVelocities => vec![StageDetail::Stopped(ratios(&self.stop_ratios))],
                 _ => vec![StageDetail::OfZones { count: count(fault), of: all }],
             };
-            return Some(observation(StageFault::Zones(fault), details, wrong));
+            return Some(new_observation(StageFault::Zones(fault), details, wrong));
         }
         if wrong == 0 || self.bent_stops > 0 {
-            return (wrong > 0).then(|| observation(StageFault::AfterRounds, Vec::new(), wrong));
+            return (wrong > 0).then(|| new_observation(StageFault::AfterRounds, Vec::new(), wrong));
         }
         let (mut what, details) = self.measured.describe();
-        if self.bent_of_one + self.bent_of_many > 0 {
+        if self.bent_single_zones + self.bent_large_zones > 0 {
             what.insert(
                 what.iter().position(|one| *one != WrongMotion::Center).unwrap_or(what.len()),
                 WrongMotion::Distances,
             );
         }
-        let or_zones = self.bent_of_many > 0 && self.bent_of_one == 0;
-        Some(observation(StageFault::Motion { wrong: what, or_zones }, details, wrong))
+        let or_zones = self.bent_large_zones > 0 && self.bent_single_zones == 0;
+        Some(new_observation(StageFault::Motion { wrong: what, or_zones }, details, wrong))
     }
 }
 
@@ -249,9 +251,9 @@ struct MotionErrors {
 }
 
 impl MotionErrors {
-    fn measure_motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &Group) {
+    fn measure_motion(&mut self, scene: &Scene, first: &FirstRound<'_>, zone: &ParticleGroup) {
         let (start, expected, end) = (&first.facts.before, first.expected_state(zone), first.end);
-        let [from, ours, theirs] = [start, &expected, end].map(|state| center(scene, zone, state));
+        let [from, ours, theirs] = [start, &expected, end].map(|state| center_of_mass(scene, zone, state));
         let (should, does) = (ours - from, theirs - from);
         if length(should) > ROUND_OFF_LIMIT {
             let ratio = does.dot(&should) / should.dot(&should);
@@ -260,10 +262,10 @@ impl MotionErrors {
         } else {
             self.has_side_shift |= length(does) > ROUND_OFF_LIMIT;
         }
-        if first.fate(zone) == Fate::Rigid {
-            let [right, angle] =
-                [(&expected, ours), (end, theirs)].map(|(state, center)| turn(zone, start, from, state, center));
-            let is_once_round = spin(scene, zone, start, first.middle).abs() < std::f64::consts::PI;
+        if first.zone_result(zone) == ZoneResult::Rigid {
+            let [right, angle] = [(&expected, ours), (end, theirs)]
+                .map(|(state, center)| measure_turn(zone, start, from, state, center));
+            let is_once_round = rotation_angle(scene, zone, start, first.middle).abs() < std::f64::consts::PI;
             if !is_once_round {
                 // Of a rotation by more than half a turn only the remainder is visible, which shows neither the angle
                 // nor the direction.
@@ -280,7 +282,7 @@ impl MotionErrors {
     }
 
     /// Compares velocities with the motion from the start to the end of the step.
-    fn measure_velocities(&mut self, scene: &Scene, start: &State, end: &State, zone: &Group) {
+    fn measure_velocities(&mut self, scene: &Scene, start: &State, end: &State, zone: &ParticleGroup) {
         for &one in &zone.particles {
             let motion = divide(vector_at(&end.positions, one) - vector_at(&start.positions, one), scene.time_step);
             let velocity = vector_at(&end.velocities, one);
@@ -294,14 +296,14 @@ impl MotionErrors {
 
     fn describe(&self) -> (Vec<WrongMotion>, Vec<StageDetail>) {
         let (mut wrong, mut details) = (Vec::new(), Vec::new());
-        if self.has_side_shift || !is_one(&self.shifts) {
+        if self.has_side_shift || !are_one(&self.shifts) {
             wrong.push(WrongMotion::Center);
             details.push(match common_value(&self.shifts) {
                 Some(_) if !self.has_side_shift => StageDetail::CenterMoves(ratios(&self.shifts)),
                 _ => StageDetail::CenterDirection,
             });
         }
-        if !self.is_bent && !is_one(&self.turns) {
+        if !self.is_bent && !are_one(&self.turns) {
             wrong.push(describe_turn(&self.turns));
             if self.turns.iter().all(|ratio| ratio.is_finite()) {
                 details.push(StageDetail::Turns(ratios(&self.turns)));
@@ -309,7 +311,7 @@ impl MotionErrors {
         }
         if self.has_other_velocity {
             wrong.push(WrongMotion::Velocities);
-        } else if !is_one(&self.velocities) {
+        } else if !are_one(&self.velocities) {
             wrong.push(WrongMotion::Speeds);
             details.push(StageDetail::Velocities(ratios(&self.velocities)));
         }
@@ -333,13 +335,13 @@ fn describe_turn(ratios: &[f64]) -> WrongMotion {
     }
 }
 
-fn is_one(ratios: &[f64]) -> bool {
+fn are_one(ratios: &[f64]) -> bool {
     ratios.iter().all(|ratio| (ratio - 1.0).abs() <= RATIO_TOLERANCE)
 }
 
 /// Returns the angle by which the particles have turned about their center, in radians.
 #[expect(clippy::disallowed_methods, reason = "angles are compared with a tolerance here: no bit is a contract")]
-fn turn(zone: &Group, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
+fn measure_turn(zone: &ParticleGroup, start: &State, from: Vec2, end: &State, to: Vec2) -> f64 {
     let (mut across, mut along) = (0.0, 0.0);
     for &one in &zone.particles {
         let (was, is) = (vector_at(&start.positions, one) - from, vector_at(&end.positions, one) - to);

@@ -1,6 +1,6 @@
 //! Finds the features of wrong steps if traces log states: contacts at the end of a step, then velocities, then
 //! positions. An observation names the place to check, without a guess.
-use super::{Explanation, common_value, contacts::explain_overlaps, observation};
+use super::{Explanation, common_value, contacts::explain_overlaps, new_observation};
 use crate::diagnose::{
     ChangeCause, ChangeRatio, ChangedParticles, Quantity, StageDetail, StageFault, WrongChange,
     sampling::{Capture, KeptStep, Reference},
@@ -9,7 +9,7 @@ use fosssim_model::{
     assignments::{Assignment, Integrator},
     scene::{Collision, Scene},
 };
-use fosssim_num::tolerances::KNOWN_STATE;
+use fosssim_num::tolerances::KNOWN_STATE_ERROR;
 
 /// A wrong number of a state, with its actual and its expected change.
 struct WrongEntry {
@@ -31,15 +31,15 @@ pub(super) fn explain<'a>(
         reference.step(kept.step, &kept.before, &mut capture)?;
         count += 1;
         contacts.push((capture.records.end.impulses.clone(), kept.records.end.impulses.clone()));
-        entries.extend(wrong_entries(scene, kept, &capture));
+        entries.extend(find_wrong_entries(scene, kept, &capture));
     }
     explain_overlaps(&contacts).or_else(|| explain_changes(scene, &entries, count))
 }
 
 /// Returns the wrong velocities, and the positions that do not follow from the actual velocities.
-fn wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<WrongEntry> {
+fn find_wrong_entries(scene: &Scene, kept: &KeptStep, capture: &Capture) -> Vec<WrongEntry> {
     let (before, actual, expected) = (&kept.before, &kept.records.end.state, &capture.records.end.state);
-    let is_wrong = |actual: f64, expected: f64| (actual - expected).abs() > KNOWN_STATE * (1.0 + expected.abs());
+    let is_wrong = |actual: f64, expected: f64| (actual - expected).abs() > KNOWN_STATE_ERROR * (1.0 + expected.abs());
     let mut entries = Vec::new();
     for index in 0..before.positions.len() {
         let (x, v) = (before.positions[index], before.velocities[index]);
@@ -69,7 +69,7 @@ fn explain_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Optio
         (false, true) => Quantity::Velocity,
         _ => return None,
     };
-    let cause = cause(scene, quantity)?;
+    let cause = find_cause(scene, quantity)?;
     let last = scene.particles.len().checked_sub(1)?;
     let all_are = |test: &dyn Fn(usize) -> bool| entries.iter().all(|entry| test(entry.index));
     let axis = (0..2).find(|axis| all_are(&|index| index % 2 == *axis));
@@ -89,11 +89,11 @@ fn explain_changes(scene: &Scene, entries: &[WrongEntry], count: usize) -> Optio
         None => (ChangeRatio::Other, Vec::new()),
     };
     let wrong = WrongChange { quantity, axis, particles, ratio, cause };
-    Some(observation(StageFault::Change(wrong), details, count))
+    Some(new_observation(StageFault::Change(wrong), details, count))
 }
 
 /// Returns the student code of the scene's milestone that changes `quantity`.
-fn cause(scene: &Scene, quantity: Quantity) -> Option<ChangeCause> {
+fn find_cause(scene: &Scene, quantity: Quantity) -> Option<ChangeCause> {
     use Quantity::{Position, Velocity};
     match (scene.assignment(), &scene.collision, scene.integrator, quantity) {
         (Assignment::T1M1 | Assignment::T1M3, _, _, Position)

@@ -1,7 +1,7 @@
 //! The result of one impact zone in the first round of the geometric part. The particles that moved as one body show
 //! the actual zones.
 use super::events::StepFacts;
-use crate::diagnose::{WrongZones, sampling::bodies};
+use crate::diagnose::{WrongZones, sampling::pair_particles};
 use fosssim_model::{
     scene::Scene,
     sim::{PairKind, Stage, State},
@@ -19,14 +19,14 @@ const MAX_CONTACTS: usize = 5;
 
 /// A set of particles that move together.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Group {
+pub(super) struct ParticleGroup {
     /// The particles' indices, ascending.
     pub(super) particles: Vec<usize>,
     /// Whether the set contains a half-plane.
     pub(super) half_plane: bool,
 }
 
-impl Group {
+impl ParticleGroup {
     fn from_particles(mut particles: Vec<usize>, half_plane: bool) -> Self {
         particles.sort_unstable();
         particles.dedup();
@@ -39,7 +39,7 @@ impl Group {
     }
 
     /// Returns whether the zone must end where it started: it contains a half-plane or a fixed particle.
-    pub(super) fn stops(&self, scene: &Scene) -> bool {
+    pub(super) fn must_stop(&self, scene: &Scene) -> bool {
         self.half_plane || self.particles.iter().any(|&one| scene.particles[one].fixed)
     }
 
@@ -50,7 +50,7 @@ impl Group {
 
 /// The result of a zone.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) enum Fate {
+pub(super) enum ZoneResult {
     /// The zone is the expected one.
     Right,
     /// The zone was not moved or stopped as expected.
@@ -68,9 +68,9 @@ pub(super) struct FirstRound<'a> {
     pub(super) middle: &'a State,
     /// The end state of the step, which shows the first round's effect on the examined zones.
     pub(super) end: &'a State,
-    pub(super) zones: Vec<Group>,
+    pub(super) zones: Vec<ParticleGroup>,
     /// The zone of each contact.
-    contacts: Vec<Group>,
+    contacts: Vec<ParticleGroup>,
     /// The index of the second geometric pass among the logged passes.
     second: usize,
     /// The number of rounds in which zones moved.
@@ -80,19 +80,19 @@ pub(super) struct FirstRound<'a> {
 impl<'a> FirstRound<'a> {
     /// Returns the zones of a step; `None` if the step has no first round, or if something before it is wrong.
     pub(super) fn for_scene(scene: &'a Scene, facts: &'a StepFacts) -> Option<Self> {
-        let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_middle())?;
+        let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_mid_state())?;
         let is_right = facts.right_polynomials >= (loop_passes + 1) * facts.pass_size();
-        let (_, middle) = facts.middles()?;
+        let (_, middle) = facts.mid_states()?;
         let first = facts.passes.iter().position(|pass| pass.stage == Stage::Geometric { round: 0 })?;
         let round = facts.zones.iter().map(|zone| zone.round).min()?;
         if passes == 0 || !is_right {
             return None;
         }
         let zones = facts.zones.iter().filter(|zone| zone.round == round);
-        let zones = zones.map(|zone| Group::from_particles(zone.particles.clone(), zone.half_plane)).collect();
+        let zones = zones.map(|zone| ParticleGroup::from_particles(zone.particles.clone(), zone.half_plane)).collect();
         let contacts = facts.hits.iter().filter(|hit| hit.pass == first).map(|hit| {
             let is_half_plane = hit.pair.kind == PairKind::ParticleHalfPlane;
-            Group::from_particles(bodies(scene, hit.pair), is_half_plane)
+            ParticleGroup::from_particles(pair_particles(scene, hit.pair), is_half_plane)
         });
         let (contacts, end) = (contacts.collect(), &facts.actual.end.state);
         let (middle, second, rounds) = (&middle.state, loop_passes + 1, passes.max(2) - 1);
@@ -100,19 +100,19 @@ impl<'a> FirstRound<'a> {
     }
 
     /// Returns whether the end of the step shows the positions of the group after the first round.
-    pub(super) fn is_seen(&self, group: &Group) -> bool {
-        let is_own = |pair| bodies(self.scene, pair).iter().all(|one| group.particles.contains(one));
+    pub(super) fn is_visible(&self, group: &ParticleGroup) -> bool {
+        let is_own = |pair| pair_particles(self.scene, pair).iter().all(|one| group.particles.contains(one));
         self.rounds == 1 || self.facts.detects(self.scene, self.second, &self.end.positions, is_own)
     }
 
     /// Returns whether a zone's particles end in the right positions, so that the zone proves nothing.
-    pub(super) fn is_at_rest(&self, zone: &Group) -> bool {
+    pub(super) fn is_at_rest(&self, zone: &ParticleGroup) -> bool {
         self.are_at(&self.expected_state(zone), &zone.particles)
     }
 
     /// Returns the contacts of a zone, one of each group of similar ones.
-    pub(super) fn contacts_of(&self, zone: &Group) -> Vec<&Group> {
-        let mut own: Vec<&Group> = Vec::new();
+    pub(super) fn zone_contacts(&self, zone: &ParticleGroup) -> Vec<&ParticleGroup> {
+        let mut own: Vec<&ParticleGroup> = Vec::new();
         for contact in self.contacts.iter().filter(|contact| zone.contains(contact)) {
             if !own.contains(&contact) {
                 own.push(contact);
@@ -122,25 +122,25 @@ impl<'a> FirstRound<'a> {
     }
 
     /// Returns the state after `groups` have moved, one after the other.
-    fn moved_state(&self, groups: &[&Group]) -> State {
+    fn moved_state(&self, groups: &[&ParticleGroup]) -> State {
         let mut state = self.middle.clone();
-        self.move_again(groups, &mut state);
+        self.move_groups(groups, &mut state);
         state
     }
 
-    fn move_again(&self, groups: &[&Group], state: &mut State) {
+    fn move_groups(&self, groups: &[&ParticleGroup], state: &mut State) {
         for group in groups {
-            perform(self.scene, group, group.stops(self.scene), &self.facts.before, state);
+            move_group(self.scene, group, group.must_stop(self.scene), &self.facts.before, state);
         }
     }
 
     /// Returns whether a zone's particles end where they would if its contacts were moved separately in every round, or
     /// not all together.
-    pub(super) fn is_split(&self, zone: &Group) -> bool {
+    pub(super) fn is_split(&self, zone: &ParticleGroup) -> bool {
         self.partitions(zone).into_iter().any(|groups| {
-            let groups: Vec<&Group> = groups.iter().collect();
+            let groups: Vec<&ParticleGroup> = groups.iter().collect();
             let mut state = self.middle.clone();
-            (0..self.rounds).for_each(|_| self.move_again(&groups, &mut state));
+            (0..self.rounds).for_each(|_| self.move_groups(&groups, &mut state));
             self.are_at(&state, &zone.particles)
         })
     }
@@ -155,46 +155,46 @@ impl<'a> FirstRound<'a> {
     }
 
     /// Returns the expected state of a zone.
-    pub(super) fn expected_state(&self, zone: &Group) -> State {
+    pub(super) fn expected_state(&self, zone: &ParticleGroup) -> State {
         self.moved_state(&[zone])
     }
 
     /// Returns the result of a visible zone.
-    pub(super) fn fate(&self, zone: &Group) -> Fate {
+    pub(super) fn zone_result(&self, zone: &ParticleGroup) -> ZoneResult {
         let all = &zone.particles;
         let expected = self.expected_state(zone);
         if self.are_at(&expected, all) {
-            return Fate::Right;
+            return ZoneResult::Right;
         }
         if self.are_at(self.middle, all) {
-            return Fate::Wrong(WrongZones::Unmoved);
+            return ZoneResult::Wrong(WrongZones::Unmoved);
         }
         let mut stopped = self.middle.clone();
-        perform(self.scene, zone, true, &self.facts.before, &mut stopped);
-        let stops = zone.stops(self.scene);
+        move_group(self.scene, zone, true, &self.facts.before, &mut stopped);
+        let stops = zone.must_stop(self.scene);
         if !stops && self.are_at(&stopped, all) {
-            return Fate::Wrong(WrongZones::Stop);
+            return ZoneResult::Wrong(WrongZones::Stop);
         }
-        if let Some(fate) = self.other_zones(zone) {
+        if let Some(fate) = self.find_other_zones(zone) {
             return fate;
         }
-        if stops { self.stop(zone, &stopped) } else { self.motion(zone) }
+        if stops { self.stop_result(zone, &stopped) } else { self.motion_result(zone) }
     }
 
     /// Returns whether other zones, each moved correctly, explain the positions of the zone's particles.
-    fn other_zones(&self, zone: &Group) -> Option<Fate> {
+    fn find_other_zones(&self, zone: &ParticleGroup) -> Option<ZoneResult> {
         if self.is_split(zone) {
-            return Some(Fate::Wrong(WrongZones::NotMerged));
+            return Some(ZoneResult::Wrong(WrongZones::NotMerged));
         }
-        let others: Vec<&Group> = self.zones.iter().filter(|other| *other != zone).collect();
-        let is_joined = |groups: &[&Group]| {
-            let all = Group::union(groups);
-            self.is_seen(&all) && self.are_at(&self.moved_state(&[&all]), &all.particles)
+        let others: Vec<&ParticleGroup> = self.zones.iter().filter(|other| *other != zone).collect();
+        let is_joined = |groups: &[&ParticleGroup]| {
+            let all = ParticleGroup::union(groups);
+            self.is_visible(&all) && self.are_at(&self.moved_state(&[&all]), &all.particles)
         };
         let mut with_all = others.clone();
         with_all.insert(0, zone);
         if others.iter().any(|other| is_joined(&[zone, other])) || (others.len() > 1 && is_joined(&with_all)) {
-            return Some(Fate::Wrong(WrongZones::Joined));
+            return Some(ZoneResult::Wrong(WrongZones::Joined));
         }
         let foreign = self.particles_moved_outside_zones();
         if zone.particles.len() > MAX_PARTICLES {
@@ -207,23 +207,25 @@ impl<'a> FirstRound<'a> {
         });
         for part in parts {
             let left: Vec<usize> = zone.particles.iter().copied().filter(|one| !part.contains(one)).collect();
-            let leads_there = |group: &Group| {
-                let is_body = group.particles.len() > 1 || group.stops(self.scene);
+            let leads_there = |group: &ParticleGroup| {
+                let is_body = group.particles.len() > 1 || group.must_stop(self.scene);
                 let moved = self.moved_state(&[group]);
                 is_body && self.are_at(&moved, &group.particles) && self.are_at(self.middle, &left)
             };
             // A particle with the expected position was not omitted.
             let is_left = || left.iter().any(|&one| !self.is_at(&self.expected_state(zone), one));
             if is_left()
-                && [false, zone.half_plane].iter().any(|flag| leads_there(&Group::from_particles(part.clone(), *flag)))
+                && [false, zone.half_plane]
+                    .iter()
+                    .any(|flag| leads_there(&ParticleGroup::from_particles(part.clone(), *flag)))
             {
-                let wrong = if zone.stops(self.scene) { WrongZones::PartlyStopped } else { WrongZones::Partly };
-                return Some(Fate::Wrong(wrong));
+                let wrong = if zone.must_stop(self.scene) { WrongZones::PartlyStopped } else { WrongZones::Partly };
+                return Some(ZoneResult::Wrong(wrong));
             }
             if !foreign.is_empty() {
-                let with = Group::from_particles([part.clone(), foreign.clone()].concat(), zone.half_plane);
+                let with = ParticleGroup::from_particles([part.clone(), foreign.clone()].concat(), zone.half_plane);
                 if leads_there(&with) {
-                    return Some(Fate::Wrong(WrongZones::Others));
+                    return Some(ZoneResult::Wrong(WrongZones::Others));
                 }
             }
         }
@@ -241,12 +243,12 @@ impl<'a> FirstRound<'a> {
     }
 
     /// Returns the ways to form several zones from a zone's contacts, in the order of the first contact of each.
-    fn partitions(&self, zone: &Group) -> Vec<Vec<Group>> {
-        let contacts = self.contacts_of(zone);
+    fn partitions(&self, zone: &ParticleGroup) -> Vec<Vec<ParticleGroup>> {
+        let contacts = self.zone_contacts(zone);
         if contacts.len() < 2 || contacts.len() > MAX_CONTACTS {
             return Vec::new();
         }
-        let mut all: Vec<Vec<Vec<&Group>>> = vec![Vec::new()];
+        let mut all: Vec<Vec<Vec<&ParticleGroup>>> = vec![Vec::new()];
         for contact in contacts {
             let grown = all.into_iter().flat_map(|parts| {
                 (0..=parts.len()).map(move |into| {
@@ -261,31 +263,31 @@ impl<'a> FirstRound<'a> {
             all = grown.collect();
         }
         let several = all.into_iter().filter(|parts| parts.len() > 1);
-        several.map(|parts| parts.iter().map(|part| Group::union(part)).collect()).collect()
+        several.map(|parts| parts.iter().map(|part| ParticleGroup::union(part)).collect()).collect()
     }
 
     /// Returns the result of a zone that must stop, if all its particles belong together.
-    fn stop(&self, zone: &Group, stopped: &State) -> Fate {
+    fn stop_result(&self, zone: &ParticleGroup, stopped: &State) -> ZoneResult {
         let mut free = self.middle.clone();
-        perform(self.scene, zone, false, &self.facts.before, &mut free);
+        move_group(self.scene, zone, false, &self.facts.before, &mut free);
         if self.are_at(&free, &zone.particles) {
-            return Fate::Wrong(WrongZones::MoveOn);
+            return ZoneResult::Wrong(WrongZones::MoveOn);
         }
         let is_back = |one: &usize| are_near(vector_at(&self.end.positions, *one), vector_at(&stopped.positions, *one));
         let rests = |one: &usize| length(vector_at(&self.end.velocities, *one)) <= ROUND_OFF_LIMIT;
         let all = || zone.particles.iter();
         if all().all(is_back) {
-            Fate::Wrong(WrongZones::KeepVelocities)
+            ZoneResult::Wrong(WrongZones::KeepVelocities)
         } else if all().all(rests) {
-            Fate::Wrong(WrongZones::KeepPositions)
+            ZoneResult::Wrong(WrongZones::KeepPositions)
         } else if all().any(|one| is_back(one) && rests(one) && !self.is_at(self.middle, *one)) {
-            Fate::Wrong(WrongZones::PartlyStopped)
+            ZoneResult::Wrong(WrongZones::PartlyStopped)
         } else {
-            Fate::Bent
+            ZoneResult::Bent
         }
     }
 
-    fn motion(&self, zone: &Group) -> Fate {
+    fn motion_result(&self, zone: &ParticleGroup) -> ZoneResult {
         let distance = |state: &State, one: usize, two: usize| {
             length(vector_at(&state.positions, one) - vector_at(&state.positions, two))
         };
@@ -294,12 +296,12 @@ impl<'a> FirstRound<'a> {
             let (was, is) = (distance(&self.facts.before, one, two), distance(self.end, one, two));
             (was - is).abs() <= ROUND_OFF_LIMIT * (1.0 + was)
         });
-        if is_rigid { Fate::Rigid } else { Fate::Bent }
+        if is_rigid { ZoneResult::Rigid } else { ZoneResult::Bent }
     }
 }
 
 /// Moves a group as one rigid body from its start, or back to its start (collisions.md 5).
-fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut State) {
+fn move_group(scene: &Scene, group: &ParticleGroup, stops: bool, start: &State, state: &mut State) {
     let all = || group.particles.iter().copied();
     if stops {
         for one in all() {
@@ -308,8 +310,8 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
         }
         return;
     }
-    let (center, to) = (center(scene, group, start), center(scene, group, state));
-    let angle = spin(scene, group, start, state);
+    let (center, to) = (center_of_mass(scene, group, start), center_of_mass(scene, group, state));
+    let angle = rotation_angle(scene, group, start, state);
     for one in all() {
         let arm = vector_at(&start.positions, one) - center;
         let across = Vec2::new(-arm.y, arm.x);
@@ -321,8 +323,8 @@ fn perform(scene: &Scene, group: &Group, stops: bool, start: &State, state: &mut
 
 /// Returns the angle by which the failsafe turns a group, in radians: its angular momentum divided by its moment of
 /// inertia, both for the motion from the start of the step to `state` (collisions.md 5).
-pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -> f64 {
-    let (center, to) = (center(scene, group, start), center(scene, group, state));
+pub(super) fn rotation_angle(scene: &Scene, group: &ParticleGroup, start: &State, state: &State) -> f64 {
+    let (center, to) = (center_of_mass(scene, group, start), center_of_mass(scene, group, state));
     let (mut momentum, mut inertia) = (0.0, 0.0);
     for &one in &group.particles {
         let arm = vector_at(&start.positions, one) - center;
@@ -334,7 +336,7 @@ pub(super) fn spin(scene: &Scene, group: &Group, start: &State, state: &State) -
 }
 
 /// Returns the center of mass of a group.
-pub(super) fn center(scene: &Scene, group: &Group, state: &State) -> Vec2 {
+pub(super) fn center_of_mass(scene: &Scene, group: &ParticleGroup, state: &State) -> Vec2 {
     let mass = |one: usize| scene.particles[one].mass;
     let sum = group.particles.iter().map(|&one| mass(one) * vector_at(&state.positions, one)).sum::<Vec2>();
     divide(sum, group.particles.iter().map(|&one| mass(one)).sum())

@@ -3,7 +3,7 @@ use crate::{
     diagnose::is_named_in,
     diagnose::{
         About, Detail, Explanation, Guess, ListGuess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault,
-        WrongMotion, WrongVectors, explain_together, settle_trace,
+        WrongMotion, WrongVectors, correct_trace, explain_together,
     },
 };
 use fosssim_model::sim::PairKind;
@@ -94,7 +94,7 @@ fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
     assert_eq!(heads(&traces), words(&[(&half, 7)]));
     // Each of them says so.
     let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
-    assert_eq!(settle_trace(&traces[6], &likely, &[]).explanations[0].statement(), half.statement());
+    assert_eq!(correct_trace(&traces[6], &likely, &[]).explanations[0].statement(), half.statement());
     // And a mistake of the catalogue explains polynomials that are as it makes them, whatever they look like alone.
     let mut like = letter(Subject::ParticleOverlap, "other");
     like.claims.push("ParticleOverlap/pp-one-radius/".to_owned());
@@ -154,7 +154,7 @@ fn forms_that_differ_have_their_polynomial_in_common() {
     let About::Polynomials { subjects, found } = &likely[0].about else { panic!("{likely:?}") };
     assert_eq!(*subjects, [Subject::HalfPlaneOverlap]);
     assert_eq!(*found, OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other)));
-    assert_eq!(settle_trace(&traces[1], &likely, &[]).explanations[0].statement(), forms[1].statement());
+    assert_eq!(correct_trace(&traces[1], &likely, &[]).explanations[0].statement(), forms[1].statement());
 }
 
 /// Polynomials that are told beside something else are not told again.
@@ -287,6 +287,6 @@ fn where_numbers_end_comes_behind_what_is_proven() {
         [first.statement(), end(1, NanStage::Zones).statement()]
     );
     assert!(matches!(told[1].about, About::NotFinite(NotFinite { step: None, .. })));
-    let of_third = settle_trace(&traces[2], &told, &[]).explanations;
+    let of_third = correct_trace(&traces[2], &told, &[]).explanations;
     assert!(matches!(of_third[0].about, About::NotFinite(NotFinite { step: Some(9), .. })), "{of_third:?}");
 }

@@ -1,7 +1,7 @@
 //! Programs with several mistakes, asked about on the probe scenes.
 use super::naming::is_in_other_words;
-use super::{About, Explanation, explain, explain_kept, explain_together, probe_scenes};
-use fosssim_judge::kept::KeptTrace;
+use super::{About, Explanation, explain, explain_kept_trace, explain_together, probe_scenes};
+use fosssim_judge::kept_trace::KeptTrace;
 use fosssim_model::assignments::Assignment;
 use fosssim_student::{self as student, Row, Student};
 
@@ -88,8 +88,8 @@ fn a_trace_that_was_kept_in_part_is_explained() {
     let trace = student::record_trace(&scene, Student::new(Some(row.mistake))).expect("it comes to an end");
     let explained = |most: usize| {
         let mut kept = KeptTrace::new(most);
-        std::io::copy(&mut kept.reader(&trace[..]), &mut std::io::sink()).expect("read");
-        explain_kept(&scene, &kept).into_iter().map(|one| one.key).collect::<Vec<_>>()
+        std::io::copy(&mut kept.keep_from(&trace[..]), &mut std::io::sink()).expect("read");
+        explain_kept_trace(&scene, &kept).into_iter().map(|one| one.key).collect::<Vec<_>>()
     };
     assert_eq!(explained(trace.len()), [row.id]);
     assert_eq!(explained(trace.len() * 3 / 4), [row.id]);

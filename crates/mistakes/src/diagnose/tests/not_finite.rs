@@ -1,5 +1,5 @@
 //! Where numbers end is told with its step and stage, and what is no number accuses of nothing.
-use crate::diagnose::{About, Explanation, NanStage, NotFinite, explain, not_finite::find_in_trace, sampling::Source};
+use crate::diagnose::{About, Explanation, NanStage, NotFinite, explain, non_finite::explain_source, sampling::Source};
 use fosssim_model::{
     assignments::Assignment,
     scene::{Collision, Scene},
@@ -41,7 +41,7 @@ fn told(scene: &Scene, frames: Vec<LenientFrame>) -> NotFinite {
     let all = explain(scene, &trace);
     // Nothing but that: the steps before are right, and what follows from NaN speaks for nothing.
     let [Explanation { about: About::NotFinite(found), .. }] = &all[..] else { panic!("{all:#?}") };
-    assert_eq!(find_in_trace(scene, Source::whole(&trace))[0].about, all[0].about);
+    assert_eq!(explain_source(scene, Source::from_trace(&trace))[0].about, all[0].about);
     *found
 }
 

@@ -98,7 +98,7 @@ fn trace(scene: &Scene, row: Option<&Row>) -> Option<Vec<u8>> {
 }
 
 fn judged(scene: &Scene, trace: &[u8]) -> Judgement {
-    let options = Options { threads: 1, fair: true, ..Options::default() };
+    let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     *judge(scene, trace, &options, &mut ()).fair.expect("the fair rules were asked")
 }
 

@@ -5,7 +5,7 @@ use super::super::{
     search::{RootSearch, SearchCounts},
     step_error::StepError,
 };
-use fosssim_num::{certificate::excludes_unit_interval, first_time::first_time_counted, polynomial::Polynomial};
+use fosssim_num::{certificate::excludes_unit_interval, first_time::first_time_with_steps, polynomial::Polynomial};
 
 /// Returns the time of impact; it is not computed if it is not needed.
 ///
@@ -28,7 +28,8 @@ pub(super) fn time_of_impact(
         }
     }
     counts.searched += 1;
-    let time = first_time_counted(polynomials, &mut counts.steps).map_err(|_| StepError::RootSearch { step, pair })?;
+    let time =
+        first_time_with_steps(polynomials, &mut counts.steps).map_err(|_| StepError::RootSearch { step, pair })?;
     if excluded && time <= 1.0 {
         counts.disagreements += 1;
     }

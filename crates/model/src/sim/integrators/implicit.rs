@@ -5,8 +5,8 @@
 use super::{ImplicitScratch, NewtonWork, system::System};
 use crate::sim::{state::State, step_error::StepError};
 use fosssim_num::{
-    tolerances::{NEWTON_ITERATIONS, NEWTON_UPDATE},
-    vector::same_bits,
+    tolerances::{MAX_NEWTON_ITERATIONS, NEWTON_UPDATE_NORM},
+    vector::has_same_bits,
 };
 
 /// Iterates until the update of the velocities is small (or NaN), then advances the state by `dx`, `dv`.
@@ -32,8 +32,8 @@ pub(super) fn advance(
     let minus_h = std::hint::black_box(-h);
     let mut update = f64::INFINITY;
     let mut iteration = 0_u32;
-    while update >= NEWTON_UPDATE {
-        if iteration == NEWTON_ITERATIONS {
+    while update >= NEWTON_UPDATE_NORM {
+        if iteration == MAX_NEWTON_ITERATIONS {
             return Err(StepError::Newton { step });
         }
         if !effort.iterate() {
@@ -42,7 +42,7 @@ pub(super) fn advance(
         let ImplicitScratch { x, v, dx, dv, previous_update: earlier, .. } = &mut *scratch;
         if iteration.is_power_of_two() {
             earlier.copy_from_slice(dv);
-        } else if iteration > 1 && same_bits(earlier, dv) {
+        } else if iteration > 1 && has_same_bits(earlier, dv) {
             return Err(StepError::Newton { step });
         }
         iteration += 1;

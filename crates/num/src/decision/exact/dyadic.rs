@@ -3,14 +3,14 @@ use num_bigint::BigInt;
 
 /// The nonnegative number `numerator / 2^exponent`.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Dyadic {
+pub(super) struct DyadicNumber {
     /// The nonnegative numerator.
     pub(super) numerator: BigInt,
     /// The exponent of the denominator.
     pub(super) exponent: u64,
 }
 
-impl Dyadic {
+impl DyadicNumber {
     /// The number 0.
     pub(super) const ZERO: Self = Self { numerator: BigInt::ZERO, exponent: 0 };
 
@@ -46,15 +46,15 @@ impl Dyadic {
         let Ok(scale) = i32::try_from(scale) else { return [0.0, f64::from_bits(1)] };
         if scale < -1074 {
             // The time is subnormal, so the enclosure is coarse. Zero itself is exact.
-            return if top == 0 { [0.0; 2] } else { [0.0, scaled(top + 1, -1074)] };
+            return if top == 0 { [0.0; 2] } else { [0.0, scale_by_power(top + 1, -1074)] };
         }
-        [scaled(top, scale), scaled(if exact { top } else { top + 1 }, scale)]
+        [scale_by_power(top, scale), scale_by_power(if exact { top } else { top + 1 }, scale)]
     }
 }
 
 /// Returns `integer * 2^exponent` for an integer up to `2^53`; exact for exponents in `-1074..=0` with a result of at
 /// most 1.
-fn scaled(integer: u64, exponent: i32) -> f64 {
+fn scale_by_power(integer: u64, exponent: i32) -> f64 {
     let power = |exponent: i32| f64::from_bits(u64::try_from(exponent + 1023).unwrap_or(0) << 52);
     let half = exponent / 2;
     integer as f64 * power(half) * power(exponent - half)
@@ -62,16 +62,16 @@ fn scaled(integer: u64, exponent: i32) -> f64 {
 
 #[cfg(test)]
 mod tests {
-    use super::Dyadic;
+    use super::DyadicNumber;
     use num_bigint::BigInt;
 
-    fn dyadic(numerator: &str, exponent: u64) -> Dyadic {
-        Dyadic { numerator: numerator.parse::<BigInt>().expect("a number"), exponent }
+    fn dyadic(numerator: &str, exponent: u64) -> DyadicNumber {
+        DyadicNumber { numerator: numerator.parse::<BigInt>().expect("a number"), exponent }
     }
 
     #[test]
     fn fractions_that_are_doubles_are_enclosed_by_themselves() {
-        assert_eq!(Dyadic::ZERO.enclosure(), [0.0; 2]);
+        assert_eq!(DyadicNumber::ZERO.enclosure(), [0.0; 2]);
         assert_eq!(dyadic("1024", 10).enclosure(), [1.0; 2]);
         assert_eq!(dyadic("3", 3).enclosure(), [0.375; 2]);
         assert_eq!(dyadic("1", 1074).enclosure(), [f64::from_bits(1); 2]);
@@ -89,8 +89,8 @@ mod tests {
 
     #[test]
     fn midpoints() {
-        assert_eq!(Dyadic::ZERO.midpoint(&Dyadic::one()).enclosure(), [0.5; 2]);
-        assert_eq!(dyadic("1", 2).midpoint(&Dyadic::one()).enclosure(), [0.625; 2]);
+        assert_eq!(DyadicNumber::ZERO.midpoint(&DyadicNumber::one()).enclosure(), [0.5; 2]);
+        assert_eq!(dyadic("1", 2).midpoint(&DyadicNumber::one()).enclosure(), [0.625; 2]);
         assert!(dyadic("4", 2).is_one() && !dyadic("3", 2).is_one());
     }
 }

@@ -2,7 +2,7 @@
 //!
 //! Greatest common divisors use primitive pseudo-remainders (Knuth, *The Art of Computer Programming* 2, 4.6.1). They
 //! are nearly always constant, which one computation modulo a prime shows at a fraction of the cost.
-use super::{super::short_numbers::split, dyadic::Dyadic};
+use super::{super::short_numbers::split_double, dyadic::DyadicNumber};
 use num_bigint::{BigInt, Sign};
 
 /// The prime modulus `2^61 - 1`, for a quick test whether polynomials have a common zero.
@@ -10,7 +10,7 @@ const MODULUS: u64 = (1 << 61) - 1;
 
 /// The coefficients, lowest power first; the last is not zero. The zero polynomial has none.
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub(super) struct Integer(Vec<BigInt>);
+pub(super) struct IntegerPolynomial(Vec<BigInt>);
 
 /// Returns the sign of a number: -1, 0 or 1.
 fn sign(value: &BigInt) -> i8 {
@@ -21,7 +21,7 @@ fn sign(value: &BigInt) -> i8 {
     }
 }
 
-impl Integer {
+impl IntegerPolynomial {
     /// Creates the polynomial with the given coefficients.
     pub(super) fn new(mut coefficients: Vec<BigInt>) -> Self {
         while coefficients.last().is_some_and(|last| last.sign() == Sign::NoSign) {
@@ -38,12 +38,12 @@ impl Integer {
     /// Returns a positive multiple of the polynomial with the finite coefficients `list`, highest power first.
     pub(super) fn from_doubles(list: &[f64]) -> Self {
         let lowest = |&value: &f64| {
-            let (mantissa, exponent) = split(value);
+            let (mantissa, exponent) = split_double(value);
             exponent + mantissa.trailing_zeros().cast_signed()
         };
         let least = list.iter().filter(|value| **value != 0.0).map(lowest).min().unwrap_or(0);
         let integer = |&value: &f64| {
-            let (mantissa, exponent) = split(value);
+            let (mantissa, exponent) = split_double(value);
             let shift = exponent - least;
             let modulus = if mantissa == 0 {
                 BigInt::ZERO
@@ -68,17 +68,17 @@ impl Integer {
     }
 
     /// Returns whether no coefficient is positive.
-    pub(super) fn never_positive_after_zero(&self) -> bool {
+    pub(super) fn is_never_positive_after_zero(&self) -> bool {
         self.0.iter().all(|value| sign(value) <= 0)
     }
 
     /// Returns whether no coefficient is negative, and one is positive.
-    pub(super) fn always_positive_after_zero(&self) -> bool {
+    pub(super) fn is_always_positive_after_zero(&self) -> bool {
         !self.0.is_empty() && self.0.iter().all(|value| sign(value) >= 0)
     }
 
     /// Returns the sign at a time.
-    pub(super) fn sign_at(&self, time: &Dyadic) -> i8 {
+    pub(super) fn sign_at(&self, time: &DyadicNumber) -> i8 {
         // Horner's rule, with everything multiplied by 2^(exponent * degree).
         let mut value = BigInt::ZERO;
         for (step, coefficient) in (0_u64..).zip(self.0.iter().rev()) {
@@ -88,7 +88,7 @@ impl Integer {
     }
 
     /// Returns the sign right after a time, which is that of the first nonzero derivative.
-    pub(super) fn sign_after(&self, time: &Dyadic) -> i8 {
+    pub(super) fn sign_after(&self, time: &DyadicNumber) -> i8 {
         let mut derivative = self.clone();
         while !derivative.0.is_empty() {
             let sign = derivative.sign_at(time);
@@ -101,12 +101,12 @@ impl Integer {
     }
 
     /// Returns whether the polynomial is positive right after 1.
-    pub(super) fn positive_right_of_one(&self) -> bool {
-        self.sign_after(&Dyadic::one()) > 0
+    pub(super) fn is_positive_right_of_one(&self) -> bool {
+        self.sign_after(&DyadicNumber::one()) > 0
     }
 
     /// Returns the polynomial in `t + 1`.
-    pub(super) fn shifted(&self) -> Self {
+    pub(super) fn shift_by_one(&self) -> Self {
         let mut coefficients = self.0.clone();
         for row in 1..coefficients.len() {
             for i in (row - 1..coefficients.len() - 1).rev() {
@@ -118,7 +118,7 @@ impl Integer {
     }
 
     /// Returns the polynomial in `t / 2`, times `2^degree`.
-    pub(super) fn halved(&self) -> Self {
+    pub(super) fn halve_argument(&self) -> Self {
         let degree = self.degree();
         Self(self.0.iter().enumerate().map(|(i, value)| value << (degree - i)).collect())
     }
@@ -128,7 +128,7 @@ impl Integer {
     }
 
     /// Returns the product.
-    fn times(&self, other: &Self) -> Self {
+    fn multiply(&self, other: &Self) -> Self {
         let mut product = vec![BigInt::ZERO; (self.0.len() + other.0.len()).saturating_sub(1)];
         for (i, a) in self.0.iter().enumerate() {
             for (j, b) in other.0.iter().enumerate() {
@@ -139,7 +139,7 @@ impl Integer {
     }
 
     /// Divides by the greatest common divisor of the coefficients.
-    fn primitive(self) -> Self {
+    fn primitive_part(self) -> Self {
         let content = self.0.iter().fold(BigInt::ZERO, |divisor, value| common_divisor(divisor, value.clone()));
         if content.sign() == Sign::NoSign || content == BigInt::from(1) {
             return self;
@@ -167,12 +167,12 @@ impl Integer {
 
     /// Returns the primitive greatest common divisor; neither polynomial may be zero.
     fn common_factor(&self, other: &Self) -> Self {
-        if self.coprime_modulo_prime(other) {
+        if self.is_coprime_modulo_prime(other) {
             return Self::one();
         }
-        let (mut a, mut b) = (self.clone().primitive(), other.clone().primitive());
+        let (mut a, mut b) = (self.clone().primitive_part(), other.clone().primitive_part());
         while !b.0.is_empty() {
-            let rest = a.pseudo_remainder(&b).primitive();
+            let rest = a.pseudo_remainder(&b).primitive_part();
             a = std::mem::replace(&mut b, rest);
         }
         if a.degree() == 0 { Self::one() } else { a }
@@ -180,21 +180,21 @@ impl Integer {
 
     /// Returns whether the two have no common zero modulo [`MODULUS`]. This proves that they have none at all, because
     /// reduction keeps a common factor's degree if it keeps a leading coefficient.
-    fn coprime_modulo_prime(&self, other: &Self) -> bool {
-        let reduced = |polynomial: &Self| -> Vec<u64> { polynomial.0.iter().map(modulo_prime).collect() };
+    fn is_coprime_modulo_prime(&self, other: &Self) -> bool {
+        let reduced = |polynomial: &Self| -> Vec<u64> { polynomial.0.iter().map(reduce_modulo_prime).collect() };
         let (mut a, mut b) = (reduced(self), reduced(other));
         if a.last() == Some(&0) || b.last() == Some(&0) {
             return false;
         }
         while !b.is_empty() {
-            reduce(&mut a, &b);
+            reduce_polynomial(&mut a, &b);
             std::mem::swap(&mut a, &mut b);
         }
         a.len() == 1
     }
 
     /// Returns the quotient by a primitive divisor without remainder.
-    fn divided_by(&self, divisor: &Self) -> Self {
+    fn divide_by(&self, divisor: &Self) -> Self {
         if divisor.degree() == 0 {
             return self.clone();
         }
@@ -213,14 +213,14 @@ impl Integer {
     }
 
     /// Returns a polynomial with the same zeros, each simple; `self` must not be zero.
-    pub(super) fn square_free(&self) -> Self {
+    pub(super) fn square_free_part(&self) -> Self {
         let derivative = self.derivative();
-        if derivative.0.is_empty() { self.clone() } else { self.divided_by(&self.common_factor(&derivative)) }
+        if derivative.0.is_empty() { self.clone() } else { self.divide_by(&self.common_factor(&derivative)) }
     }
 
     /// Returns a square-free polynomial with the zeros of both; both must be square-free and not zero.
-    pub(super) fn united(&self, other: &Self) -> Self {
-        self.times(&other.divided_by(&self.common_factor(other)))
+    pub(super) fn unite(&self, other: &Self) -> Self {
+        self.multiply(&other.divide_by(&self.common_factor(other)))
     }
 }
 
@@ -233,24 +233,24 @@ fn common_divisor(mut a: BigInt, mut b: BigInt) -> BigInt {
     if a.sign() == Sign::Minus { -a } else { a }
 }
 
-fn modulo_prime(value: &BigInt) -> u64 {
+fn reduce_modulo_prime(value: &BigInt) -> u64 {
     let rest = u64::try_from(BigInt::from(value.magnitude() % MODULUS)).unwrap_or(0);
     if value.sign() == Sign::Minus && rest != 0 { MODULUS - rest } else { rest }
 }
 
-fn product(a: u64, b: u64) -> u64 {
+fn multiply_modulo_prime(a: u64, b: u64) -> u64 {
     u64::try_from(u128::from(a) * u128::from(b) % u128::from(MODULUS)).unwrap_or(0)
 }
 
 /// Computes the remainder of `a` by `b` (last entry not 0) up to a factor, modulo [`MODULUS`].
-fn reduce(a: &mut Vec<u64>, b: &[u64]) {
+fn reduce_polynomial(a: &mut Vec<u64>, b: &[u64]) {
     while a.len() >= b.len() {
         let (top, leading, shift) = (a[a.len() - 1], b[b.len() - 1], a.len() - b.len());
         for value in a.iter_mut() {
-            *value = product(*value, leading);
+            *value = multiply_modulo_prime(*value, leading);
         }
         for (i, &value) in b.iter().enumerate() {
-            a[i + shift] = (a[i + shift] + MODULUS - product(top, value)) % MODULUS;
+            a[i + shift] = (a[i + shift] + MODULUS - multiply_modulo_prime(top, value)) % MODULUS;
         }
         while a.last() == Some(&0) {
             a.pop();

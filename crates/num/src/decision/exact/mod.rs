@@ -11,8 +11,8 @@ mod dyadic;
 mod integer;
 mod isolate;
 
-use dyadic::Dyadic;
-use integer::Integer;
+use dyadic::DyadicNumber;
+use integer::IntegerPolynomial;
 use isolate::{Root, roots_within_step};
 
 /// Whether and when `tau` is reached, for coefficients without errors.
@@ -43,37 +43,40 @@ pub enum ExactAnswer {
 /// * Without polynomials, or with one that is empty or zero, the answer is [`ExactAnswer::Never`].
 /// * `c t^m` keeps its sign; the original treats it as nowhere positive (root-finder.md 17.1).
 #[must_use]
-pub fn exact_first(polynomials: &[&[f64]]) -> ExactAnswer {
+pub fn find_exact_first_time(polynomials: &[&[f64]]) -> ExactAnswer {
     if polynomials.iter().any(|list| list.iter().any(|value| !value.is_finite())) {
         return ExactAnswer::NotFinite;
     }
-    let polynomials: Vec<Integer> = polynomials.iter().map(|list| Integer::from_doubles(list)).collect();
-    if polynomials.is_empty() || polynomials.iter().any(Integer::never_positive_after_zero) {
+    let polynomials: Vec<IntegerPolynomial> =
+        polynomials.iter().map(|list| IntegerPolynomial::from_doubles(list)).collect();
+    if polynomials.is_empty() || polynomials.iter().any(IntegerPolynomial::is_never_positive_after_zero) {
         return ExactAnswer::Never;
     }
     // A polynomial that is positive on the whole interval (0, infinity) does not matter.
-    let polynomials: Vec<Integer> = polynomials.into_iter().filter(|one| !one.always_positive_after_zero()).collect();
-    let zeros = polynomials.iter().fold(Integer::one(), |product, one| product.united(&one.square_free()));
+    let polynomials: Vec<IntegerPolynomial> =
+        polynomials.into_iter().filter(|one| !one.is_always_positive_after_zero()).collect();
+    let zeros =
+        polynomials.iter().fold(IntegerPolynomial::one(), |product, one| product.unite(&one.square_free_part()));
     let mut roots = roots_within_step(&zeros);
-    if zeros.sign_at(&Dyadic::one()) == 0 {
-        roots.push(Root::point(Dyadic::one()));
+    if zeros.sign_at(&DyadicNumber::one()) == 0 {
+        roots.push(Root::from_point(DyadicNumber::one()));
     }
     first_time(&polynomials, &zeros, &mut roots)
 }
 
 /// Finds the first gap between the roots in which all are positive, or the first root with every polynomial positive on
 /// at least one of its sides.
-fn first_time(polynomials: &[Integer], zeros: &Integer, roots: &mut [Root]) -> ExactAnswer {
-    let mut before = signs_at(polynomials, &first_sample(roots));
+fn first_time(polynomials: &[IntegerPolynomial], zeros: &IntegerPolynomial, roots: &mut [Root]) -> ExactAnswer {
+    let mut before = are_positive_at(polynomials, &first_sample_time(roots));
     if before.iter().all(|&positive| positive) {
         return ExactAnswer::First { time: [0.0; 2], touching: false };
     }
     let mut found: Option<usize> = None;
     let mut touching = true;
     for index in 0..roots.len() {
-        let after = match sample_after(roots, index) {
-            Some(time) => signs_at(polynomials, &time),
-            None => polynomials.iter().map(Integer::positive_right_of_one).collect(),
+        let after = match sample_time_after(roots, index) {
+            Some(time) => are_positive_at(polynomials, &time),
+            None => polynomials.iter().map(IntegerPolynomial::is_positive_right_of_one).collect(),
         };
         let meet = before.iter().zip(&after).all(|(&left, &right)| left || right);
         if found.is_none() && meet {
@@ -90,21 +93,21 @@ fn first_time(polynomials: &[Integer], zeros: &Integer, roots: &mut [Root]) -> E
 }
 
 /// Returns whether each polynomial is positive at a time.
-fn signs_at(polynomials: &[Integer], time: &Dyadic) -> Vec<bool> {
+fn are_positive_at(polynomials: &[IntegerPolynomial], time: &DyadicNumber) -> Vec<bool> {
     polynomials.iter().map(|polynomial| polynomial.sign_at(time) > 0).collect()
 }
 
 /// Returns a time between 0 and the first root, at which no polynomial is zero.
-fn first_sample(roots: &[Root]) -> Dyadic {
+fn first_sample_time(roots: &[Root]) -> DyadicNumber {
     match roots.first() {
-        None => Dyadic::one(),
-        Some(root) if root.is_point() => root.lo.midpoint(&Dyadic::ZERO),
+        None => DyadicNumber::one(),
+        Some(root) if root.is_point() => root.lo.midpoint(&DyadicNumber::ZERO),
         Some(root) => root.lo.clone(),
     }
 }
 
 /// Returns a time between root `index` and the next, or 1, at which no polynomial is zero; `None` after a root at 1.
-fn sample_after(roots: &[Root], index: usize) -> Option<Dyadic> {
+fn sample_time_after(roots: &[Root], index: usize) -> Option<DyadicNumber> {
     let root = &roots[index];
     if root.is_one() {
         return None;
@@ -113,7 +116,7 @@ fn sample_after(roots: &[Root], index: usize) -> Option<Dyadic> {
         return Some(root.hi.clone());
     }
     Some(match roots.get(index + 1) {
-        None => root.hi.midpoint(&Dyadic::one()),
+        None => root.hi.midpoint(&DyadicNumber::one()),
         Some(next) if next.is_point() => root.hi.midpoint(&next.lo),
         Some(next) => next.lo.clone(),
     })

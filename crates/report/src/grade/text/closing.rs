@@ -4,8 +4,8 @@ use super::{Text, verdict_style};
 use crate::foreign::{one_line, strip_control_characters};
 use crate::{
     grade::{
-        by_cause, change_lines, count_wrong, describe_speed, describe_worth, format_optional_points, format_points,
-        likely_mistakes,
+        by_cause, change_lines, count_wrong, describe_speed, describe_worth, find_likely_mistakes,
+        format_optional_points, format_points,
     },
     number::format_count,
     style::Look,
@@ -38,7 +38,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::describe_located(located)));
     }
     // A fault of the whole submission explains what is wrong in all groups.
-    let mistakes = if grade.unfit().is_some() { Vec::new() } else { likely_mistakes(grade) };
+    let mistakes = if grade.unfit().is_some() { Vec::new() } else { find_likely_mistakes(grade) };
     let wrong = count_wrong(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
         if number == 0 {

@@ -20,7 +20,7 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
             continue;
         }
         let traits = pair_traits(pairs, times);
-        let words = |traits: &[PairTrait]| traits.iter().map(|one| one.what.clone()).collect::<Vec<_>>();
+        let words = |traits: &[PairTrait]| traits.iter().map(|one| one.description.clone()).collect::<Vec<_>>();
         let share = describe_share(pairs, times);
         let is_same = |other: &&mut PairFault<'_>| {
             other.times == times && other.share == share && words(&other.traits) == words(&traits)
@@ -43,7 +43,7 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
     }
     let of_fault = |fault: &PairFault<'_>| {
         let names = fault.kinds.iter().map(|pairs| kind_name(pairs.kind)).collect::<Vec<_>>().join(" and ");
-        let common: Vec<&str> = fault.traits.iter().map(|one| one.what.as_str()).collect();
+        let common: Vec<&str> = fault.traits.iter().map(|one| one.description.as_str()).collect();
         let told = format!("{} {names} are {}", fault.share, happens(fault.times));
         if common.is_empty() {
             return told;
@@ -65,7 +65,7 @@ pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
             format!("Pairs that are {}: {}. Reported once: {}.", happens(fault.times), count(wrong), count(right));
         let traits = fault.traits.iter().map(|one| {
             let others = format_count(right, "other");
-            format!("{}: also in {} of {others}.", one.exact, count(one.right))
+            format!("{}: also in {} of {others}.", one.exact_condition, count(one.right_pairs))
         });
         std::iter::once(numbers).chain(traits).collect::<Vec<_>>()
     };

@@ -29,7 +29,7 @@ const PARTICLE_EXTRAS: &[Letter] = &[
     letter("r2", 0, |inputs| inputs.radii[1]),
     letter("|x21|", 0, |inputs| length(inputs.x21())),
     letter("|d21|", 1, |inputs| length(inputs.d21())),
-    letter("1", 0, |_| BoundedValue::exact(1.0)),
+    letter("1", 0, |_| BoundedValue::from_exact(1.0)),
     letter("x1.x1", 0, |inputs| inputs.x[0].dot(inputs.x[0])),
     letter("x1.x2", 0, |inputs| inputs.x[0].dot(inputs.x[1])),
     letter("x2.x2", 0, |inputs| inputs.x[1].dot(inputs.x[1])),
@@ -55,7 +55,7 @@ const QUARTIC_EXTRAS: &[Letter] = &[
 ];
 
 const ALPHA_EXTRAS: &[Letter] = &[
-    letter("1", 0, |_| BoundedValue::exact(1.0)),
+    letter("1", 0, |_| BoundedValue::from_exact(1.0)),
     letter("x21.x21", 0, |inputs| inputs.x21().dot(inputs.x21())),
     letter("d21.x21", 1, |inputs| inputs.d21().dot(inputs.x21())),
     letter("d21.d21", 2, |inputs| inputs.d21().dot(inputs.d21())),
@@ -78,7 +78,7 @@ const ALPHA_EXTRAS: &[Letter] = &[
 pub const HALF_PLANE_EXTRAS: &[Letter] = &[
     letter("|n|", 0, |inputs| length(inputs.normal())),
     letter("r", 0, |inputs| inputs.radii[0]),
-    letter("1", 0, |_| BoundedValue::exact(1.0)),
+    letter("1", 0, |_| BoundedValue::from_exact(1.0)),
     letter("(x.n)", 0, |inputs| inputs.x[0].dot(inputs.normal())),
     letter("(p.n)", 0, |inputs| inputs.x[1].dot(inputs.normal())),
     letter("(dx.dx)", 2, |inputs| inputs.d[0].dot(inputs.d[0])),

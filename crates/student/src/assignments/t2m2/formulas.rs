@@ -64,7 +64,7 @@ impl Formula {
 /// Returns the product of the letters with these indices.
 pub fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
     match letters {
-        [] => BoundedValue::exact(1.0),
+        [] => BoundedValue::from_exact(1.0),
         [first, rest @ ..] => rest.iter().fold(values[*first], |product, &letter| product * values[letter]),
     }
 }

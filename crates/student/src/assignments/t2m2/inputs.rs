@@ -25,8 +25,10 @@ impl Inputs {
     /// Creates the inputs of a motion.
     pub fn new(motion: &PairMotion) -> Self {
         let way = BoundedPointMotion::from;
-        let still =
-            |point: Vec2| BoundedPointMotion { start: BoundedVector::exact(point), shift: BoundedVector::default() };
+        let still = |point: Vec2| BoundedPointMotion {
+            start: BoundedVector::from_exact(point),
+            shift: BoundedVector::default(),
+        };
         let (ways, radii) = match *motion {
             PairMotion::Particles { centers: [one, two], radii } => ([way(one), way(two), still(Vec2::zeros())], radii),
             PairMotion::Edge { center, ends: [first, second], radii } => ([center, first, second].map(way), radii),
@@ -34,7 +36,7 @@ impl Inputs {
                 ([way(center), still(point), still(normal)], [radius, 0.0])
             }
         };
-        let radii = radii.map(BoundedValue::exact);
+        let radii = radii.map(BoundedValue::from_exact);
         let reach = radii[0] + radii[1];
         let (x, d) = (ways.map(|way| way.start), ways.map(|way| way.shift));
         let normal_square =

@@ -15,7 +15,7 @@ use fosssim_num::bounded::{BoundedValue, BoundedVector};
 const PP: PairKind = PairKind::ParticleParticle;
 const PE: PairKind = PairKind::ParticleEdge;
 const PH: PairKind = PairKind::ParticleHalfPlane;
-const ZERO_VECTOR: BoundedVector = BoundedVector { x: BoundedValue::exact(0.0), y: BoundedValue::exact(0.0) };
+const ZERO_VECTOR: BoundedVector = BoundedVector { x: BoundedValue::from_exact(0.0), y: BoundedValue::from_exact(0.0) };
 
 /// Returns the positions at the end of the step.
 fn end_positions(inputs: &Inputs) -> [BoundedVector; 3] {
@@ -28,7 +28,7 @@ fn square(value: BoundedValue) -> BoundedValue {
 
 /// Removes one component from all vectors.
 fn drop_component(inputs: &mut Inputs, component: fn(&mut BoundedVector) -> &mut BoundedValue) {
-    inputs.x.iter_mut().chain(&mut inputs.d).for_each(|vector| *component(vector) = BoundedValue::exact(0.0));
+    inputs.x.iter_mut().chain(&mut inputs.d).for_each(|vector| *component(vector) = BoundedValue::from_exact(0.0));
     inputs.normal_square = inputs.normal().dot(inputs.normal());
 }
 
@@ -95,7 +95,7 @@ named_edits! {
     RADIUS_NOT_SQUARED "radius-not-squared" [PP, PE, PH] 2.7:
         OtherInputs(|inputs| inputs.square = inputs.radii[0] + inputs.radii[1])
         => "The radius, or the sum of the radii, is not squared" => "R is used instead of R^2";
-    NO_RADIUS "no-radius" [PP, PE, PH] 2.9: OtherInputs(|inputs| inputs.square = BoundedValue::exact(0.0))
+    NO_RADIUS "no-radius" [PP, PE, PH] 2.9: OtherInputs(|inputs| inputs.square = BoundedValue::from_exact(0.0))
         => "The radii are missing" => "0 is used instead of R^2";
     FIRST_RADIUS_ONLY "first-radius-only" [PP, PE] 2.75: OtherInputs(|inputs| inputs.square = square(inputs.radii[0]))
         => "The second object's radius is missing" => "r1^2 is used instead of R^2 = (r1 + r2)^2";
@@ -124,7 +124,9 @@ named_edits! {
         inputs.normal_square = inputs.normal().dot(inputs.normal());
     })
         => "The half-plane's point and its normal are exchanged" => "p and n are exchanged";
-    NO_NORMAL_SQUARE "no-normal-square" [PH] 2.6: OtherInputs(|inputs| inputs.normal_square = BoundedValue::exact(1.0))
+    NO_NORMAL_SQUARE "no-normal-square" [PH] 2.6: OtherInputs(|inputs| {
+        inputs.normal_square = BoundedValue::from_exact(1.0);
+    })
         => "The radius term is right only for unit normals" => "r^2 is used instead of r^2 (n.n)";
     NORMAL_LENGTH "normal-length" [PH] 2.7: OtherInputs(|inputs| inputs.normal_square = root(inputs.normal_square))
         => "The radius term has the length of the normal instead of its square"

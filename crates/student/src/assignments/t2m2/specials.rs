@@ -25,7 +25,7 @@ fn closest_at_start(inputs: &Inputs) -> (BoundedVector, BoundedVector) {
 /// Returns the overlap without the edge's squared length as a factor of the radii.
 pub(super) fn radius_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
     let quartic = &readings(Subject::EdgeOverlap)[0];
-    let mut list = quartic.polynomial(&Inputs { square: BoundedValue::exact(0.0), ..*inputs });
+    let mut list = quartic.polynomial(&Inputs { square: BoundedValue::from_exact(0.0), ..*inputs });
     list[quartic.degree] = list[quartic.degree] + inputs.square;
     list
 }
@@ -33,7 +33,7 @@ pub(super) fn radius_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
 /// Returns the polynomial alpha < 1 without the edge's squared length as a factor.
 pub(super) fn one_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
     let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
-    vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), BoundedValue::exact(1.0) - w0.dot(e0)]
+    vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), BoundedValue::from_exact(1.0) - w0.dot(e0)]
 }
 
 /// Returns the overlap with a half-plane as a difference of lengths.

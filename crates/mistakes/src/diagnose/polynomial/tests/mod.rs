@@ -251,7 +251,7 @@ fn the_tables_are_the_formulas_of_the_fair_rules() {
                         if is_other { judged.other_form(number).expect("an edge") } else { judged.polynomial(number) };
                     let values: Vec<f64> = right.iter().map(|coefficient| coefficient.value).collect();
                     let table = formula.polynomial(&inputs);
-                    assert!(compare::matches(&table, &values, 1.0), "{subject:?}: {table:?} and {right:?}");
+                    assert!(compare::polynomial_matches(&table, &values, 1.0), "{subject:?}: {table:?} and {right:?}");
                     assert_eq!(table.len(), right.len());
                 }
             }

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::sim::bodies::Bodies;
 use fosssim_num::{
-    certificate::lanes::{excludes_edge, excludes_two, is_small, search_ends},
+    certificate::lanes::{excludes_edge, excludes_two_polynomials, is_small, search_terminates},
     lanes::{Lanes, Plane, Simd},
     vector::Vec2,
 };
@@ -215,10 +215,10 @@ fn store_edges<S: Simd>(
     for lanes in &all {
         largest = largest.max(lanes.abs());
     }
-    let ends = search_ends(&distance) & search_ends(&approach);
+    let ends = search_terminates(&distance) & search_terminates(&approach);
     let fours = [[o0, o1, o2, o3], [o4, f0, f1, f2], [s0, s1, s2, a0], [a1, a2, a3, a4]];
     Lanes::store_by_lane(&fours, stride, rows);
-    let known = small + (!excludes_edge(ends, distance, beyond_first, before_second, approach)).or_zero(1.0);
+    let known = small + (!excludes_edge(ends, distance, beyond_first, before_second, approach)).select_or_zero(1.0);
     Lanes::store_by_lane(&[[a5, known, known, known]], stride, &mut rows[16..]);
     largest
 }
@@ -232,10 +232,10 @@ fn store_short_rows<S: Simd>(
     rows: &mut [f64],
     mut largest: Lanes<S>,
 ) -> Lanes<S> {
-    let excluded = excludes_two(overlap, approach);
+    let excluded = excludes_two_polynomials(overlap, approach);
     let ([a, b, c], [d, e]) = (overlap, approach);
     let all = [a, b, c, d, e];
-    let known = small_coefficient_bits(simd, &all) + (!excluded).or_zero(1.0);
+    let known = small_coefficient_bits(simd, &all) + (!excluded).select_or_zero(1.0);
     for lanes in &all {
         largest = largest.max(lanes.abs());
     }
@@ -248,7 +248,7 @@ fn store_short_rows<S: Simd>(
 fn small_coefficient_bits<S: Simd, const COEFFICIENTS: usize>(simd: S, all: &[Lanes<S>; COEFFICIENTS]) -> Lanes<S> {
     let mut known = Lanes::splat(simd, BIT_SUM_BASE);
     for (number, coefficient) in all.iter().enumerate() {
-        known = known + is_small(*coefficient).or_zero(f64::from(2_u32 << number));
+        known = known + is_small(*coefficient).select_or_zero(f64::from(2_u32 << number));
     }
     known
 }

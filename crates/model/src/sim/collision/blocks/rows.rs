@@ -14,7 +14,7 @@ use crate::sim::{
     search::SearchCounts,
     step_error::StepError,
 };
-use fosssim_num::lanes::{Lanes, MAX_LANES, Simd, Work};
+use fosssim_num::lanes::{LaneWork, Lanes, MAX_LANES, Simd};
 use std::ops::Range;
 
 /// The pairs from a position on, up to the next hit.
@@ -30,7 +30,7 @@ pub(super) struct HitSearch<'a> {
 /// Memory for the rows of a block of particles.
 type Rows = [f64; SHORT_ROW_LENGTH * MAX_LANES];
 
-impl Work for HitSearch<'_> {
+impl LaneWork for HitSearch<'_> {
     type Output = Result<Option<Impulse>, StepError>;
 
     #[inline(always)]

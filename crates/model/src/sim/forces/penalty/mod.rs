@@ -21,7 +21,7 @@ use crate::{
     },
 };
 use fosssim_num::{
-    tolerances::CONTEST_DISTANCE,
+    tolerances::CONTEST_MIN_DISTANCE,
     vector::{length, unit, vector_at},
 };
 pub use pairs::PenaltyPairs;
@@ -82,7 +82,7 @@ impl PenaltyParameters {
     /// Returns whether bodies at `distance` repel each other.
     #[inline]
     fn repels(self, distance: f64, reach: f64) -> bool {
-        distance < reach && !(self.is_contest && distance < CONTEST_DISTANCE)
+        distance < reach && !(self.is_contest && distance < CONTEST_MIN_DISTANCE)
     }
 
     fn particle_particle(self, bodies: &Bodies, i: usize, j: usize, x: &[f64], gradient: &mut [f64]) {
@@ -91,7 +91,7 @@ impl PenaltyParameters {
         let reach = (r1 + r2) + self.thickness;
         let l = length(n);
         // In the contest a NaN length repels, but its square compares false.
-        let repels = if self.is_contest { n.dot(&n) < reach * reach && !(l < CONTEST_DISTANCE) } else { l < reach };
+        let repels = if self.is_contest { n.dot(&n) < reach * reach && !(l < CONTEST_MIN_DISTANCE) } else { l < reach };
         if repels {
             let u = if self.is_contest { unit(unit(n)) } else { unit(n) };
             let s = self.stiffness * (((l - r1) - r2) - self.thickness);

@@ -1,10 +1,10 @@
 //! Corrects the explanations of one trace with those of all traces of its program.
-use super::{About, Explanation, WrongPairs, is_named_in, naming::as_row};
+use super::{About, Explanation, WrongPairs, is_named_in, naming::explain_by_row};
 use fosssim_student::find;
 
 /// The explanations of one trace, after all traces of its program are known.
 #[derive(Debug, Clone, Default, PartialEq)]
-pub struct SettledTrace {
+pub struct CorrectedTrace {
     /// The explanations, the likeliest first.
     pub explanations: Vec<Explanation>,
     /// The number of explanations at the front that come from all traces together; the others come from this trace
@@ -17,18 +17,18 @@ pub struct SettledTrace {
 /// replace the trace's own, but keep its counts and its example. Otherwise the trace keeps its own explanations,
 /// without those that are `refuted`.
 #[must_use]
-pub fn settle_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> SettledTrace {
-    let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreed(own, one));
+pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[String]) -> CorrectedTrace {
+    let of_all = likely.iter().filter(|one| !one.is_not_finite()).flat_map(|one| find_agreement(own, one));
     let mut explanations: Vec<Explanation> = of_all.collect();
     if explanations.is_empty() {
-        return SettledTrace {
+        return CorrectedTrace {
             explanations: own.iter().filter_map(|one| remove_refuted(one, refuted)).collect(),
             agreed: 0,
         };
     }
     // The step from which values are not finite is reported for each trace.
     explanations.extend(own.iter().find(|one| one.is_not_finite()).cloned());
-    SettledTrace { agreed: explanations.len(), explanations }
+    CorrectedTrace { agreed: explanations.len(), explanations }
 }
 
 /// Returns the explanation without refuted parts; `None` if no part is left.
@@ -38,12 +38,12 @@ fn remove_refuted(one: &Explanation, refuted: &[String]) -> Option<Explanation> 
         return Some(Explanation { same_as: same_as.collect(), ..one.clone() });
     }
     let row = find(&same_as.next()?)?;
-    Some(as_row(one, row, same_as.collect()))
+    Some(explain_by_row(one, row, same_as.collect()))
 }
 
 /// Returns an explanation from all traces together, as this trace shows it; empty if the trace's own explanations do
 /// not name it.
-fn find_agreed(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
+fn find_agreement(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
     if likely.is_unexplained() {
         // A trace may show several of the mistakes.
         return Vec::new();
@@ -95,16 +95,16 @@ mod tests {
         let traces = [vec![alone.clone()], vec![short.clone()], vec![short.clone()]];
         let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely.iter().map(|one| one.key.as_str()).collect::<Vec<_>>(), ["loop-one-fewer"]);
-        let of_first = settle_trace(&traces[0], &likely, &[]);
+        let of_first = correct_trace(&traces[0], &likely, &[]);
         assert_eq!((of_first.agreed, of_first.explanations.len()), (1, 1));
         let told = &of_first.explanations[0];
         assert_eq!((told.key.as_str(), told.reproduced, told.samples), ("loop-one-fewer", 2, 2));
         // A trace that they do not explain keeps its own explanations.
         assert_eq!(
-            settle_trace(std::slice::from_ref(&other), &likely, &[]),
-            SettledTrace { explanations: vec![other], agreed: 0 }
+            correct_trace(std::slice::from_ref(&other), &likely, &[]),
+            CorrectedTrace { explanations: vec![other], agreed: 0 }
         );
-        assert_eq!(settle_trace(&[], &likely, &[]), SettledTrace::default());
+        assert_eq!(correct_trace(&[], &likely, &[]), CorrectedTrace::default());
     }
 
     #[test]
@@ -112,7 +112,7 @@ mod tests {
         let traces = [vec![named("pp-empty", &[], (3, 3))], vec![named("ph-empty", &[], (3, 3))]];
         let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
         assert_eq!(likely[0].key, Explanation::UNFINISHED);
-        let of_second = settle_trace(&traces[1], &likely, &[]);
+        let of_second = correct_trace(&traces[1], &likely, &[]);
         assert_eq!((of_second.agreed, of_second.explanations), (1, traces[1].clone()));
     }
 }

@@ -20,7 +20,7 @@ pub(crate) enum PendingCause {
 /// Polynomials of one kind, form and cause. The polynomials are right if the program's factor for their kind is
 /// within the bounds.
 #[derive(Debug, Clone, Copy)]
-pub(crate) struct Pending {
+pub(crate) struct PendingPolynomials {
     /// The kind of pair and the number of the polynomial.
     pub place: (PairKind, usize),
     /// The form in which the polynomials are right; any form, if there is only one.
@@ -30,17 +30,17 @@ pub(crate) struct Pending {
     /// The number of polynomials in the step.
     pub count: u64,
     /// The largest lower bound of the factors, and the finding for smaller factors.
-    pub least: (f64, Finding),
+    pub least_factor: (f64, Finding),
     /// The smallest upper bound of the factors, and the finding for larger factors.
-    pub most: (f64, Finding),
+    pub greatest_factor: (f64, Finding),
 }
 
-impl Pending {
+impl PendingPolynomials {
     /// Returns the finding for program factors between `low` and `high`, if there is one.
     pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
         // Factors are known only up to rounding errors.
         let room = 1e-9;
-        let (least, most) = (self.least, self.most);
+        let (least, most) = (self.least_factor, self.greatest_factor);
         if !(least.0 <= high * (1.0 + room)) {
             return Some(least.1);
         }
@@ -48,7 +48,7 @@ impl Pending {
     }
 
     /// Returns whether the polynomials count in a trace of form `form`.
-    pub fn is_of(&self, form: Form) -> bool {
+    pub fn counts_for_form(&self, form: Form) -> bool {
         self.form == Form::Either || self.form == form
     }
 }

@@ -1,16 +1,16 @@
 //! Serializes numbers so that they read back bit for bit, except the bits of a NaN.
 //!
 //! Formats such as JSON have no infinity and no NaN, so these are written as C++ prints them ([`format_g`]). Fields of
-//! numbers use `#[serde(with = "fosssim_num::written")]`.
-use super::{printed::format_g, vector::Vec2};
+//! numbers use `#[serde(with = "fosssim_num::number_serde")]`.
+use super::{number_format::format_g, vector::Vec2};
 use serde::{Deserialize, Deserializer, Serialize, Serializer, de::DeserializeOwned, de::Error};
 use std::borrow::Cow;
 
 /// A number in its serialized form, in which `nan`, `-nan`, `inf` and `-inf` are texts.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Number(pub f64);
+pub struct WrittenNumber(pub f64);
 
-impl Serialize for Number {
+impl Serialize for WrittenNumber {
     fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         match self.0.is_finite() {
             true => serializer.serialize_f64(self.0),
@@ -19,22 +19,22 @@ impl Serialize for Number {
     }
 }
 
-impl<'de> Deserialize<'de> for Number {
+impl<'de> Deserialize<'de> for WrittenNumber {
     fn deserialize<D: Deserializer<'de>>(deserializer: D) -> Result<Self, D::Error> {
         #[derive(Deserialize)]
         #[serde(untagged)]
-        enum Either {
+        enum NumberOrText {
             Number(f64),
             Text(String),
         }
-        match Either::deserialize(deserializer)? {
-            Either::Number(number) => Ok(Self(number)),
-            Either::Text(text) => text.parse().map(Self).map_err(D::Error::custom),
+        match NumberOrText::deserialize(deserializer)? {
+            NumberOrText::Number(number) => Ok(Self(number)),
+            NumberOrText::Text(text) => text.parse().map(Self).map_err(D::Error::custom),
         }
     }
 }
 
-impl schemars::JsonSchema for Number {
+impl schemars::JsonSchema for WrittenNumber {
     fn schema_name() -> Cow<'static, str> {
         "Number".into()
     }
@@ -58,41 +58,41 @@ pub trait WrittenNumbers: Sized {
 }
 
 impl WrittenNumbers for f64 {
-    type Form = Number;
-    fn write(&self) -> Number {
-        Number(*self)
+    type Form = WrittenNumber;
+    fn write(&self) -> WrittenNumber {
+        WrittenNumber(*self)
     }
-    fn read(form: Number) -> Self {
+    fn read(form: WrittenNumber) -> Self {
         form.0
     }
 }
 
 impl WrittenNumbers for [f64; 2] {
-    type Form = [Number; 2];
-    fn write(&self) -> [Number; 2] {
-        self.map(Number)
+    type Form = [WrittenNumber; 2];
+    fn write(&self) -> [WrittenNumber; 2] {
+        self.map(WrittenNumber)
     }
-    fn read(form: [Number; 2]) -> Self {
+    fn read(form: [WrittenNumber; 2]) -> Self {
         form.map(|number| number.0)
     }
 }
 
 impl WrittenNumbers for Vec2 {
-    type Form = [Number; 2];
-    fn write(&self) -> [Number; 2] {
-        [Number(self.x), Number(self.y)]
+    type Form = [WrittenNumber; 2];
+    fn write(&self) -> [WrittenNumber; 2] {
+        [WrittenNumber(self.x), WrittenNumber(self.y)]
     }
-    fn read([x, y]: [Number; 2]) -> Self {
+    fn read([x, y]: [WrittenNumber; 2]) -> Self {
         Self::new(x.0, y.0)
     }
 }
 
 impl WrittenNumbers for Vec<f64> {
-    type Form = Vec<Number>;
-    fn write(&self) -> Vec<Number> {
-        self.iter().copied().map(Number).collect()
+    type Form = Vec<WrittenNumber>;
+    fn write(&self) -> Vec<WrittenNumber> {
+        self.iter().copied().map(WrittenNumber).collect()
     }
-    fn read(form: Vec<Number>) -> Self {
+    fn read(form: Vec<WrittenNumber>) -> Self {
         form.into_iter().map(|number| number.0).collect()
     }
 }

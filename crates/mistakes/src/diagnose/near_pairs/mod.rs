@@ -18,9 +18,9 @@ use fosssim_model::{
     sim::{Pair, PairKind},
 };
 use fosssim_student::Area;
-use geometry::{Moment, PlacedPair};
+use geometry::{PlacedPair, StepGeometry};
 use std::collections::BTreeSet;
-use traits::Variant;
+use traits::TraitVariant;
 
 /// The maximum number of examined wrong steps; for right steps four times as many.
 const MAX_STEPS: usize = 24;
@@ -43,26 +43,26 @@ const MAX_TRAITS: usize = 3;
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PairTrait {
     /// The trait in plain words.
-    pub what: String,
+    pub description: String,
     /// The trait's exact form.
-    pub exact: String,
+    pub exact_condition: String,
     /// The number of right pairs that also have the trait.
-    pub right: u64,
+    pub right_pairs: u64,
     /// The number of wrong pairs that lack the trait.
     pub exceptions: u64,
 }
 
 /// Returns the near pairs that wrong steps omit or apply twice, and those that they apply once.
 pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
-    let steps = scan.wrong.iter().take(MAX_STEPS).chain(scan.right.iter().take(MAX_STEPS / 4));
+    let steps = scan.wrong_steps.iter().take(MAX_STEPS).chain(scan.right_steps.iter().take(MAX_STEPS / 4));
     let mut left = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);
-    let variants: Vec<Variant> = traits::variants().collect();
+    let variants: Vec<TraitVariant> = traits::variants().collect();
     let of_kind = |kind| PairCounts { kind, times: [0; 3], traits: vec![[0; 3]; variants.len()] };
     let mut wrong = WrongPairs { first: None, kinds: PairKind::ALL.map(of_kind).into() };
     let mut seen: BTreeSet<(Pair, usize)> = BTreeSet::new();
     for kept in steps {
         let own = reference.step(kept.step, &kept.before, &mut ())?;
-        let moment = Moment::new(scene, &kept.before);
+        let moment = StepGeometry::new(scene, &kept.before);
         for (pair, times) in count_applications(scene, &kept.before, own, &kept.records.end.state) {
             if left == 0 || !seen.insert((pair, times)) {
                 continue;
@@ -71,7 +71,7 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
             if times != 1 && wrong.first.is_none_or(|(_, step)| kept.step < step) {
                 wrong.first = Some((pair, kept.step));
             }
-            let near = PlacedPair { moment: &moment, pair };
+            let near = PlacedPair { geometry: &moment, pair };
             let counts = &mut wrong.kinds[pair.kind as usize];
             counts.times[times] += 1;
             let held = variants.iter().zip(&mut counts.traits).filter(|(one, _)| one.holds(&near));
@@ -79,7 +79,7 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
         }
     }
     wrong.first?;
-    let samples = scan.wrong.len() as u64;
+    let samples = scan.wrong_steps.len() as u64;
     Some(Explanation {
         details: vec![Detail::Look(Area::NearPairs)],
         reproduced: samples,
@@ -95,25 +95,25 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
 pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
     let (wrong, right) = (pairs.times[times], pairs.times[1]);
     let counts = traits::variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
-    let is_telling = |(one, exceptions, with): &(Variant, u64, u64)| {
+    let is_telling = |(one, exceptions, with): &(TraitVariant, u64, u64)| {
         // The probability that as many randomly chosen pairs all have the trait.
         let chance: f64 = (1..=wrong - exceptions).map(|i| (with + i) as f64 / (right + i) as f64).product();
         PAIRS_PER_EXCEPTION * exceptions <= wrong
             && 2 * with <= right
-            && chance * (one.row.variants() as f64) < MAX_CHANCE_PROBABILITY
+            && chance * (one.row.variant_count() as f64) < MAX_CHANCE_PROBABILITY
     };
     let telling: Vec<_> = counts.filter(is_telling).collect();
     let Some(fewest) = telling.iter().map(|(_, exceptions, with)| exceptions + with).min() else { return Vec::new() };
-    let mut told: Vec<(Variant, u64, u64)> = Vec::new();
+    let mut told: Vec<(TraitVariant, u64, u64)> = Vec::new();
     for one in telling.into_iter().filter(|(_, exceptions, with)| exceptions + with == fewest) {
         // Of a row's variants, the strictest one is reported.
         told.retain(|other| !std::ptr::eq(other.0.row, one.0.row));
         told.push(one);
     }
-    let as_told = |(one, exceptions, right): (Variant, u64, u64)| PairTrait {
-        what: one.describe(),
-        exact: one.exact(),
-        right,
+    let as_told = |(one, exceptions, right): (TraitVariant, u64, u64)| PairTrait {
+        description: one.describe(),
+        exact_condition: one.exact_condition(),
+        right_pairs: right,
         exceptions,
     };
     told.into_iter().take(MAX_TRAITS).map(as_told).collect()

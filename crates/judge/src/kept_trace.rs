@@ -9,7 +9,7 @@ pub const MAX_KEPT_BYTES: usize = 64 << 20;
 #[derive(Debug)]
 pub struct KeptTrace {
     bytes: Vec<u8>,
-    most: usize,
+    max_bytes: usize,
     has_ended: bool,
     is_cut: bool,
 }
@@ -18,11 +18,11 @@ impl KeptTrace {
     /// Creates a store for at most `most` bytes; a small number suits a trace that is not needed again.
     #[must_use]
     pub const fn new(most: usize) -> Self {
-        Self { bytes: Vec::new(), most, has_ended: false, is_cut: false }
+        Self { bytes: Vec::new(), max_bytes: most, has_ended: false, is_cut: false }
     }
 
     /// Returns a reader of the trace that keeps what it reads.
-    pub fn reader<R>(&mut self, trace: R) -> KeepingReader<'_, R> {
+    pub fn keep_from<R>(&mut self, trace: R) -> KeepingReader<'_, R> {
         KeepingReader { kept: self, inner: trace }
     }
 
@@ -49,7 +49,7 @@ pub struct KeepingReader<'k, R> {
 impl<R: Read> Read for KeepingReader<'_, R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         let count = self.inner.read(buffer)?;
-        let room = self.kept.most - self.kept.bytes.len();
+        let room = self.kept.max_bytes - self.kept.bytes.len();
         self.kept.bytes.extend_from_slice(&buffer[..count.min(room)]);
         self.kept.is_cut |= count > room;
         self.kept.has_ended |= count == 0 && !buffer.is_empty();
@@ -67,10 +67,10 @@ mod tests {
         for (most, is_whole) in [(101, true), (100, true), (99, false), (0, false)] {
             let mut kept = KeptTrace::new(most);
             let mut start = [0; 30];
-            kept.reader(&trace[..]).read_exact(&mut start).expect("there");
+            kept.keep_from(&trace[..]).read_exact(&mut start).expect("there");
             assert!(!kept.is_whole());
             let mut rest = Vec::new();
-            kept.reader(&trace[30..]).read_to_end(&mut rest).expect("there");
+            kept.keep_from(&trace[30..]).read_to_end(&mut rest).expect("there");
             assert_eq!((start.as_slice(), rest.as_slice()), (&trace[..30], &trace[30..]));
             assert_eq!((kept.bytes(), kept.is_whole()), (&trace[..most.min(100)], is_whole));
         }

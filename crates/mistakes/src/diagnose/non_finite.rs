@@ -7,9 +7,9 @@ use super::{
     Explanation,
     about::About,
     fault::{NanStage, NotFinite},
-    sampling::{Capture, Reference, Source, StepFrames, StepReader, bodies},
+    sampling::{Capture, Reference, Source, StepFrames, StepReader, pair_particles},
 };
-use fosssim_judge::kept::KeptTrace;
+use fosssim_judge::kept_trace::KeptTrace;
 use fosssim_model::{
     scene::{Collision, Integrator, Scene},
     sim::{Pair, State, pairs},
@@ -19,15 +19,15 @@ use fosssim_model::{
 /// Returns the explanation of the first value of a kept trace that is not finite, and no other explanation. It is empty
 /// if all values are finite, or if the reference has the same values.
 #[must_use]
-pub fn not_finite(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
-    find_in_trace(scene, trace.into())
+pub fn explain_not_finite(scene: &Scene, trace: &KeptTrace) -> Vec<Explanation> {
+    explain_source(scene, trace.into())
 }
 
 /// Explains the records of a source.
-pub(super) fn find_in_trace(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
+pub(super) fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     let (mut steps, mut reference, mut first) =
-        (StepReader::new(scene, source), Reference::new(scene), FirstNotFinite::default());
-    first.begin(&steps.frames);
+        (StepReader::new(scene, source), Reference::new(scene), NonFiniteSearch::default());
+    first.check_first_record(&steps.frames);
     while let Some(step) = steps.next() {
         first.examine_step(&mut reference, scene, step, &steps.frames);
     }
@@ -36,18 +36,18 @@ pub(super) fn find_in_trace(scene: &Scene, source: Source<'_>) -> Vec<Explanatio
 
 /// Finds the first value that is not finite, step by step.
 #[derive(Default)]
-pub(super) struct FirstNotFinite {
+pub(super) struct NonFiniteSearch {
     is_found: bool,
     /// The first such value; `None` if the reference has the same value.
-    told: Option<NotFinite>,
+    explanation: Option<NotFinite>,
 }
 
-impl FirstNotFinite {
+impl NonFiniteSearch {
     /// Checks the first record.
-    pub(super) fn begin(&mut self, frames: &StepFrames) {
-        if let Some(wild) = wild_value(&frames.before.state) {
+    pub(super) fn check_first_record(&mut self, frames: &StepFrames) {
+        if let Some(wild) = find_non_finite_value(&frames.before.state) {
             let told = NotFinite { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan(), ends: false };
-            *self = Self { is_found: true, told: Some(told) };
+            *self = Self { is_found: true, explanation: Some(told) };
         }
     }
 
@@ -61,43 +61,44 @@ impl FirstNotFinite {
         frames: &StepFrames,
     ) {
         if self.is_found {
-            let is_finite = || ![&frames.before, &frames.mid, &frames.end].into_iter().any(is_wild);
-            if let Some(told) = &mut self.told
+            let is_finite = || ![&frames.before, &frames.mid, &frames.end].into_iter().any(has_non_finite_value);
+            if let Some(told) = &mut self.explanation
                 && !told.ends
             {
                 told.ends = is_finite();
             }
             return;
         }
-        let begins = wild_value(&frames.before.state).is_none() && (is_wild(&frames.mid) || is_wild(&frames.end));
+        let begins = find_non_finite_value(&frames.before.state).is_none()
+            && (has_non_finite_value(&frames.mid) || has_non_finite_value(&frames.end));
         if begins {
-            *self = Self { is_found: true, told: find_in_step(reference, scene, step, frames) };
+            *self = Self { is_found: true, explanation: find_in_step(reference, scene, step, frames) };
         }
     }
 
     /// Returns the explanation of the found value.
     pub(super) fn explanation(self) -> Option<Explanation> {
-        self.told.map(|found| Explanation::about(Explanation::NOT_FINITE, About::NotFinite(found)))
+        self.explanation.map(|found| Explanation::about(Explanation::NOT_FINITE, About::NotFinite(found)))
     }
 }
 
 /// Returns the first value that is not finite.
-fn wild_value(state: &State) -> Option<f64> {
+fn find_non_finite_value(state: &State) -> Option<f64> {
     state.positions.iter().chain(&state.velocities).copied().find(|value| !value.is_finite())
 }
 
-fn wild_impulse(impulse: &LoggedImpulse) -> Option<f64> {
+fn find_non_finite_impulse(impulse: &LoggedImpulse) -> Option<f64> {
     [impulse.normal.x, impulse.normal.y, impulse.time].into_iter().find(|value| !value.is_finite())
 }
 
-fn wild_polynomial(polynomials: &PolynomialLog) -> Option<(usize, f64)> {
+fn find_non_finite_polynomial(polynomials: &PolynomialLog) -> Option<(usize, f64)> {
     let first = polynomials.coefficients.iter().position(|value| !value.is_finite())?;
     Some((polynomials.coefficient_ends.partition_point(|&end| end <= first), polynomials.coefficients[first]))
 }
 
-fn is_wild(frame: &LenientFrame) -> bool {
-    wild_value(&frame.state).is_some()
-        || frame.impulses.iter().any(|impulse| wild_impulse(impulse).is_some())
+fn has_non_finite_value(frame: &LenientFrame) -> bool {
+    find_non_finite_value(&frame.state).is_some()
+        || frame.impulses.iter().any(|impulse| find_non_finite_impulse(impulse).is_some())
         || frame.polynomials.coefficients.iter().any(|value| !value.is_finite())
 }
 
@@ -106,7 +107,7 @@ fn is_wild(frame: &LenientFrame) -> bool {
 fn find_in_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
     let mut capture = Capture::new(&scene.collision);
     let has_result = reference.step(step, &frames.before.state, &mut capture).is_some();
-    let (stage, value) = stage(scene, frames)?;
+    let (stage, value) = find_stage(scene, frames)?;
     let is_implicit = matches!(scene.integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler);
     let stage = if is_implicit && stage == NanStage::Motion { NanStage::ImplicitMotion } else { stage };
     let found = NotFinite { step: Some(step), stage, is_nan: value.is_nan(), ends: false };
@@ -114,27 +115,30 @@ fn find_in_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames:
 }
 
 /// Returns the first stage with results that are not finite, with the first such value.
-fn stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
+fn find_stage(scene: &Scene, frames: &StepFrames) -> Option<(NanStage, f64)> {
     let StepFrames { mid, end, .. } = frames;
-    let polynomial = wild_polynomial(&end.polynomials);
-    let state = wild_value(&end.state);
+    let polynomial = find_non_finite_polynomial(&end.polynomials);
+    let state = find_non_finite_value(&end.state);
     let of_state = if end.impulses.is_empty() { NanStage::Motion } else { NanStage::Responses };
     match scene.collision {
         Collision::None | Collision::Penalty { .. } => Some((NanStage::Motion, state?)),
         Collision::Simple { .. } => {
-            let of_contact = end.impulses.iter().find_map(wild_impulse).map(|value| (NanStage::ContactVectors, value));
+            let of_contact =
+                end.impulses.iter().find_map(find_non_finite_impulse).map(|value| (NanStage::ContactVectors, value));
             of_contact.or_else(|| Some((of_state, state?)))
         }
         Collision::ContinuousTime { .. } => find_stage_in_single_pass(scene, end, polynomial)
-            .or_else(|| Some((of_state, wild_value(&mid.state).or(state)?))),
+            .or_else(|| Some((of_state, find_non_finite_value(&mid.state).or(state)?))),
         Collision::Hybrid { .. } => {
             let pass: usize = pairs(scene).counts().iter().map(|(kind, count)| count * kind.polynomial_count()).sum();
             let middle = mid.polynomials.len();
-            let kind = |index: usize| pair_at(scene, index % pass.max(1)).map(|(_, pair)| pair.kind);
+            let kind = |index: usize| locate_pair(scene, index % pass.max(1)).map(|(_, pair)| pair.kind);
             match polynomial {
                 Some((index, value)) if index < middle.min(pass) => Some((NanStage::Detection(kind(index)), value)),
                 Some((index, value)) if index < middle => Some((NanStage::ImpulseRounds, value)),
-                _ if wild_value(&mid.state).is_some() => Some((NanStage::ImpulseRounds, wild_value(&mid.state)?)),
+                _ if find_non_finite_value(&mid.state).is_some() => {
+                    Some((NanStage::ImpulseRounds, find_non_finite_value(&mid.state)?))
+                }
                 Some((index, value)) if index < middle + pass => {
                     Some((NanStage::Detection(kind(index - middle)), value))
                 }
@@ -153,26 +157,26 @@ fn find_stage_in_single_pass(
 ) -> Option<(NanStage, f64)> {
     let all = pairs(scene);
     let place = |contact: &LoggedImpulse| contact.pair().and_then(|pair| all.iter().position(|one| one == pair));
-    let contact = end.impulses.iter().find_map(|contact| Some((place(contact), wild_impulse(contact)?)));
+    let contact = end.impulses.iter().find_map(|contact| Some((place(contact), find_non_finite_impulse(contact)?)));
     let Some((index, value)) = polynomial else { return contact.map(|(_, value)| (NanStage::ContactVectors, value)) };
-    let Some((at, pair)) = pair_at(scene, index) else { return Some((NanStage::Detection(None), value)) };
+    let Some((at, pair)) = locate_pair(scene, index) else { return Some((NanStage::Detection(None), value)) };
     if let Some((Some(place), value)) = contact
         && place < at
     {
         return Some((NanStage::ContactVectors, value));
     }
     // An earlier response in the pass has made the positions of its bodies not finite.
-    let own = bodies(scene, pair);
+    let own = pair_particles(scene, pair);
     let has_moved = |contact: &LoggedImpulse| {
         place(contact).is_some_and(|place| place < at)
-            && contact.pair().is_some_and(|other| bodies(scene, other).iter().any(|body| own.contains(body)))
+            && contact.pair().is_some_and(|other| pair_particles(scene, other).iter().any(|body| own.contains(body)))
     };
     let is_moved = end.impulses.iter().any(has_moved);
     Some((if is_moved { NanStage::Responses } else { NanStage::Detection(Some(pair.kind)) }, value))
 }
 
 /// Returns the pair of a polynomial of a pass, with its index in the pass.
-fn pair_at(scene: &Scene, index: usize) -> Option<(usize, Pair)> {
+fn locate_pair(scene: &Scene, index: usize) -> Option<(usize, Pair)> {
     let mut first = 0;
     pairs(scene).iter().enumerate().find(|(_, pair)| {
         first += pair.kind.polynomial_count();

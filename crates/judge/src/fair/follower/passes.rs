@@ -9,7 +9,7 @@ use fosssim_model::{
 impl<'a> Follower<'a> {
     /// Counts the logged passes before and after the mid record.
     pub(super) fn count_passes(&mut self) {
-        let (Some(mid), per_pass) = (self.records.mid, self.context.per_pass) else { return };
+        let (Some(mid), per_pass) = (self.records.mid, self.context.polynomials_per_pass) else { return };
         let (before, all) = (mid.polynomials.len(), self.records.end.polynomials.len());
         if per_pass == 0 {
             return;
@@ -20,31 +20,37 @@ impl<'a> Follower<'a> {
     }
 
     /// Compares the numbers of passes.
-    pub(super) fn settle_passes(&mut self) {
+    pub(super) fn compare_pass_counts(&mut self) {
         let Some(_) = self.records.mid else { return };
-        if self.context.per_pass == 0 && self.records.end.polynomials.is_empty() {
+        if self.context.polynomials_per_pass == 0 && self.records.end.polynomials.is_empty() {
             return;
         }
         let Some(logged) = self.logged_passes else {
-            let (expected, actual) =
-                ((self.passes[0] + self.passes[1]) * self.context.per_pass, self.records.end.polynomials.len());
-            self.add_finding(FindingDetail::PolynomialCount { expected, actual, per_pass: self.context.per_pass });
-            self.tainted[1] = true;
+            let (expected, actual) = (
+                (self.passes[0] + self.passes[1]) * self.context.polynomials_per_pass,
+                self.records.end.polynomials.len(),
+            );
+            self.add_finding(FindingDetail::PolynomialCount {
+                expected,
+                actual,
+                per_pass: self.context.polynomials_per_pass,
+            });
+            self.has_error[1] = true;
             return;
         };
         for (index, part) in [Part::Impulses, Part::Geometric].into_iter().enumerate() {
             // An earlier error may decide whether the geometric part runs, so its passes are not counted again.
-            let follows = index == 1 && self.tainted[0];
+            let follows = index == 1 && self.has_error[0];
             if logged[index] != self.passes[index] {
-                if !self.tainted[index] && !follows {
+                if !self.has_error[index] && !follows {
                     self.add_finding(FindingDetail::PassCount {
                         part,
                         expected: self.passes[index],
                         actual: logged[index],
                     });
                 }
-                self.tainted[index] = true;
-                self.tainted[1] = true;
+                self.has_error[index] = true;
+                self.has_error[1] = true;
             }
         }
     }
@@ -53,14 +59,14 @@ impl<'a> Follower<'a> {
         matches!(self.context.scene.collision, Collision::Hybrid { .. })
     }
 
-    pub(super) fn part(&self) -> usize {
+    pub(super) fn pass_part(&self) -> usize {
         usize::from(matches!(self.pass.stage, Stage::Geometric { .. }))
     }
 
     /// Returns the end positions of the step that this pass certainly uses, because the trace contains them.
     pub(super) fn known_positions(&self) -> Option<&'a [f64]> {
         let [before, after] = self.logged_passes?;
-        let number = self.passes[self.part()];
+        let number = self.passes[self.pass_part()];
         match self.pass.stage {
             Stage::Impulses { .. } if number == before && after == 0 => Some(&self.records.mid?.state.positions),
             Stage::Geometric { .. } if number == after => Some(&self.records.end.state.positions),
@@ -70,6 +76,6 @@ impl<'a> Follower<'a> {
 
     /// Returns whether a response or the failsafe has moved an object of the pair.
     pub(super) fn is_moved(&self, pair: Pair) -> bool {
-        self.context.particles(pair).into_iter().flatten().any(|particle| self.moved[particle])
+        self.context.particles(pair).into_iter().flatten().any(|particle| self.moved_particles[particle])
     }
 }

@@ -1,10 +1,10 @@
 //! The impulse rounds of `hybrid`: their number, the positions that they use, and their result.
 //!
 //! The polynomials of a round show the positions at its beginning, which are the result of the previous round.
-use super::{Explanation, RATIO_TOLERANCE, events::StepFacts, observation, responses::Responses};
+use super::{Explanation, RATIO_TOLERANCE, events::StepFacts, new_observation, responses::Responses};
 use crate::diagnose::{
     LoopEnd, Quantity, StageDetail, StageFault, WrongGeometric, WrongNumber,
-    sampling::{ROUND_OFF, bodies},
+    sampling::{ROUND_OFF, pair_particles},
 };
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -15,20 +15,20 @@ use std::cmp::Ordering;
 /// Returns the fault in the impulse rounds, if their single contacts are right.
 pub(super) fn explain(scene: &Scene, facts: &[StepFacts], responses: &Responses) -> Option<Explanation> {
     let Collision::Hybrid { max_iterations, .. } = scene.collision else { return None };
-    let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong && !facts.has_right_middle()).collect();
+    let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.is_wrong && !facts.has_right_mid_state()).collect();
     if wrong.is_empty() {
         return None;
     }
     explain_rounds(&wrong, max_iterations)
         .or_else(|| explain_prediction(scene, &wrong))
-        .or_else(|| handed_over(&wrong, responses))
+        .or_else(|| explain_handover(&wrong, responses))
         .or_else(|| explain_later_rounds(scene, &wrong))
 }
 
 /// Returns the fault in the decision whether the geometric part follows, if the impulse rounds are right.
 pub(super) fn explain_geometric(facts: &[StepFacts]) -> Option<Explanation> {
     let (mut left, mut superfluous, mut followed) = (0, 0, 0);
-    for facts in facts.iter().filter(|facts| facts.has_right_middle()) {
+    for facts in facts.iter().filter(|facts| facts.has_right_mid_state()) {
         let ran_out = facts.passes.iter().any(|pass| matches!(pass.stage, Stage::Geometric { .. }));
         match (ran_out, facts.logged_passes()) {
             (true, Some((_, 0))) => left += 1,
@@ -42,14 +42,16 @@ pub(super) fn explain_geometric(facts: &[StepFacts]) -> Option<Explanation> {
         (0, _) => (WrongGeometric::Superfluous, superfluous),
         _ => (WrongGeometric::Left { always: followed == 0 }, left),
     };
-    Some(observation(StageFault::Geometric(wrong), Vec::new(), count))
+    Some(new_observation(StageFault::Geometric(wrong), Vec::new(), count))
 }
 
 /// Returns the explanation of steps that log right polynomials, but too many or too few of them.
 fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanation> {
     let mut seen: Vec<(usize, usize)> = Vec::new();
     for facts in wrong {
-        let (Some((passes, _)), Some((expected, actual))) = (facts.logged_passes(), facts.middles()) else { continue };
+        let (Some((passes, _)), Some((expected, actual))) = (facts.logged_passes(), facts.mid_states()) else {
+            continue;
+        };
         let counts = (expected.polynomials.len() / facts.pass_size(), passes);
         if counts.0 != counts.1 && facts.right_polynomials >= expected.polynomials.len().min(actual.polynomials.len()) {
             seen.push(counts);
@@ -72,7 +74,7 @@ fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanati
             details.push(line);
         }
     }
-    Some(observation(StageFault::Rounds(number), details, seen.len()))
+    Some(new_observation(StageFault::Rounds(number), details, seen.len()))
 }
 
 /// Returns the explanation of steps whose later rounds use the integrator's positions instead of those after the first
@@ -80,43 +82,43 @@ fn explain_rounds(wrong: &[&StepFacts], max_iterations: i32) -> Option<Explanati
 fn explain_prediction(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanation> {
     let mut count = 0;
     for facts in wrong {
-        let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.middles()) else { return None };
+        let (Some((passes, _)), Some((_, middle))) = (facts.logged_passes(), facts.mid_states()) else { return None };
         if passes < 2 {
             continue;
         }
         let prediction = &facts.prediction.positions;
         let is_again = |pass| facts.detects(scene, pass, prediction, |_| true);
         let is_right = facts.right_polynomials >= 2 * facts.pass_size();
-        if is_right || !(1..passes).all(is_again) || differs(prediction, &middle.state.positions).is_none() {
+        if is_right || !(1..passes).all(is_again) || find_difference(prediction, &middle.state.positions).is_none() {
             return None;
         }
         count += 1;
     }
-    (count > 0).then(|| observation(StageFault::RoundsOfPrediction, Vec::new(), count))
+    (count > 0).then(|| new_observation(StageFault::RoundsOfPrediction, Vec::new(), count))
 }
 
 /// Returns the index of the first number that differs by more than round-off.
-fn differs(ours: &[f64], theirs: &[f64]) -> Option<usize> {
+fn find_difference(ours: &[f64], theirs: &[f64]) -> Option<usize> {
     let within = ROUND_OFF.state.max(RATIO_TOLERANCE * 1e-3);
     ours.iter().zip(theirs).position(|(ours, theirs)| !((ours - theirs).abs() <= within * (1.0 + ours.abs())))
 }
 
 /// Returns the explanation of steps whose polynomials are right but whose state after the loop is wrong.
-fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanation> {
+fn explain_handover(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanation> {
     let (mut ran_out, mut ended, mut positions, mut velocities) = (0, 0, false, false);
     let mut or_response = false;
     for facts in wrong {
-        let Some((expected, actual)) = facts.middles() else { continue };
+        let Some((expected, actual)) = facts.mid_states() else { continue };
         let all = expected.polynomials.len();
         if actual.polynomials.len() != all || facts.right_polynomials < all {
             continue;
         }
-        positions |= differs(&expected.state.positions, &actual.state.positions).is_some();
-        velocities |= differs(&expected.state.velocities, &actual.state.velocities).is_some();
+        positions |= find_difference(&expected.state.positions, &actual.state.positions).is_some();
+        velocities |= find_difference(&expected.state.velocities, &actual.state.velocities).is_some();
         let has_geometric = facts.passes.iter().any(|pass| matches!(pass.stage, Stage::Geometric { .. }));
         *(if has_geometric { &mut ran_out } else { &mut ended }) += 1;
         // The polynomials depend on the positions before the last pass, but not on velocities.
-        or_response |= !facts.hits.iter().all(|hit| responses.is_right(hit.pair.kind));
+        or_response |= !facts.hits.iter().all(|hit| responses.are_right(hit.pair.kind));
     }
     let count = ran_out + ended;
     if count == 0 || 2 * count < wrong.len() {
@@ -132,7 +134,7 @@ fn handed_over(wrong: &[&StepFacts], responses: &Responses) -> Option<Explanatio
         (0, _) => Some(LoopEnd::Settled),
         _ => None,
     };
-    Some(observation(StageFault::HandedOver { quantity, when, or_response }, Vec::new(), count))
+    Some(new_observation(StageFault::HandedOver { quantity, when, or_response }, Vec::new(), count))
 }
 
 /// The contacts of the first round, as seen from the second detection of a step.
@@ -152,8 +154,9 @@ impl SecondPass {
         let Some(second) = facts.passes.get(1) else { return };
         let first: Vec<Pair> = facts.hits.iter().filter(|hit| hit.pass == 0).map(|hit| hit.pair).collect();
         for pair in &first {
-            let own = bodies(scene, *pair);
-            let touches = |other: &Pair| other != pair && bodies(scene, *other).iter().any(|one| own.contains(one));
+            let own = pair_particles(scene, *pair);
+            let touches =
+                |other: &Pair| other != pair && pair_particles(scene, *other).iter().any(|one| own.contains(one));
             let leads_to = |positions: &[f64]| facts.detects(scene, 1, positions, |other| other == *pair);
             self.contacts += 1;
             if leads_to(&second.end) {
@@ -177,7 +180,7 @@ fn explain_later_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanati
         return None;
     }
     if reaches(2) {
-        return Some(observation(StageFault::BehindFirstRound, Vec::new(), wrong.len()));
+        return Some(new_observation(StageFault::BehindFirstRound, Vec::new(), wrong.len()));
     }
     let mut seen = SecondPass::default();
     wrong.iter().filter(|facts| facts.logged_passes().is_some_and(|(passes, _)| passes > 1)).for_each(|facts| {
@@ -190,5 +193,5 @@ fn explain_later_rounds(scene: &Scene, wrong: &[&StepFacts]) -> Option<Explanati
         SecondPass { wrong: 0, right, .. } if right > 0 => StageFault::LaterRounds,
         _ => StageFault::FirstRound,
     };
-    Some(observation(fault, Vec::new(), wrong.len()))
+    Some(new_observation(fault, Vec::new(), wrong.len()))
 }

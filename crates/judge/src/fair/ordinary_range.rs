@@ -2,7 +2,7 @@
 use super::formulas::extent;
 use fosssim_model::{scene::Scene, sim::State};
 use fosssim_num::{
-    tolerances::FAIR_REACH,
+    tolerances::FAIR_REACH_FACTOR,
     vector::{Vec2, vector_at},
 };
 
@@ -37,28 +37,28 @@ impl OrdinaryRange {
     /// Returns the first particle whose state is outside the range.
     pub(super) fn find_outside(&self, state: &State) -> Option<usize> {
         let particles = state.positions.len() / 2;
-        let is_far = |value: f64, most: f64| !(value <= FAIR_REACH * most);
+        let is_far = |value: f64, most: f64| !(value <= FAIR_REACH_FACTOR * most);
         let far = (0..particles).find(|&particle| {
             is_far(extent(vector_at(&state.positions, particle)), self.position)
                 || is_far(extent(vector_at(&state.velocities, particle)), self.velocity)
         });
-        far.or_else(|| (spread(places(state)) * FAIR_REACH < self.spread).then_some(0))
+        far.or_else(|| (spread(positions(state)) * FAIR_REACH_FACTOR < self.spread).then_some(0))
     }
 
     /// Extends the range so that it contains a state that is known to be ordinary.
     pub(super) fn widen(&mut self, state: &State) {
-        self.position = self.position.max(largest(&state.positions));
-        self.velocity = self.velocity.max(largest(&state.velocities));
-        self.spread = self.spread.min(spread(places(state)));
+        self.position = self.position.max(largest_size(&state.positions));
+        self.velocity = self.velocity.max(largest_size(&state.velocities));
+        self.spread = self.spread.min(spread(positions(state)));
     }
 }
 
-fn places(state: &State) -> impl Iterator<Item = Vec2> {
+fn positions(state: &State) -> impl Iterator<Item = Vec2> {
     (0..state.positions.len() / 2).map(|particle| vector_at(&state.positions, particle))
 }
 
 /// Returns the size of the largest vector, for axes of any direction.
-pub(super) fn largest(vectors: &[f64]) -> f64 {
+pub(super) fn largest_size(vectors: &[f64]) -> f64 {
     let all = (0..vectors.len() / 2).map(|index| extent(vector_at(vectors, index)));
     all.fold(0.0, f64::max)
 }

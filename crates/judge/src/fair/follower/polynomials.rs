@@ -1,10 +1,10 @@
 //! Judges a step's polynomials.
-use super::{Follower, SeenCall};
+use super::{CallMotion, Follower};
 use crate::{
     fair::{
         compare::{Match, Mismatch, compare, shows_factor},
         formulas::{BoundedPairMotion, ExpectedPolynomials},
-        polynomial::{LoggedPolynomial, PolynomialJudgement, compare_first, wrong_polynomial},
+        polynomial::{LoggedPolynomial, PolynomialJudgement, compare_first, wrong_polynomial_finding},
     },
     finding::{FindingDetail, PolynomialPlace, Role},
 };
@@ -12,7 +12,7 @@ use fosssim_model::sim::{Pair, PairKind};
 use fosssim_num::bounded::BoundedValue;
 
 /// The comparison of each polynomial of a call; the rest of the array is unused.
-type Results = [Result<Match, Mismatch>; PairKind::MAX_POLYNOMIALS];
+type PolynomialComparisons = [Result<Match, Mismatch>; PairKind::MAX_POLYNOMIALS];
 
 impl<'a> Follower<'a> {
     /// Compares a pair's logged polynomials, which begin at `index`, with the expected ones. Returns whether they are
@@ -26,10 +26,10 @@ impl<'a> Follower<'a> {
     ) -> bool {
         let count = at_once.len();
         // The first approach polynomial that shows its form is compared with bounds.
-        let is_form_known = pair.kind != PairKind::ParticleEdge || self.judged.course_form.is_some();
+        let is_form_known = pair.kind != PairKind::ParticleEdge || self.judgement.course_form.is_some();
         if is_form_known && at_once.iter().all(Option::is_some) {
             for (number, found) in at_once.iter().flatten().enumerate() {
-                self.judged.take_share_and_factor(pair.kind, number, found);
+                self.judgement.add_share_and_factor(pair.kind, number, found);
             }
             return true;
         }
@@ -40,11 +40,11 @@ impl<'a> Follower<'a> {
         };
         let mut seen = motion(q_end, bounds);
         let mut expected = seen.polynomials();
-        let matches = |expected: &ExpectedPolynomials, at_once: &[Option<Match>]| -> Results {
+        let matches = |expected: &ExpectedPolynomials, at_once: &[Option<Match>]| -> PolynomialComparisons {
             std::array::from_fn(|number| match at_once.get(number) {
-                None => Ok(Match { scale: None, share: 0.0 }),
+                None => Ok(Match { scale: None, tolerance_share: 0.0 }),
                 Some(Some(found)) => Ok(*found),
-                Some(None) => compare_first(&self.judged, expected, &self.logged_polynomial(pair, index, number)),
+                Some(None) => compare_first(&self.judgement, expected, &self.logged_polynomial(pair, index, number)),
             })
         };
         let mut results = matches(&expected, at_once);
@@ -66,26 +66,27 @@ impl<'a> Follower<'a> {
             let is_known = self.known_positions().is_some()
                 || result.is_err() && self.is_proven(&expected, &results, pair, index, number);
             // After an error that moves the particles, their positions are unknown.
-            let is_reached = is_known || !self.tainted[self.part()];
-            let pended = self.judged.pending_count();
-            let said = self.judged.note(&expected, &logged, result, is_reached);
-            let hangs = self.judged.pending_count() > pended;
+            let is_reached = is_known || !self.has_error[self.pass_part()];
+            let pended = self.judgement.pending_count();
+            let said = self.judgement.note_evidence(&expected, &logged, result, is_reached);
+            let hangs = self.judgement.pending_count() > pended;
             match said {
                 PolynomialJudgement::Right => {}
                 PolynomialJudgement::RightForm => has_right_approach = true,
                 PolynomialJudgement::Hangs => {
-                    has_right_approach |= expected.other_form(number).is_some() && self.judged.right_form.is_some();
+                    has_right_approach |= expected.other_form(number).is_some() && self.judgement.right_form.is_some();
                     is_right &= is_reached;
                 }
                 PolynomialJudgement::Wrong(mismatch) => {
                     is_right = false;
-                    self.charge_polynomial(&logged, &expected, mismatch, is_known);
+                    self.report_wrong_polynomial(&logged, &expected, mismatch, is_known);
                 }
             }
             // Positions after a response have the round-off of the response.
-            self.judged.hangs |= self.is_moved(pair) && (hangs || matches!(said, PolynomialJudgement::Wrong(_)));
+            self.judgement.has_endless_search |=
+                self.is_moved(pair) && (hangs || matches!(said, PolynomialJudgement::Wrong(_)));
         }
-        self.call.seen = Some(SeenCall { motion: seen, has_right_approach });
+        self.call.motion = Some(CallMotion { motion: seen, has_right_approach });
         is_right
     }
 
@@ -93,7 +94,7 @@ impl<'a> Follower<'a> {
     fn logged_polynomial(&self, pair: Pair, index: usize, number: usize) -> LoggedPolynomial<'a> {
         let (role, index) = (Role::from_number(pair.kind, number), index + number);
         let place = PolynomialPlace { pass: self.pass, pair, role, index };
-        LoggedPolynomial { place, number, list: self.records.end.polynomials.get(index) }
+        LoggedPolynomial { place, number, coefficients: self.records.end.polynomials.get(index) }
     }
 
     /// Returns whether another polynomial of the pair that comes from the same coordinates is right, so that the pair
@@ -102,7 +103,7 @@ impl<'a> Follower<'a> {
     fn is_proven(
         &self,
         expected: &ExpectedPolynomials,
-        results: &Results,
+        results: &PolynomialComparisons,
         pair: Pair,
         index: usize,
         number: usize,
@@ -111,7 +112,7 @@ impl<'a> Follower<'a> {
             PairKind::ParticleEdge => 3 - number,
             PairKind::ParticleParticle | PairKind::ParticleHalfPlane => 1 - number,
         };
-        let list = self.logged_polynomial(pair, index, other).list;
+        let list = self.logged_polynomial(pair, index, other).coefficients;
         let proves = |expected: &[BoundedValue], result: Result<Match, Mismatch>| {
             result.is_ok_and(|found| found.scale.is_some()) && shows_factor(expected, list)
         };
@@ -119,42 +120,42 @@ impl<'a> Follower<'a> {
             || expected.other_form(other).is_some_and(|right| proves(right, compare(right, list, &[1.0])))
     }
 
-    fn charge_polynomial(
+    fn report_wrong_polynomial(
         &mut self,
         logged: &LoggedPolynomial<'_>,
         expected: &ExpectedPolynomials,
         mismatch: Mismatch,
         is_known: bool,
     ) {
-        let (part, kind, number) = (self.part(), logged.place.pair.kind, logged.number);
+        let (part, kind, number) = (self.pass_part(), logged.place.pair.kind, logged.number);
         if !is_known {
-            if self.tainted[part] {
+            if self.has_error[part] {
                 return;
             }
             if self.is_moved(logged.place.pair) {
                 // A formula that is known to be wrong is wrong at all positions.
                 if !self.wrong_formulas[kind][number] {
                     self.add_finding(FindingDetail::PassPositions { place: logged.place });
-                    self.tainted[part] = true;
+                    self.has_error[part] = true;
                 }
                 return;
             }
         }
         self.wrong_formulas[kind][number] = true;
-        self.add_finding(wrong_polynomial(logged, expected.polynomial(number), mismatch));
+        self.add_finding(wrong_polynomial_finding(logged, expected.polynomial(number), mismatch));
     }
 
     /// Notes the form of an approach polynomial that is identical to the reference's.
     pub(super) fn note_course_form(&mut self, pair: Pair, q_start: &[f64], q_end: &[f64], index: usize) {
-        if pair.kind == PairKind::ParticleEdge && self.judged.course_form.is_none() {
+        if pair.kind == PairKind::ParticleEdge && self.judgement.course_form.is_none() {
             let expected = BoundedPairMotion::for_pair(self.context.scene, pair, q_start, q_end).polynomials();
-            self.judged.note_course_form(&expected, &self.logged_polynomial(pair, index, 3));
+            self.judgement.note_course_form(&expected, &self.logged_polynomial(pair, index, 3));
         }
     }
 
     /// Returns the place of the call's first polynomial.
-    pub(super) fn place(&self, pair: Pair) -> PolynomialPlace {
-        let index = self.next.map_or(0, |next| next - pair.kind.polynomial_count());
+    pub(super) fn call_place(&self, pair: Pair) -> PolynomialPlace {
+        let index = self.next_polynomial.map_or(0, |next| next - pair.kind.polynomial_count());
         PolynomialPlace { pass: self.pass, pair, role: Role::Overlap, index }
     }
 }

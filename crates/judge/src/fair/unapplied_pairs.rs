@@ -59,7 +59,7 @@ pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &S
         };
         Some((one.pair, times))
     });
-    wrong.chain(near.right.iter().map(|pair| (*pair, 1))).collect()
+    wrong.chain(near.right_pairs.iter().map(|pair| (*pair, 1))).collect()
 }
 
 /// Returns the pairs that explain wrong velocities of a step from `before`, and the reference's result with the same
@@ -102,8 +102,8 @@ struct NearPairs {
     candidates: Vec<NearPair>,
     /// The pairs whose force was certainly applied once, because a particle has a right velocity and its forces do not
     /// cancel out.
-    right: Vec<Pair>,
-    /// The result of [`layer_of_contest`].
+    right_pairs: Vec<Pair>,
+    /// The result of [`contest_layer`].
     layer: Option<(Scene, BTreeSet<Pair>)>,
 }
 
@@ -115,7 +115,7 @@ impl NearPairs {
             return None;
         }
         let h = scene.time_step;
-        let layer = layer_of_contest(scene, &before.positions);
+        let layer = contest_layer(scene, &before.positions);
         let mut terms = match &layer {
             Some((all_pairs, _)) => PenaltyTerms::for_scene(all_pairs)?,
             None => PenaltyTerms::for_scene(scene)?,
@@ -157,7 +157,7 @@ impl NearPairs {
         for (index, candidate) in candidates.iter().enumerate() {
             candidate.changes().iter().for_each(|(particle, _)| of_particle[*particle].push(index));
         }
-        settle(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
+        find_unique_choice(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
         // A pair is kept only if it explains all its particles. Its removal may affect its neighbors.
         while let Some(index) = candidates.iter().position(|candidate| {
             let is_named = candidate.excess.is_some_and(|excess| excess != 0.0);
@@ -166,13 +166,13 @@ impl NearPairs {
             let excess = candidates[index].excess.take().unwrap_or(0.0);
             candidates[index].changes().iter().for_each(|&(particle, change)| rest[particle] += excess * change);
         }
-        Some(Self { candidates, right, layer })
+        Some(Self { candidates, right_pairs: right, layer })
     }
 }
 
 /// Creates, for a contest with a layer, the scene with the force between all pairs. Also returns the pairs whose force
 /// is due at positions `x`, because they overlap without their layers or one object is a half-plane.
-fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
+fn contest_layer(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)> {
     let Collision::Penalty { stiffness, thickness, detection: CollisionDetection::Contest } = scene.collision else {
         return None;
     };
@@ -193,7 +193,7 @@ fn layer_of_contest(scene: &Scene, x: &[f64]) -> Option<(Scene, BTreeSet<Pair>)>
 
 /// Finds, particle by particle, the only choice of pairs that explains the particle's velocity. Each explained particle
 /// reduces the choices of its neighbors.
-fn settle(
+fn find_unique_choice(
     candidates: &mut [NearPair],
     of_particle: &[Vec<usize>],
     rest: &mut [Vec2],
@@ -209,11 +209,12 @@ fn settle(
             if open.is_empty() || open.len() > MAX_PAIRS_PER_PARTICLE {
                 continue;
             }
-            tried += choices(open.len());
+            tried += count_choices(open.len());
             if tried > MAX_CHOICES {
                 return;
             }
-            let Some(choice) = only_choice(candidates, &open, particle, rest[particle], tolerances.velocity(particle))
+            let Some(choice) =
+                find_only_choice(candidates, &open, particle, rest[particle], tolerances.velocity(particle))
             else {
                 continue;
             };
@@ -227,13 +228,13 @@ fn settle(
 }
 
 /// Returns the number of choices among `pairs` pairs, each of which is omitted, applied once or applied twice.
-fn choices(pairs: usize) -> usize {
+fn count_choices(pairs: usize) -> usize {
     (0..pairs).fold(1, |product, _| 3 * product)
 }
 
 /// Returns the number of surplus applications of each pair, if exactly one choice explains the rest of a particle's
 /// velocity.
-fn only_choice(
+fn find_only_choice(
     candidates: &[NearPair],
     open: &[usize],
     particle: usize,
@@ -241,7 +242,7 @@ fn only_choice(
     tolerance: f64,
 ) -> Option<[f64; MAX_PAIRS_PER_PARTICLE]> {
     let mut found = None;
-    for number in 0..choices(open.len()) {
+    for number in 0..count_choices(open.len()) {
         let (mut choice, mut left, mut digits) = ([0.0; MAX_PAIRS_PER_PARTICLE], rest, number);
         for (excess, index) in choice.iter_mut().zip(open) {
             *excess = [0.0, -1.0, 1.0][digits % 3];

@@ -8,11 +8,11 @@ use fosssim_student::{Area, Mistake, Row, StepMistake, Term};
 /// Returns whether a student of this milestone writes the code of the mistake, or submits its file. Every student can
 /// change the trace's contents, and the end of the program.
 #[must_use]
-pub fn is_written(row: &Row, whose: Assignment) -> bool {
+pub fn is_written_by_student(row: &Row, whose: Assignment) -> bool {
     let is_of = |part: &Part| match (row.area, *part) {
         (Area::Trace | Area::Process, _) | (Area::NearPairs, Part::NearPairs) => true,
         (Area::NearPairs, _) => false,
-        _ if matches!(row.mistake, Mistake::Step(_)) => part.file() == term(row).row().part.file(),
+        _ if matches!(row.mistake, Mistake::Step(_)) => part.file() == changed_term(row).row().part.file(),
         (Area::Response | Area::ImpulseLoop, Part::Impulses) => true,
         (Area::ImpactZones, Part::Zones) | (Area::Failsafe, Part::Failsafe) => true,
         (area, Part::Detection(_)) => ![Area::ImpulseLoop, Area::ImpactZones, Area::Failsafe].contains(&area),
@@ -22,7 +22,7 @@ pub fn is_written(row: &Row, whose: Assignment) -> bool {
 }
 
 /// Returns the term that a mistake changes; the row's id begins with its name.
-pub(super) fn term(row: &Row) -> Term {
+pub(super) fn changed_term(row: &Row) -> Term {
     if let Mistake::Step(StepMistake::Edit(edit)) = row.mistake {
         return edit.term;
     }
@@ -43,7 +43,7 @@ pub(super) fn term(row: &Row) -> Term {
 
 /// Returns the milestone of a submission that runs on `scenes`: the first whose programs know all of them.
 #[must_use]
-pub fn milestone<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<Assignment> {
+pub fn find_milestone<'a>(scenes: impl IntoIterator<Item = &'a Scene>) -> Option<Assignment> {
     let of_scene = |scene: &'a Scene| scene.assignments().collect::<Vec<_>>();
     let common = scenes
         .into_iter()
@@ -59,7 +59,7 @@ mod tests {
 
     #[test]
     fn only_the_students_own_code_is_accused() {
-        let writes = |id: &str, whose| is_written(find(id).expect("a row"), whose);
+        let writes = |id: &str, whose| is_written_by_student(find(id).expect("a row"), whose);
         assert!(writes("explicit-velocities-mass", Assignment::T1M1));
         assert!(!writes("explicit-velocities-mass", Assignment::T1M2));
         assert!(writes("symplectic-velocities-mass", Assignment::T1M2));
@@ -68,9 +68,9 @@ mod tests {
         for row in all_rows() {
             // The contest's student writes the search for pairs.
             let is_own = matches!(row.area, Area::NearPairs | Area::Trace | Area::Process);
-            assert_eq!(is_written(row, Assignment::T2M3), is_own, "{}", row.id);
+            assert_eq!(is_written_by_student(row, Assignment::T2M3), is_own, "{}", row.id);
             let is_of_collisions = !matches!(row.mistake, Mistake::Step(_));
-            assert_eq!(is_written(row, Assignment::T2M2), is_of_collisions, "{}", row.id);
+            assert_eq!(is_written_by_student(row, Assignment::T2M2), is_of_collisions, "{}", row.id);
         }
     }
 }

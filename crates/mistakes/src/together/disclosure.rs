@@ -10,7 +10,7 @@ use fosssim_student::find;
 
 /// Limits a result to a hint level. The verdict, its reason and the difference of the rule books stay at all levels,
 /// but at [`Hints::None`] the fault of a wrong trace is removed.
-pub fn cut_result(hints: Hints, result: &mut SceneResult) {
+pub fn limit_result(hints: Hints, result: &mut SceneResult) {
     if hints == Hints::Full {
         return;
     }
@@ -18,14 +18,14 @@ pub fn cut_result(hints: Hints, result: &mut SceneResult) {
         result.reason = Reason::Wrong(WrongTrace::Untold);
     }
     result.disclosure = result.disclosure.take().and_then(|all| hints.disclose(all));
-    result.explanations = cut(hints, std::mem::take(&mut result.explanations));
+    result.explanations = limit_explanations(hints, std::mem::take(&mut result.explanations));
     result.card.clone_from(&result.card_for_students);
 }
 
 /// Limits a smallest scene to a hint level; `None` at [`Hints::None`].
 #[must_use]
-pub fn cut_smallest(hints: Hints, mut small: SmallestScene) -> Option<SmallestScene> {
-    small.explanations = cut(hints, std::mem::take(&mut small.explanations));
+pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<SmallestScene> {
+    small.explanations = limit_explanations(hints, std::mem::take(&mut small.explanations));
     small.cut(hints);
     (hints > Hints::None).then_some(small)
 }
@@ -35,7 +35,7 @@ pub fn cut_smallest(hints: Hints, mut small: SmallestScene) -> Option<SmallestSc
 /// without formulas, and the known mistakes that cannot be distinguished from it; exact forms and examples need
 /// [`Hints::Full`].
 #[must_use]
-pub fn cut(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
+pub fn limit_explanations(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),
         // Keep the place, but no guesses.
@@ -87,7 +87,7 @@ mod tests {
 
     #[test]
     fn each_level_tells_more_and_formulas_come_last() {
-        let told = |hints: Hints| cut(hints, vec![explanation()]);
+        let told = |hints: Hints| limit_explanations(hints, vec![explanation()]);
         assert_eq!((told(Hints::None), told(Hints::Where)), (Vec::new(), Vec::new()));
         let what = told(Hints::What).remove(0);
         assert_eq!((what.about, what.details.len(), what.example), (About::Mistake, 0, None));
@@ -98,7 +98,7 @@ mod tests {
             // The first value that is not finite is a place and not a guess.
             let end = NotFinite { step: Some(3), stage: NanStage::Zones, is_nan: true, ends: false };
             let end = Explanation { about: About::NotFinite(end), ..explanation() };
-            assert_eq!(cut(hints, vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");
+            assert_eq!(limit_explanations(hints, vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");
         }
     }
 
@@ -107,7 +107,7 @@ mod tests {
         let mut result = SceneResult::without_run("a", 1, Verdict::WrongAnswer, Reason::Wrong(WrongTrace::Untold));
         (result.card, result.card_for_students) = (Some("all".to_owned()), Some("part".to_owned()));
         for _ in 0..2 {
-            cut_result(Hints::What, &mut result);
+            limit_result(Hints::What, &mut result);
             assert_eq!(result.card.as_deref(), Some("part"));
         }
     }
@@ -128,7 +128,7 @@ mod tests {
         let (_, scene) = probe_scenes(Assignment::DEFAULT).swap_remove(0);
         let row = CATALOGUE.iter().find(|row| row.kind == RowKind::Wrong).expect("a mistake");
         let trace = student::record_trace(&scene, Student::new(Some(row.mistake))).unwrap_or_else(|(bytes, _)| bytes);
-        let options = replay::Options { fair: true, ..replay::Options::default() };
+        let options = replay::Options { uses_fair_rules: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
         let all = |rules| Disclosure::from_outcome(&judged, rules);
         assert_eq!(Hints::None.disclose(all(Rules::Both)), None);

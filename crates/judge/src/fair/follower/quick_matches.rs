@@ -29,7 +29,7 @@ impl Follower<'_> {
     /// Returns the logged polynomials of a call that are clearly right. [`compare`](crate::fair::compare::compare)
     /// accepts them as well.
     #[inline]
-    pub(super) fn right_at_once(
+    pub(super) fn find_quick_matches(
         &mut self,
         pair: Pair,
         [q_start, q_end]: [&[f64]; 2],
@@ -38,10 +38,11 @@ impl Follower<'_> {
     ) -> QuickMatches {
         let mut found = [None; PairKind::MAX_POLYNOMIALS];
         // With wider bounds, more coefficients count as round-off, so the floors do not apply.
-        if self.sensitivity.is_some() || self.context.looks_closely {
+        if self.sensitivity.is_some() || self.context.computes_all_bounds {
             return found;
         }
-        let floors = self.floors.get_or_insert_with(|| floors(self.context.scene, q_start, q_end))[pair.kind];
+        let floors = self.round_off_floors.get_or_insert_with(|| round_off_floors(self.context.scene, q_start, q_end))
+            [pair.kind];
         let lengths = pair.kind.coefficient_counts();
         for (number, own) in own.iter().enumerate() {
             let (own, logged) = (own.coefficients(), self.records.end.polynomials.get(index + number));
@@ -49,7 +50,7 @@ impl Follower<'_> {
                 continue;
             }
             if own.is_empty() {
-                found[number] = Some(Match { scale: None, share: 0.0 });
+                found[number] = Some(Match { scale: None, tolerance_share: 0.0 });
                 continue;
             }
             let similarity = Similarity::measure(own, logged);
@@ -62,7 +63,7 @@ impl Follower<'_> {
 }
 
 /// Returns an upper bound of the round-off for the largest positions and displacements, or infinity if it is unknown.
-fn floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFloors {
+fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFloors {
     let (mut size, mut shift) = (0.0_f64, 0.0_f64);
     let (mut low, mut high) = ([f64::INFINITY; 2], [f64::NEG_INFINITY; 2]);
     let mut widen = |place: Vec2| {
@@ -141,7 +142,7 @@ mod tests {
     impl Observer for Closest<'_> {
         fn observe_detection(&mut self, detection: &Detection<'_>) {
             let &Detection { pair, q_start, q_end, .. } = detection;
-            let floors = floors(self.0, q_start, q_end)[pair.kind];
+            let floors = round_off_floors(self.0, q_start, q_end)[pair.kind];
             let expected = BoundedPairMotion::for_pair(self.0, pair, q_start, q_end).polynomials();
             for (number, floor) in floors.into_iter().enumerate().take(pair.kind.polynomial_count()) {
                 for list in std::iter::once(expected.polynomial(number)).chain(expected.other_form(number)) {

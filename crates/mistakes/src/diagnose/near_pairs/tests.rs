@@ -46,7 +46,7 @@ fn wrong_pairs_are_told_with_what_they_have_in_common() {
     ] {
         let wrong = told(id, &scenes);
         let pairs = &wrong.kinds[kind as usize];
-        let words: Vec<String> = pair_traits(pairs, times).into_iter().map(|one| one.what).collect();
+        let words: Vec<String> = pair_traits(pairs, times).into_iter().map(|one| one.description).collect();
         let is_told = if word.is_empty() { 20 * pairs.times[1] <= pairs.times[times] } else { words.len() == 1 };
         let is_right = pairs.times[times] > 0 && words.iter().all(|one| one.contains(word));
         assert!(is_told && is_right && (!word.is_empty() || words.is_empty()), "{id}: {:?}, {words:?}", pairs.times);

@@ -9,13 +9,13 @@ use fosssim_num::vector::{Vec2, length, vector_at};
 pub(super) type BoundingBox = [Vec2; 2];
 
 /// The geometry of a scene at the start of a step.
-pub(super) struct Moment<'a> {
+pub(super) struct StepGeometry<'a> {
     pub scene: &'a Scene,
     pub before: &'a State,
     /// The positions at the start of the scene.
-    pub start: Vec<f64>,
+    pub start_positions: Vec<f64>,
     /// The diameter of the largest particle.
-    pub largest: f64,
+    pub largest_size: f64,
     /// The lower corner of the box of all bodies.
     pub corner: Vec2,
     /// The boxes of particles, then of edges.
@@ -25,19 +25,19 @@ pub(super) struct Moment<'a> {
 /// A near pair in a step, with its geometry.
 #[derive(Clone, Copy)]
 pub(super) struct PlacedPair<'a> {
-    pub moment: &'a Moment<'a>,
+    pub geometry: &'a StepGeometry<'a>,
     pub pair: Pair,
 }
 
-impl<'a> Moment<'a> {
+impl<'a> StepGeometry<'a> {
     pub fn new(scene: &'a Scene, before: &'a State) -> Self {
         let bodies = scene.particles.len() + scene.edges.len();
-        let boxes: Vec<BoundingBox> = (0..bodies).map(|body| bounds(scene, &before.positions, body)).collect();
+        let boxes: Vec<BoundingBox> = (0..bodies).map(|body| body_box(scene, &before.positions, body)).collect();
         Self {
             scene,
             before,
-            start: State::for_scene(scene).positions,
-            largest: scene.particles.iter().fold(0.0, |largest, particle| largest.max(2.0 * particle.radius)),
+            start_positions: State::for_scene(scene).positions,
+            largest_size: scene.particles.iter().fold(0.0, |largest, particle| largest.max(2.0 * particle.radius)),
             corner: boxes.iter().fold(Vec2::repeat(f64::INFINITY), |low, one| low.inf(&one[0])),
             boxes,
         }
@@ -51,31 +51,31 @@ impl<'a> PlacedPair<'a> {
     }
 
     pub fn edge(&self) -> Option<&'a Edge> {
-        (self.pair.kind == PairKind::ParticleEdge).then(|| &self.moment.scene.edges[self.numbers()[1]])
+        (self.pair.kind == PairKind::ParticleEdge).then(|| &self.geometry.scene.edges[self.numbers()[1]])
     }
 
     pub fn half_plane(&self) -> Option<&'a HalfPlane> {
-        (self.pair.kind == PairKind::ParticleHalfPlane).then(|| &self.moment.scene.half_planes[self.numbers()[1]])
+        (self.pair.kind == PairKind::ParticleHalfPlane).then(|| &self.geometry.scene.half_planes[self.numbers()[1]])
     }
 
-    pub fn place(&self, particle: usize) -> Vec2 {
-        vector_at(&self.moment.before.positions, particle)
+    pub fn position(&self, particle: usize) -> Vec2 {
+        vector_at(&self.geometry.before.positions, particle)
     }
 
     /// Returns the first body's center.
     pub fn center(&self) -> Vec2 {
-        self.place(self.numbers()[0])
+        self.position(self.numbers()[0])
     }
 
     /// Returns the radius of the first body.
     pub fn radius(&self) -> f64 {
-        self.moment.scene.particles[self.numbers()[0]].radius
+        self.geometry.scene.particles[self.numbers()[0]].radius
     }
 
     /// Returns the radius of the second body; half-planes have none.
     pub fn other_radius(&self) -> f64 {
         match (self.pair.kind, self.edge()) {
-            (PairKind::ParticleParticle, _) => self.moment.scene.particles[self.numbers()[1]].radius,
+            (PairKind::ParticleParticle, _) => self.geometry.scene.particles[self.numbers()[1]].radius,
             (_, edge) => edge.map_or(0.0, |edge| edge.radius),
         }
     }
@@ -86,35 +86,35 @@ impl<'a> PlacedPair<'a> {
         let [first, second] = self.numbers();
         match self.pair.kind {
             PairKind::ParticleParticle => [first, second],
-            PairKind::ParticleEdge => [first, self.moment.scene.particles.len() + second],
+            PairKind::ParticleEdge => [first, self.geometry.scene.particles.len() + second],
             PairKind::ParticleHalfPlane => [first, first],
         }
     }
 
     /// Returns the boxes of the pair's bodies; for a half-plane, the particle's box again.
     pub fn boxes(&self) -> [BoundingBox; 2] {
-        self.bodies().map(|body| self.moment.boxes[body])
+        self.bodies().map(|body| self.geometry.boxes[body])
     }
 
     /// Returns the first body's center, and the second body's nearest point.
     pub fn points(&self) -> [Vec2; 2] {
-        [self.center(), self.nearest(&self.moment.before.positions)]
+        [self.center(), self.nearest_point(&self.geometry.before.positions)]
     }
 
     /// Returns whether the pair is near at positions `x`: its boxes overlap, or its half-plane is in reach.
     pub fn is_near(&self, x: &[f64]) -> bool {
         if self.half_plane().is_some() {
-            return length(self.nearest(x) - vector_at(x, self.numbers()[0])) < self.radius();
+            return length(self.nearest_point(x) - vector_at(x, self.numbers()[0])) < self.radius();
         }
-        let [one, other] = self.bodies().map(|body| bounds(self.moment.scene, x, body));
+        let [one, other] = self.bodies().map(|body| body_box(self.geometry.scene, x, body));
         (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
     }
 
     /// Returns whether the bodies do not approach each other.
     pub fn is_parting(&self) -> bool {
-        let State { positions, velocities } = self.moment.before;
+        let State { positions, velocities } = self.geometry.before;
         let later: Vec<f64> = positions.iter().zip(velocities).map(|(x, v)| x + 1e-6 * v).collect();
-        let distance = |x: &[f64]| length(self.nearest(x) - vector_at(x, self.numbers()[0]));
+        let distance = |x: &[f64]| length(self.nearest_point(x) - vector_at(x, self.numbers()[0]));
         distance(&later) >= distance(positions)
     }
 
@@ -123,12 +123,12 @@ impl<'a> PlacedPair<'a> {
     pub fn boxes_between(&self, axis: usize) -> impl Iterator<Item = BoundingBox> {
         let own = self.bodies();
         let [one, other] = self.boxes().map(|one| one[0][axis]);
-        let all = self.moment.boxes.iter().enumerate().filter(move |(body, _)| !own.contains(body));
+        let all = self.geometry.boxes.iter().enumerate().filter(move |(body, _)| !own.contains(body));
         all.map(|(_, one)| *one).filter(move |body| (one.min(other)..=one.max(other)).contains(&body[0][axis]))
     }
 
     /// Returns the point of the second body that is nearest to the first one's center.
-    fn nearest(&self, x: &[f64]) -> Vec2 {
+    fn nearest_point(&self, x: &[f64]) -> Vec2 {
         let [first, second] = self.numbers();
         let own = vector_at(x, first);
         if let Some(edge) = self.edge() {
@@ -143,7 +143,7 @@ impl<'a> PlacedPair<'a> {
 }
 
 /// Returns the box of a particle or, with higher numbers, of an edge.
-fn bounds(scene: &Scene, x: &[f64], body: usize) -> BoundingBox {
+fn body_box(scene: &Scene, x: &[f64], body: usize) -> BoundingBox {
     let (ends, radius) = match scene.particles.get(body) {
         Some(particle) => ([body; 2], particle.radius),
         None => {

@@ -17,22 +17,22 @@ pub(super) struct OwnImpact {
     /// The objects' time of impact.
     pub time: f64,
     /// Whether the logged polynomials lack leading coefficients that the reference's have.
-    pub lost: bool,
+    pub has_losses: bool,
 }
 
 impl Follower<'_> {
     /// Returns the decision with which the step continues. If the trace shows the submission's decision, that is used.
     pub(super) fn choose_decision(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
         let call = self.decisions.len();
-        let findings = self.judged.total();
+        let findings = self.judgement.total();
         let own = self.call.own.take();
         if let Some(own) = own {
             self.review_losses(pair, by_polynomials, own);
         }
         let decision = match self.pass.stage {
             Stage::Simple | Stage::ContinuousTime => self.follow(pair, by_polynomials),
-            Stage::Impulses { .. } | Stage::Geometric { .. } if self.flips.contains(&call) => {
-                self.opposite(by_polynomials)
+            Stage::Impulses { .. } | Stage::Geometric { .. } if self.flipped_decisions.contains(&call) => {
+                self.reverse_decision(by_polynomials)
             }
             Stage::Impulses { .. } | Stage::Geometric { .. } => by_polynomials,
         };
@@ -41,11 +41,11 @@ impl Follower<'_> {
             _ => by_polynomials.collides(),
         };
         // A decision that is counted as wrong is not also counted as borderline.
-        if decision.collides() != is_expected && self.judged.total() == findings {
-            self.judged.note_borderline(self.pass, pair, decision.collides());
+        if decision.collides() != is_expected && self.judgement.total() == findings {
+            self.judgement.note_borderline(self.pass, pair, decision.collides());
         }
         if self.sensitivity.is_some() && self.is_hybrid() && self.is_borderline(call) {
-            self.borderline.push(call);
+            self.borderline_calls.push(call);
         }
         decision
     }
@@ -54,8 +54,8 @@ impl Follower<'_> {
     /// polynomials, without losses, give `by_own`.
     pub(super) fn resolve_dispute(&mut self, pair: Pair, by_own: Decision) -> Decision {
         let Decision::Hit { time, .. } = by_own else { return by_own };
-        self.call.own = Some(OwnImpact { time, lost: false });
-        if self.searchable_polynomials(self.place(pair).index, pair.kind.polynomial_count()).is_none() {
+        self.call.own = Some(OwnImpact { time, has_losses: false });
+        if self.searchable_polynomials(self.call_place(pair).index, pair.kind.polynomial_count()).is_none() {
             return by_own;
         }
         (self.call.is_disputed, self.has_disputes) = (true, true);
@@ -66,24 +66,24 @@ impl Follower<'_> {
     /// factors the library keeps coefficients that it drops from the reference's polynomials; then nothing is lost, and
     /// the reference's decision does not count.
     fn review_losses(&mut self, pair: Pair, by_polynomials: Decision, own: OwnImpact) {
-        if !own.lost {
+        if !own.has_losses {
             return;
         }
         let Some((motion, expected)) = &self.expected_polynomials() else { return };
         let (actual, hits) = (by_polynomials.time(), own.time <= 1.0);
         if (actual <= 1.0) != hits {
-            if contact::decides(motion, expected) == Some(hits) {
-                let place = self.place(pair);
+            if contact::certain_decision(motion, expected) == Some(hits) {
+                let place = self.call_place(pair);
                 self.add_finding(FindingDetail::TrimmedDecision { place, collides: hits });
             }
-        } else if hits && !contact::is_time_without_losses(expected, own.time, actual) {
-            let (place, expected) = (self.place(pair), contact::possible_time(expected));
+        } else if hits && !contact::is_right_time_without_losses(expected, own.time, actual) {
+            let (place, expected) = (self.call_place(pair), contact::possible_time(expected));
             self.add_finding(FindingDetail::TrimmedTime { place, expected, actual });
         }
     }
 
     /// Returns the opposite of a decision that round-off may change.
-    fn opposite(&self, decision: Decision) -> Decision {
+    fn reverse_decision(&self, decision: Decision) -> Decision {
         match decision {
             Decision::Hit { time, .. } => Decision::Miss { time: ImpactTime::Found(time) },
             Decision::Miss { .. } => self.expected_polynomials().as_ref().map_or(decision, |(motion, expected)| {
@@ -102,14 +102,14 @@ impl Follower<'_> {
         }
         match &self.expected_polynomials() {
             Some((motion, expected)) => contact::is_borderline(motion, expected),
-            None => self.sensitivity.is_some_and(|known| known.flipped.contains(&call)),
+            None => self.sensitivity.is_some_and(|known| known.flipped_decisions.contains(&call)),
         }
     }
 
     /// Returns the logged impulse for the pair's decision.
     fn logged_impulse(&mut self, pair: Pair) -> Option<LoggedImpulse> {
-        let index = self.contacts.indices_of(key(pair)?).find(|index| !self.used[*index])?;
-        self.used[index] = true;
+        let index = self.contacts.indices_of(key(pair)?).find(|index| !self.used_impulses[*index])?;
+        self.used_impulses[index] = true;
         Some(self.records.end.impulses[index])
     }
 
@@ -122,7 +122,8 @@ impl Follower<'_> {
             (Decision::Hit { time, normal }, Some(actual)) => {
                 let own = Impulse { pair, normal, time };
                 let known = self.expected_polynomials();
-                let finding = contact::hit(self.records.before, known.as_ref(), own, &actual, &mut self.judged);
+                let finding =
+                    contact::compare_hit(self.records.before, known.as_ref(), own, &actual, &mut self.judgement);
                 finding.into_iter().for_each(|detail| self.add_finding(detail));
                 contact::logged_decision(actual).unwrap_or(Decision::Hit { time, normal })
             }
@@ -135,9 +136,15 @@ impl Follower<'_> {
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
                     // Round-off may change whether the pair collides, but not where and when.
-                    let (known, judged) = (self.expected_polynomials(), &mut self.judged);
-                    let finding =
-                        contact::possible_hit(self.context, &self.records, known.as_ref(), pair, &actual, judged);
+                    let (known, judged) = (self.expected_polynomials(), &mut self.judgement);
+                    let finding = contact::compare_possible_hit(
+                        self.context,
+                        &self.records,
+                        known.as_ref(),
+                        pair,
+                        &actual,
+                        judged,
+                    );
                     finding.into_iter().for_each(|detail| self.add_finding(detail));
                 } else {
                     self.add_finding(FindingDetail::SuperfluousCollision { actual });
@@ -148,9 +155,9 @@ impl Follower<'_> {
     }
 
     /// Counts impulses without a decision.
-    pub(super) fn settle_impulses(&mut self) {
-        for index in 0..self.used.len() {
-            if self.used[index] {
+    pub(super) fn count_unused_impulses(&mut self) {
+        for index in 0..self.used_impulses.len() {
+            if self.used_impulses[index] {
                 continue;
             }
             let actual = self.records.end.impulses[index];

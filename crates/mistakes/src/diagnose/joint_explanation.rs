@@ -4,11 +4,11 @@ use super::{
     Detail, Explanation, Guess, ListGuess,
     about::{About, OfPolynomials},
     evidence::{OpenTrace, Symptom, collect_symptoms, find_likeliest},
-    explain::is_formula,
+    explain::is_formula_area,
     fault::StepStage,
     known::is_empty_stage,
-    naming::{as_row, is_named_in},
-    near,
+    naming::{explain_by_row, is_named_in},
+    near_pairs,
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::{Area, CATALOGUE, Mistake, Row, assignments::t2m2::Subject, find};
@@ -40,8 +40,8 @@ pub fn explain_together<'a>(
         .filter(|trace| !trace.symptoms.is_empty())
         .collect();
     let mut wrong: Vec<Vec<Explanation>> =
-        open.iter().map(|trace| trace.symptoms.iter().map(|symptom| symptom.one.clone()).collect()).collect();
-    drop_what_follows(&mut open);
+        open.iter().map(|trace| trace.symptoms.iter().map(|symptom| symptom.explanation.clone()).collect()).collect();
+    drop_consequences(&mut open);
     keep_earliest_stage(&mut open);
     let (mut found, mut empty): (Vec<Explanation>, Vec<Explanation>) = (Vec::new(), Vec::new());
     while found.len() + usize::from(!empty.is_empty()) < MAX_MISTAKES {
@@ -55,8 +55,8 @@ pub fn explain_together<'a>(
                 || (next.is_settled() && is_supported(&open, &next) && !is_repetition(&found, &next, &open))
         };
         if is_told {
-            leave_open(&mut open, &said);
-            let zeros = zeros(&next);
+            remove_explained(&mut open, &said);
+            let zeros = explain_zero_coefficients(&next);
             match (is_empty, zeros.is_empty()) {
                 (true, _) => empty.push(next),
                 (false, false) => empty.extend(zeros),
@@ -64,29 +64,32 @@ pub fn explain_together<'a>(
             }
         } else {
             for trace in &mut open {
-                trace.symptoms.iter_mut().for_each(|symptom| _ = symptom.allowed.remove(&said));
-                trace.symptoms.retain(|symptom| !symptom.allowed.is_empty() && symptom.one.statement() != said);
+                trace.symptoms.iter_mut().for_each(|symptom| _ = symptom.allowed_statements.remove(&said));
+                trace.symptoms.retain(|symptom| {
+                    !symptom.allowed_statements.is_empty() && symptom.explanation.statement() != said
+                });
             }
         }
     }
     let is_unwritten = |subject: &Subject| {
         let rows = empty.iter().filter_map(|one| find(&one.key));
-        rows.filter(|row| is_formula(row.area)).any(|row| row.kind_of_pair().is_none_or(|kind| kind == subject.kind()))
+        rows.filter(|row| is_formula_area(row.area))
+            .any(|row| row.kind_of_pair().is_none_or(|kind| kind == subject.kind()))
     };
     // A trace in which stages are empty shows no other mistakes.
     wrong.retain(|list| !empty.iter().any(|one| is_named_in(one, list)));
-    if let Some(head) = wrong_polynomials(&wrong, &found, is_unwritten) {
+    if let Some(head) = explain_wrong_polynomials(&wrong, &found, is_unwritten) {
         // After a wrong formula, later stages are wrong as a consequence.
         found.retain(|one| !one.is_of_stage());
         found.insert(0, head);
     }
-    near::merge_explanations(&mut found, &traces);
-    let end = not_finite(&traces).filter(|one| !refuted.contains(&one.key));
-    unite_unfinished(empty).into_iter().chain(found).chain(end).collect()
+    near_pairs::merge_explanations(&mut found, &traces);
+    let end = explain_not_finite(&traces).filter(|one| !refuted.contains(&one.key));
+    unite_empty_stages(empty).into_iter().chain(found).chain(end).collect()
 }
 
 /// Returns the explanation of the first values that are not finite, for the stage in which most traces have them.
-fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
+fn explain_not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
     let agreeing = |one: &Explanation| ends().filter(|other| other.statement() == one.statement()).count();
     let likeliest = ends().rev().max_by_key(|one| agreeing(one))?;
@@ -101,7 +104,7 @@ fn not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
 }
 
 /// Returns an explanation for each kind of pair whose coefficients are all zero, if `one` is about such coefficients.
-fn zeros(one: &Explanation) -> Vec<Explanation> {
+fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
     let is_zero =
         matches!(&one.about, About::Polynomials { found: OfPolynomials::Guess(Guess::List(ListGuess::AllZero)), .. });
     let subjects = one.subjects();
@@ -117,14 +120,14 @@ fn zeros(one: &Explanation) -> Vec<Explanation> {
     let told = |row: &Row| Explanation {
         details: vec![Detail::Term(row.id.into()), Detail::Look(row.area)],
         example: None,
-        ..as_row(one, row, Vec::new())
+        ..explain_by_row(one, row, Vec::new())
     };
     kinds.filter_map(row).map(told).collect()
 }
 
 /// Returns several empty stages as one explanation; their keys are in [`Explanation::same_as`]. A stage with another
 /// explanation is reported separately.
-fn unite_unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
+fn unite_empty_stages(empty: Vec<Explanation>) -> Vec<Explanation> {
     let has_rival = |one: &Explanation| one.same_as.iter().filter_map(|key| find(key)).any(|row| !is_empty_stage(row));
     let (doubted, sure): (Vec<Explanation>, Vec<Explanation>) = empty.into_iter().partition(has_rival);
     if sure.len() < 2 {
@@ -143,14 +146,14 @@ fn unite_unfinished(empty: Vec<Explanation>) -> Vec<Explanation> {
 
 /// Returns the polynomials that are wrong in most traces, if no exact form holds in most and the first explanation does
 /// not cover them. The result names their place, and the most frequent explanation without an exact form.
-fn wrong_polynomials(
+fn explain_wrong_polynomials(
     traces: &[Vec<Explanation>],
     found: &[Explanation],
     is_unwritten: impl Fn(&Subject) -> bool,
 ) -> Option<Explanation> {
     let mut wrong: BTreeMap<Subject, usize> = BTreeMap::new();
     for list in traces {
-        let is_formula_row = |one: &&Explanation| find(&one.key).is_some_and(|row| is_formula(row.area));
+        let is_formula_row = |one: &&Explanation| find(&one.key).is_some_and(|row| is_formula_area(row.area));
         let of_polynomials =
             list.iter().filter(|one| matches!(one.about, About::Polynomials { .. }) || is_formula_row(one));
         let subjects: BTreeSet<Subject> = of_polynomials.flat_map(Explanation::subjects).collect();
@@ -199,7 +202,7 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
         let theirs = one.subjects();
         // If a trace shows no polynomial of a known mistake, that mistake may be the cause of a reported guess.
         let is_guess = matches!(one.about, About::Polynomials { .. });
-        let kind = find(&next.key).filter(|row| is_formula(row.area)).and_then(Row::kind_of_pair);
+        let kind = find(&next.key).filter(|row| is_formula_area(row.area)).and_then(Row::kind_of_pair);
         let in_one_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
             Some(kind) => theirs.iter().any(|subject| subject.kind() == kind),
             None => !subjects.is_empty() && subjects.iter().all(|subject| theirs.contains(subject)),
@@ -210,7 +213,7 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
                 one.stage() == next.stage() && !are_of_two_kinds
             }
             (_, About::Stage(fault)) => find(&one.key).is_some_and(|row| {
-                fault.areas().contains(&row.area) || stage_of(row.area).is_some_and(|stage| stage <= fault.stage())
+                fault.areas().contains(&row.area) || area_stage(row.area).is_some_and(|stage| stage <= fault.stage())
             }),
             (About::Stage(fault), _) => find(&next.key).is_some_and(|row| fault.areas().contains(&row.area)),
             _ => false,
@@ -224,12 +227,13 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
 }
 
 /// Drops explanations that may be consequences of a mistake that explains one of the traces, if steps log only states.
-fn drop_what_follows(open: &mut Vec<OpenTrace>) {
+fn drop_consequences(open: &mut Vec<OpenTrace>) {
     let is_state_mistake = |word: &String| find(word).is_some_and(|row| matches!(row.mistake, Mistake::Step(_)));
-    let names_one =
-        |symptom: &Symptom| symptom.allowed.iter().any(|(word, is_whole)| *is_whole && is_state_mistake(word));
+    let names_one = |symptom: &Symptom| {
+        symptom.allowed_statements.iter().any(|(word, is_whole)| *is_whole && is_state_mistake(word))
+    };
     if open.iter().flat_map(|trace| &trace.symptoms).any(names_one) {
-        open.iter_mut().for_each(|trace| trace.symptoms.retain(|symptom| !symptom.one.is_of_stage()));
+        open.iter_mut().for_each(|trace| trace.symptoms.retain(|symptom| !symptom.explanation.is_of_stage()));
         open.retain(|trace| !trace.symptoms.is_empty());
     }
 }
@@ -238,17 +242,19 @@ fn drop_what_follows(open: &mut Vec<OpenTrace>) {
 /// mistakes of that stage or a later one if they explain fewer traces than have a wrong stage: such mistakes only
 /// resemble the fault.
 fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
-    let all = || open.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.one);
+    let all = || open.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.explanation);
     let Some(earliest) = all().filter_map(Explanation::stage).min() else { return };
     let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
     let kind_of = |one: &Explanation| if let About::Stage(fault) = &one.about { fault.kind() } else { None };
     let observed = |row: &Row| {
         let is_of_kind = |one: &Explanation| row.kind_of_pair().is_none_or(|kind| kind_of(one) == Some(kind));
-        let shows = |trace: &&OpenTrace| trace.symptoms.iter().any(|one| is_of_it(&one.one) && is_of_kind(&one.one));
+        let shows = |trace: &&OpenTrace| {
+            trace.symptoms.iter().any(|one| is_of_it(&one.explanation) && is_of_kind(&one.explanation))
+        };
         open.iter().filter(shows).count()
     };
-    let late = CATALOGUE.iter().filter(|row| stage_of(row.area).is_some_and(|stage| stage >= earliest));
-    let explained = |row: &Row| open.iter().filter(|trace| trace.allows_wholly(row.id)).count();
+    let late = CATALOGUE.iter().filter(|row| area_stage(row.area).is_some_and(|stage| stage >= earliest));
+    let explained = |row: &Row| open.iter().filter(|trace| trace.allows_complete_statement(row.id)).count();
     let weak: Vec<&str> = late.filter(|row| explained(row) < observed(row)).map(|row| row.id).collect();
     // An explanation of a stage's fault covers explanations that only name the stage.
     let is_said = all().any(|one| is_of_it(one) && !one.is_vague());
@@ -257,8 +263,8 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let has_order = all().any(|one| one.key == Explanation::ORDER);
     for trace in open.iter_mut() {
         trace.symptoms.retain_mut(|symptom| {
-            symptom.allowed.retain(|word, _| !weak.contains(&word.as_str()));
-            let one = &symptom.one;
+            symptom.allowed_statements.retain(|word, _| !weak.contains(&word.as_str()));
+            let one = &symptom.explanation;
             let is_weak = weak.contains(&one.key.as_str()) || (has_order && is_misread(one));
             !(is_weak || (is_said && one.is_vague())) && one.stage().is_none_or(|stage| stage == earliest)
         });
@@ -267,7 +273,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
 }
 
 /// Returns the stage of a step in which mistakes of an area are made; `None` for polynomials and for the trace.
-const fn stage_of(area: Area) -> Option<StepStage> {
+const fn area_stage(area: Area) -> Option<StepStage> {
     match area {
         Area::Decision => Some(StepStage::Detection),
         Area::ContactVector => Some(StepStage::ContactVectors),
@@ -279,7 +285,7 @@ const fn stage_of(area: Area) -> Option<StepStage> {
 
 /// Returns whether enough traces look as if the stage were empty.
 fn is_confirmed(open: &[OpenTrace], said: &str) -> bool {
-    open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_wholly(said)).count() > 1
+    open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_complete_statement(said)).count() > 1
 }
 
 /// Returns whether enough of the open symptoms name a further mistake: an unexplained trace, a trace that needs it in
@@ -288,7 +294,7 @@ fn is_confirmed(open: &[OpenTrace], said: &str) -> bool {
 fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
     let said = next.statement();
     let naming = |is_covered: bool| {
-        open.iter().filter(|trace| trace.is_covered == is_covered && trace.allows_wholly(&said)).count()
+        open.iter().filter(|trace| trace.is_covered == is_covered && trace.allows_complete_statement(&said)).count()
     };
     if next.is_of_stage() {
         return naming(false) > 1 && !next.is_vague();
@@ -299,9 +305,11 @@ fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
 
 /// Removes everything that a mistake explains; of a trace that the mistake explains, only other complete explanations
 /// are kept.
-fn leave_open(open: &mut [OpenTrace], said: &str) {
+fn remove_explained(open: &mut [OpenTrace], said: &str) {
     for trace in open.iter_mut().filter(|trace| trace.allows_statement(said)) {
         trace.is_covered = true;
-        trace.symptoms.retain(|symptom| !symptom.allowed.contains_key(said) && symptom.one.is_complete());
+        trace
+            .symptoms
+            .retain(|symptom| !symptom.allowed_statements.contains_key(said) && symptom.explanation.is_complete());
     }
 }

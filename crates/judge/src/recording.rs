@@ -8,7 +8,7 @@ use super::{
     finding::{PolynomialPlace, Role},
     outcome::{Outcome, Stop},
     progress::Progress,
-    tally::{self, Buffers, StepResult, Tally},
+    tally::{self, StepResult, Tally, TallyBuffers},
 };
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -55,7 +55,7 @@ fn compare(
     let (mut trace, mut recording) =
         (LenientReader::new(trace, layout).with_limit(record_memory(scene)), LenientReader::new(recording, layout));
     let (mut actual, mut expected) = (LenientFrame::default(), LenientFrame::default());
-    let (mut buffers, mut result) = (Buffers::new(scene), StepResult::default());
+    let (mut buffers, mut result) = (TallyBuffers::new(scene), StepResult::default());
     let mut outcome = Outcome::empty(layout.steps);
     let mut wrong_step = None;
     for frame in 0..layout.records() {
@@ -67,7 +67,7 @@ fn compare(
         let step = layout.step_of_record(frame);
         let is_end = step > 0 && !layout.is_mid_record(frame);
         if is_end {
-            progress.step_begins(step);
+            progress.observe_step_begin(step);
         }
         if let Err(stop) = trace.next(&mut actual) {
             let (offset, what) = (stop.error.offset, stop.error.what);
@@ -83,10 +83,10 @@ fn compare(
             tally.compare_polynomial(expected.polynomials.get(index), || places.place_at(index));
         }
         tally.finish(&expected.state, layout.has_impulses, layout.has_polynomials);
-        tally::accumulate(&mut outcome.parity.residuals, &result.residuals);
+        tally::add_residuals(&mut outcome.parity.residuals, &result.residuals);
         outcome.parity.findings.counts += result.counts;
         if !damaged {
-            result.firsts.iter().for_each(|first| outcome.parity.findings.keep_first(first));
+            result.first_findings.iter().for_each(|first| outcome.parity.findings.keep_first(first));
         }
         // Record 0 is the initial state, not a step.
         if result.counts.total() > 0 && step > 0 && wrong_step != Some(step) && !damaged {
@@ -95,7 +95,7 @@ fn compare(
         }
         if is_end {
             outcome.steps_judged = step;
-            progress.step_judged(step, &[]);
+            progress.observe_step_end(step, &[]);
         } else if frame == 0 {
             progress.observe_begin();
         }
@@ -113,12 +113,12 @@ fn impulse(logged: &LoggedImpulse) -> Option<Impulse> {
 /// The pair of each polynomial of a step.
 struct RecordPlaces {
     pairs: Pairs,
-    continuous: bool,
+    is_continuous: bool,
 }
 
 impl RecordPlaces {
     fn for_scene(scene: &Scene) -> Self {
-        Self { pairs: pairs(scene), continuous: matches!(scene.collision, Collision::ContinuousTime { .. }) }
+        Self { pairs: pairs(scene), is_continuous: matches!(scene.collision, Collision::ContinuousTime { .. }) }
     }
 
     /// Returns the place of polynomial `index` of a frame. In `hybrid` the recording does not show where the impulse
@@ -128,7 +128,7 @@ impl RecordPlaces {
         let nobody = (0, Pair { kind: PairKind::ParticleParticle, first: 0, second: 0 }, 0);
         let (number, pair, which) = self.pairs.locate_polynomial(index).unwrap_or(nobody);
         let round = u32::try_from(number).unwrap_or(u32::MAX);
-        let stage = if self.continuous { Stage::ContinuousTime } else { Stage::Impulses { round } };
+        let stage = if self.is_continuous { Stage::ContinuousTime } else { Stage::Impulses { round } };
         let pass = Pass { stage, index: round };
         PolynomialPlace { pass, pair, role: Role::from_number(pair.kind, which), index }
     }
