@@ -30,7 +30,7 @@ fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     Ok(path.path())
 }
 
-/// In tests, makes the grader fail: a program with this name causes a panic in this activity.
+/// Makes the grader fail in tests: a program with this name causes a panic in this activity.
 #[cfg(test)]
 pub(super) fn inject(stage: Activity, program: &Path) {
     let name = program.file_name().and_then(|name| name.to_str()).unwrap_or_default();

@@ -1,4 +1,4 @@
-//! The ways to run programs on this host, and the grader's part of starting a run.
+//! Decides with which layers programs run on this host, and starts runs on the grader's side.
 
 use std::{
     ffi::OsString,
@@ -43,13 +43,13 @@ impl Supervisor {
         Self { program: "/proc/self/exe".into() }
     }
 
-    /// Returns another program, for tests.
+    /// Returns another program instead of the current one, for tests.
     #[must_use]
     pub fn from_path(program: impl Into<PathBuf>) -> Self {
         Self { program: program.into() }
     }
 
-    /// Returns the grader's files that no submission may run: those of this process and the supervisor.
+    /// Returns the grader's files that no submission may run: the file of this process and that of the supervisor.
     fn own_files(&self) -> [PathBuf; 2] {
         ["/proc/self/exe".into(), self.program.clone()]
     }
@@ -58,13 +58,13 @@ impl Supervisor {
     fn command(&self, mode: &str) -> Command {
         let mut command = Command::new(&self.program);
         command.arg(SUPERVISOR_ARGUMENT).arg(mode).env_clear().current_dir("/");
-        // Copies of programs are in this folder, so the probe tests execution there.
+        // Copies of programs are in this folder, so the probe tests whether programs can be executed there.
         command.env("TMPDIR", std::env::temp_dir());
         command.stdin(Stdio::piped()).stdout(Stdio::piped()).stderr(Stdio::piped());
         command
     }
 
-    /// Starts the supervisor of a run, with the descriptors that the run's layers need.
+    /// Starts the supervisor of a run, and passes it the descriptors that the run's layers need.
     fn spawn_for(&self, order: &RunOrder) -> Result<SpawnedSupervisor, SandboxError> {
         let begin = || -> io::Result<_> {
             let (mut child, control) = spawn_connected(self.command(MODE_RUN))?;
@@ -72,13 +72,13 @@ impl Supervisor {
             Ok(SpawnedSupervisor { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
         let asked = begin().map_err(|source| self.not_started(source))?;
-        // If the supervisor does not read the order, its answer or its end shows the reason.
+        // If the supervisor does not read the order, its answer or the way in which it ends shows the reason.
         let _ = wire::send(&asked.control, order);
         Ok(asked)
     }
 
-    /// Sends a request to a keeper of runs of this kind, and starts a keeper if there is none. Also returns whether the
-    /// keeper existed before.
+    /// Sends a request to a keeper of runs of this kind. If there is none, a keeper is started. Also returns whether
+    /// the keeper existed before.
     fn ask_keeper(
         &self,
         order: &RunOrder,
@@ -109,7 +109,7 @@ impl Supervisor {
         SandboxError::Supervisor { program: self.program.display().to_string(), source }
     }
 
-    /// Tests every layer once.
+    /// Tests each layer once on this host.
     pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
         let child = self.command(MODE_PROBE).spawn().map_err(|source| self.not_started(source))?;
         let output = child.wait_with_output();
@@ -128,7 +128,7 @@ fn spawn_connected(mut command: Command) -> io::Result<(Child, UnixStream)> {
     Ok((command.stdin(OwnedFd::from(theirs)).spawn()?, ours))
 }
 
-/// A started supervisor that has received its order.
+/// A supervisor that was started and has received its order.
 struct SpawnedSupervisor {
     host: Host,
     control: UnixStream,
@@ -147,7 +147,7 @@ impl SpawnedSupervisor {
     }
 }
 
-/// A way to run programs. Cloning is cheap, and runs from several threads are independent.
+/// A way to run programs, with certain layers. Clones are cheap, and runs in several threads are independent.
 #[derive(Clone)]
 pub struct Backend {
     kind: Kind,
@@ -177,21 +177,21 @@ impl std::fmt::Debug for Backend {
 }
 
 impl Backend {
-    /// Returns the backend with every layer that holds on this host. Probes once.
+    /// Returns the backend with every layer that works on this host. Each layer is tested once.
     ///
     /// # Errors
     ///
-    /// Fails with [`SandboxError::Missing`] if a required layer is missing: no new privileges, limits, reaper, system
-    /// call filter, and file rules (or, for root, a user per program). Then nothing can be run; see
-    /// [`Backend::without_sandbox`].
+    /// Fails with [`SandboxError::Missing`] if a required layer is missing. Required are: no new privileges, resource
+    /// limits, the reaper, the system call filter, and file rules (for root, a user per program is enough). Without
+    /// them only [`Backend::without_sandbox`] can run programs.
     pub fn with_all_layers(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::select_layers(&reports).map_err(missing_layers)?;
         Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
     }
 
-    /// Returns the backend with the layers of other reports, and with the file rules of a kernel with the given
-    /// Landlock version.
+    /// Returns this backend with the layers in `reports`, and with the file rules of a kernel that has this Landlock
+    /// version.
     fn with_layers(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
         let kind = match &self.kind {
             Kind::Launcher { supervisor, .. } => {
@@ -203,7 +203,7 @@ impl Backend {
         Ok(Self { kind, layers: reports.into() })
     }
 
-    /// Returns the backend without one of its layers, to test the others alone. Reports name the missing layer.
+    /// Returns the backend without one of its layers, to test the others without it. Reports name the missing layer.
     ///
     /// # Errors
     ///
@@ -212,8 +212,8 @@ impl Backend {
         self.with_layers(layers::without(&self.layers, layer), 0)
     }
 
-    /// Returns the backend with the file rules of an older kernel (Landlock's version, from 1 on), to test that they
-    /// hold as well.
+    /// Returns the backend with the file rules of an older kernel, to test that these work as well. `version` is the
+    /// version of Landlock, from 1.
     ///
     /// # Errors
     ///
@@ -222,13 +222,13 @@ impl Backend {
         self.with_layers(layers::with_landlock(&self.layers, version), version)
     }
 
-    /// Returns the backend with every layer that holds on this host, however few; a missing layer is not an error. Used
-    /// by `--unsafe-no-sandbox`. [`Backend::weaknesses`] names the missing layers.
+    /// Returns the backend with every layer that works on this host, even if required layers are missing. This is used
+    /// for `--unsafe-no-sandbox`. [`Backend::weaknesses`] names the missing layers.
     ///
     /// # Errors
     ///
-    /// Fails with [`SandboxError::Missing`] if the grader is root and cannot become another user, because a program is
-    /// never run as root; and if the supervisor does not start.
+    /// Fails with [`SandboxError::Missing`] if the grader is root and cannot become another user, because programs are
+    /// never run as root. Also fails if the supervisor does not start.
     pub fn without_sandbox(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::available_layers(&reports).map_err(missing_layers)?;
@@ -241,25 +241,26 @@ impl Backend {
         self.layers.iter().all(|report| report.active || !report.required)
     }
 
-    /// Returns one line per required layer that does not work; empty for a complete sandbox.
+    /// Returns one line for each required layer that does not work. There are no lines if the sandbox is complete.
     #[must_use]
     pub fn weaknesses(&self) -> Vec<String> {
         layers::missing(&self.layers)
     }
 
-    /// Returns a backend that runs nothing and returns scripted results, for tests of code that uses the sandbox.
+    /// Returns a backend that runs nothing. Its results come from a script, for tests of code that uses the sandbox.
     #[must_use]
     pub fn fake(script: impl Fn(&Job) -> FakeRun + Send + Sync + 'static) -> Self {
         Self { kind: Kind::Fake(Arc::new(script)), layers: layers::none() }
     }
 
-    /// Returns the layers, active or not.
+    /// Returns reports on all layers, active or not.
     #[must_use]
     pub fn layers(&self) -> &[LayerReport] {
         &self.layers
     }
 
-    /// Returns the reason why a file cannot be started at all, judged by its beginning; `None` if a start may be tried.
+    /// Returns the reason why a file cannot be started at all, according to its first bytes; `None` if starting it may
+    /// work.
     #[must_use]
     pub fn start_problem(&self, program: &Path) -> Option<StartProblem> {
         match &self.kind {
@@ -268,7 +269,7 @@ impl Backend {
         }
     }
 
-    /// Starts the program, which may have ended when this returns. If a program cannot be started, that is a
+    /// Starts the program. It may have ended when this function returns. If a program cannot be started, that is a
     /// [`RunOutcome`](super::RunOutcome) and not an error.
     ///
     /// # Errors
@@ -304,7 +305,7 @@ impl Backend {
                 None => (supervisor.spawn_for(&order)?, false),
             };
             match asked.receive_first() {
-                // The keeper has ended because it received no order in time.
+                // The keeper ended, because it received no order for a while.
                 Err(_) if kept => asked.host.kill(),
                 first => break (asked, first),
             }
@@ -322,7 +323,7 @@ impl Backend {
             Ok(Event::Failed(failure)) => {
                 asked.host.rest(None);
                 match failure.errno {
-                    // The program itself is larger than its memory limit.
+                    // The program's file itself is larger than the memory limit.
                     libc::ENOMEM if failure.stage == wire::EXECUTE_STEP => {
                         FakeRun::with_end(RunEnd::MemoryLimit).into_running(job, self.layers.clone())
                     }
@@ -337,12 +338,12 @@ impl Backend {
     }
 }
 
-/// Returns the error for layers that this host lacks.
+/// Returns the error for layers that are missing on this host.
 const fn missing_layers(missing: String) -> SandboxError {
     SandboxError::Missing { missing }
 }
 
-/// Receives the working folder in memory.
+/// Receives the descriptor of a working folder in memory.
 fn receive_folder(control: &UnixStream) -> io::Result<OwnedFd> {
     let mut byte = [0];
     let (_, descriptors) = sys::receive_descriptors(control, &mut byte)?;
@@ -352,7 +353,7 @@ fn receive_folder(control: &UnixStream) -> io::Result<OwnedFd> {
     }
 }
 
-/// Returns the order for a job, with absolute paths, to a supervisor of the current program.
+/// Returns the order for a job, which a supervisor of the current program receives. All paths in it are absolute.
 fn build_order(
     job: &Job,
     walls: Walls,

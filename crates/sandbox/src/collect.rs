@@ -1,9 +1,9 @@
-//! Takes a file from a working folder after the program's end.
+//! Takes a file from a working folder after the program has ended.
 //!
 //! A hostile program leaves a link to a reference, a pipe, a device or a terabyte of holes where its output should be.
-//! The file is therefore opened beneath the folder without following links and without waiting. The open descriptor
-//! must be a regular file, with one name, within the limit. Call this only after every process has ended, which is the
-//! case when [`RunningProgram::wait`](super::RunningProgram::wait) has returned.
+//! Therefore the file is opened below the folder, without following links and without waiting. The open file must be a
+//! regular file, must have only one name, and must not exceed the limit. Call this only after every process has ended,
+//! which is the case when [`RunningProgram::wait`](super::RunningProgram::wait) has returned.
 
 use std::{
     fs::File,
@@ -16,8 +16,9 @@ pub use fosssim_files::{FileError as CollectError, Folder as OpenFolder, FolderE
 
 use super::supervisor::open_up;
 
-/// Removes a folder with everything that a program left in it, including folders that are closed to their owner or
-/// nested too deeply for the available descriptors. Must be called only when no process of the program is alive.
+/// Removes a folder with everything that a program left in it, including folders that their owner cannot enter, and
+/// folders that are nested too deeply for the available descriptors. This must be called only when no process of the
+/// program is alive.
 ///
 /// # Errors
 ///
@@ -27,7 +28,7 @@ pub fn remove_folder(path: &Path) -> io::Result<()> {
     if std::fs::remove_dir_all(path).or_else(gone).is_ok() {
         return Ok(());
     }
-    // In a folder that others may write to, the path could meanwhile be a link.
+    // If others may write into the folder, the path could have become a link in the meantime.
     open_up(File::options().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NOFOLLOW).open(path)?.as_fd());
     std::fs::remove_dir_all(path).or_else(gone)
 }

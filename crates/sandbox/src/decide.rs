@@ -1,8 +1,8 @@
-//! Decides from the supervisor's facts how a run ended.
+//! Decides how a run ended, from the supervisor's report.
 //!
-//! The kernel's facts decide first: the reason of the supervisor's kill, the wait status, the counters. The program's
-//! output only explains a failure: why it did not start, or whether it ran out of memory. A program gains nothing by
-//! forging the output, because this only replaces one failure by another.
+//! The reports of the kernel come first: why the supervisor killed the program, the wait status, and the counters. The
+//! program's output is used only to explain a failure, such as why the program did not start, or whether it ran out of
+//! memory. A program gains nothing by forging its output, because it would only replace one failure by another.
 
 use super::{
     outcome::{RunEnd, StartProblem},
@@ -12,7 +12,7 @@ use super::{
 /// The exit code of the dynamic loader if a library is missing.
 const LOADER_FAILED: i32 = 127;
 
-/// Returns how the run of `order` ended, from the facts and the program's standard error.
+/// Returns how the run of `order` ended, according to the supervisor's report and the program's standard error.
 pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> RunEnd {
     if report.exec_errno == Some(libc::ENOMEM) {
         return RunEnd::MemoryLimit;
@@ -33,7 +33,7 @@ pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ru
         Some(libc::SIGSYS) => return RunEnd::Violation { call: "a call of another architecture (32 bits)".into() },
         _ => {}
     }
-    // A short run can exceed a limit and end between two checks of the supervisor.
+    // A short run can exceed a limit and end before the supervisor checks again.
     if report.peak_memory > order.limits.memory {
         return RunEnd::MemoryLimit;
     }
@@ -66,7 +66,7 @@ pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ru
     RunEnd::Exited(code)
 }
 
-/// Returns the reason why the kernel does not execute an existing executable file.
+/// Returns the reason why the kernel does not execute a file that exists and is executable.
 fn start_problem(errno: i32) -> StartProblem {
     match errno {
         libc::ENOENT | libc::EACCES | libc::EPERM => StartProblem::MissingLoader {},
@@ -76,8 +76,8 @@ fn start_problem(errno: i32) -> StartProblem {
     }
 }
 
-/// Returns the library that the loader of glibc or musl reports as missing. The program itself could print the same
-/// text, which would only change a name in a message.
+/// Returns the library that the loader of glibc or musl reports as missing. A program could print the same text itself,
+/// but would only change a name in a message.
 fn missing_library(stderr: &str) -> Option<String> {
     const MAX_NAME_BYTES: usize = 100;
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._+-".contains(c);
@@ -88,7 +88,7 @@ fn missing_library(stderr: &str) -> Option<String> {
     (name.len() <= MAX_NAME_BYTES && name.contains(".so") && name.chars().all(is_plain)).then(|| name.to_owned())
 }
 
-/// Returns whether a sanitizer's runtime reports that it was denied its terabytes of address space.
+/// Returns whether the runtime of a sanitizer reports that it did not get the terabytes of address space that it needs.
 fn wants_shadow(stderr: &str) -> bool {
     const MESSAGES: [&str; 3] = [
         "ReserveShadowMemoryRange failed",
@@ -98,10 +98,10 @@ fn wants_shadow(stderr: &str) -> bool {
     MESSAGES.iter().any(|complaint| stderr.contains(complaint))
 }
 
-/// Returns whether the output ends with a runtime's message about a denied request for memory. A single request beyond
-/// the limit of address space fails without memory in use, so no counter shows it.
+/// Returns whether the output ends with a runtime's message about a request for memory that was denied. If a single
+/// request exceeds the limit of address space, it fails before the memory is used, so no counter shows it.
 fn wants_memory(stderr: &str) -> bool {
-    // The messages of C++, Rust, Python, Java, Node and the sanitizers.
+    // These are messages of C++, Rust, Python, Java, Node and the sanitizers.
     const MESSAGES: [&str; 6] = [
         "what():  std::bad_alloc",
         "memory allocation of ",

@@ -5,10 +5,10 @@ use super::{
     layers::{Layer, LayerReport, reports},
 };
 
-/// Tests every layer once on this host and returns the results. Starts the current program as a supervisor.
+/// Tests each layer once on this host, and returns the results. For that it starts the current program as a supervisor.
 ///
-/// The program must call [`supervisor_main`](super::supervisor_main) first in its `main`. If the supervisor does not
-/// start, every layer is reported as missing for that reason.
+/// The program's `main` must begin with a call of [`supervisor_main`](super::supervisor_main). If the supervisor does
+/// not start, every layer is reported as missing for that reason.
 #[must_use]
 pub fn check_host() -> Vec<LayerReport> {
     match Supervisor::this_program().probe() {

@@ -1,4 +1,4 @@
-//! Simulated runs, scripted for tests, and runs that are decided before anything is started.
+//! Simulates runs: those that a test scripts, and those whose outcome is known before anything is started.
 
 use std::{sync::Arc, time::Duration};
 
@@ -11,31 +11,31 @@ use super::{
     running_program::RunningProgram,
 };
 
-/// The result of a fake run.
+/// The result of a simulated run.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct FakeRun {
-    /// The way the run ended.
+    /// The way in which the run ended.
     pub ended: RunEnd,
-    /// The trace that the run leaves, if the job has one; empty for no trace.
+    /// The trace that the run writes, if the job has a trace. It writes none if this is empty.
     pub trace: Vec<u8>,
     /// The standard output.
     pub stdout: Vec<u8>,
     /// The standard error.
     pub stderr: Vec<u8>,
-    /// The processor time, which is also used as the wall time.
+    /// The processor time of the run, which is also its wall time.
     pub cpu: Duration,
     /// The peak memory in bytes.
     pub peak_memory: u64,
 }
 
 impl FakeRun {
-    /// Returns a run that ended with `ended` and wrote nothing.
+    /// Returns a run that ended with `ended` and wrote nothing at all.
     #[must_use]
     pub fn with_end(ended: RunEnd) -> Self {
         Self { ended, trace: Vec::new(), stdout: Vec::new(), stderr: Vec::new(), cpu: Duration::ZERO, peak_memory: 0 }
     }
 
-    /// Returns a run that exited with code 0 and wrote `trace`.
+    /// Returns a run that exited with code 0 after writing `trace`.
     #[must_use]
     pub fn wrote(trace: impl Into<Vec<u8>>) -> Self {
         Self { trace: trace.into(), ..Self::with_end(RunEnd::Exited(0)) }

@@ -7,63 +7,63 @@ use std::{
 
 use super::wire;
 
-/// Errors of the grader or the host, never of the program.
+/// An error of the grader or the host. The program is never the cause.
 #[derive(Debug, thiserror::Error)]
 pub enum SandboxError {
     /// The host lacks a required layer.
     #[error("this host cannot run programs safely:\n{missing}")]
     Missing {
-        /// One line per missing layer, with its remedy.
+        /// One line for each missing layer, with its remedy.
         missing: String,
     },
     /// The supervisor could not be started.
     #[error("cannot start the sandbox's supervisor {program}: {source}")]
     Supervisor {
-        /// The file of the supervisor's program.
+        /// The file that was to be started as the supervisor.
         program: String,
-        /// The system's error.
+        /// The error that the system reported.
         source: io::Error,
     },
     /// The supervisor ended without a report.
     #[error("the sandbox's supervisor ended unexpectedly ({how}); its processes were ended")]
     Lost {
-        /// A description of how the supervisor ended.
+        /// A description of the way in which the supervisor ended.
         how: String,
     },
     /// A step of the set-up failed.
     #[error("the sandbox could not {stage}: {source}")]
     SetUp {
-        /// The setup step that failed.
+        /// The step of the set-up that failed.
         stage: String,
-        /// The system's error.
+        /// The error that the system reported.
         source: io::Error,
     },
     /// The working folder cannot be used.
     #[error("cannot use the working folder {folder}: {source}")]
     Folder {
-        /// The folder.
+        /// The path of the working folder.
         folder: String,
-        /// The system's error.
+        /// The error that the system reported.
         source: io::Error,
     },
     /// A path that the program should be able to read does not exist.
     #[error("cannot read {path}, which the program needs: {source}")]
     Readable {
-        /// The path.
+        /// The path that does not exist.
         path: String,
-        /// The system's error.
+        /// The error that the system reported.
         source: io::Error,
     },
-    /// The program was changed after it was staged.
+    /// The program was changed after the grader had copied it.
     #[error("{program} was changed or removed during grading by another program")]
     Changed {
-        /// The program.
+        /// The path of the program.
         program: String,
     },
-    /// Processes could not be ended.
+    /// Some processes of the run could not be ended.
     #[error("{count} processes of the program could not be ended; check this host for processes in state D")]
     Survivors {
-        /// The number of processes.
+        /// The number of processes that could not be ended.
         count: u32,
     },
 }
@@ -77,13 +77,13 @@ pub(super) fn from_setup_failure(failure: wire::Failure) -> SandboxError {
     SandboxError::SetUp { stage: failure.stage, source }
 }
 
-/// Returns the error for a supervisor that ended without a report. Its channel must be closed, so that a supervisor
-/// that is only stuck ends.
+/// Returns the error for a supervisor that ended without a report. The caller must have closed its channel, so that
+/// even a supervisor that is stuck ends.
 pub(super) fn loss_error(mut child: Child) -> SandboxError {
     let status = child.wait().map_or_else(|error| error.to_string(), |status| status.to_string());
     let mut text = String::new();
     if let Some(stderr) = child.stderr.take() {
-        // The last lines of the supervisor's output help to find the cause, but may be missing.
+        // The last lines of the supervisor's output help to find the cause. They may be missing.
         let _ = stderr.take(2000).read_to_string(&mut text);
     }
     let text = text.trim();

@@ -14,34 +14,35 @@ use serde::{Deserialize, Serialize};
 /// The rights of a program, in addition to computing and writing into its working folder.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum Policy {
-    /// A student's program may start threads, but no other process and no second program.
+    /// A student's program: it may start threads, but no other process and no other program.
     Submission,
-    /// Compilers and build tools may start processes and the system's programs, within the same limits.
+    /// A compiler or a build tool: it may start processes and the system's programs, within the same limits.
     Tools,
 }
 
 /// The limits of one run. All limits are always enforced.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Limits {
-    /// The processor time of all the program's threads and processes together.
+    /// The limit on the processor time of all threads and processes together.
     pub cpu: Duration,
-    /// The wall time, from the start to the end.
+    /// The limit on the wall time from the start to the end.
     pub wall: Duration,
-    /// The resident memory of all processes together, in bytes. Files of the working folder do not count unless they
-    /// are mapped, even if the folder is in memory. The stack of the main thread is always limited to 8 MiB.
+    /// The limit on the resident memory of all processes together, in bytes. Files of the working folder do not count
+    /// unless they are mapped, even if the folder is in memory. The stack of the main thread is always limited to 8
+    /// MiB.
     pub memory: u64,
     /// The number of bytes that are kept of standard output, and of standard error. The rest is read and dropped.
     pub output_bytes: u64,
-    /// The maximum length of the trace ([`Job::trace`]), in bytes.
+    /// The maximum length of the trace ([`Job::trace`]) in bytes.
     pub trace_bytes: u64,
-    /// The number of bytes on disk in the working folder (blocks in use, so holes do not count), including those at the
-    /// start. A job with a trace may use [`Limits::trace_bytes`] in addition.
+    /// The limit on the bytes on disk in the working folder, including those that are there at the start. Blocks in use
+    /// are counted, so holes do not count. A job with a trace may use [`Limits::trace_bytes`] in addition.
     pub folder_bytes: u64,
-    /// The number of files and folders in the working folder, including those at the start.
+    /// The limit on the number of files and folders in the working folder, including those that are there at the start.
     pub folder_files: u64,
-    /// The number of threads and processes at one time.
+    /// The maximum number of threads and processes at the same time.
     pub processes: u32,
-    /// The number of descriptors that one process may hold.
+    /// The maximum number of descriptors that one process may have open.
     pub open_files: u32,
 }
 
@@ -62,12 +63,12 @@ impl Default for Limits {
     }
 }
 
-/// The identity of the file at a path, which shows whether the file was changed since.
+/// The identity of a file, by which it can be recognized whether the file was changed.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ProgramIdentity([i64; 5]);
 
 impl ProgramIdentity {
-    /// Returns the identity of the regular file at the path, following links; `None` if there is no such file.
+    /// Returns the identity of the regular file at the path. Links are followed. `None` if there is no such file.
     #[must_use]
     pub fn from_path(path: &Path) -> Option<Self> {
         let metadata = std::fs::metadata(path).ok().filter(std::fs::Metadata::is_file)?;
@@ -76,12 +77,12 @@ impl ProgramIdentity {
     }
 }
 
-/// One program to run once.
+/// A program that is to be run once, with its limits.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Job {
-    /// The program's file.
+    /// The path of the program.
     pub program: PathBuf,
-    /// The working folder.
+    /// The path of the working folder.
     pub folder: PathBuf,
     pub(crate) arguments: Vec<OsString>,
     pub(crate) readable: Vec<PathBuf>,
@@ -117,14 +118,14 @@ impl Job {
         }
     }
 
-    /// Sets the program's arguments, without its own name.
+    /// Sets the arguments of the program, without the program's own name.
     #[must_use]
     pub fn arguments<A: Into<OsString>>(mut self, arguments: impl IntoIterator<Item = A>) -> Self {
         self.arguments = arguments.into_iter().map(Into::into).collect();
         self
     }
 
-    /// Sets the files and folders outside the working folder that the program may read (not change or execute).
+    /// Sets the files and folders outside the working folder that the program may read, but not change or execute.
     ///
     /// If the grader is root, the program runs as another user, so the paths must be readable by all users.
     #[must_use]
@@ -133,17 +134,17 @@ impl Job {
         self
     }
 
-    /// Declares that the program writes its trace into the file `name` of the working folder, which has a separate
-    /// limit. [`LeftFolder::regular_file`](crate::LeftFolder::regular_file) opens the trace.
+    /// Declares that the program writes its trace into the file `name` in the working folder. The trace has a limit of
+    /// its own. [`LeftFolder::regular_file`](crate::LeftFolder::regular_file) opens the trace.
     #[must_use]
     pub fn trace(mut self, name: impl Into<String>) -> Self {
         self.trace = Some(name.into());
         self
     }
 
-    /// Lets the program work in a copy of the working folder in memory, if there are namespaces and enough memory. The
-    /// kernel then limits the copy's bytes and files. The folder itself does not change; the program's files are in the
-    /// [`LeftFolder`](crate::LeftFolder).
+    /// Lets the program work in a copy of the working folder in memory, if namespaces work and there is enough memory.
+    /// The kernel then limits the copy's bytes and files. The folder itself does not change; the program's files are in
+    /// the [`LeftFolder`](crate::LeftFolder).
     #[must_use]
     pub fn folder_in_memory(mut self) -> Self {
         self.in_memory = true;
@@ -158,15 +159,15 @@ impl Job {
         self
     }
 
-    /// Sets the rights of the program.
+    /// Sets what the program may do.
     #[must_use]
     pub fn policy(mut self, policy: Policy) -> Self {
         self.policy = policy;
         self
     }
 
-    /// Sets environment variables, in addition to the few that every program gets (`PATH`, `HOME`, `TMPDIR`, `LC_ALL`).
-    /// The grader's own environment is never passed to the program.
+    /// Sets environment variables for the program, in addition to the few that every program gets (`PATH`, `HOME`,
+    /// `TMPDIR`, `LC_ALL`). The grader's own environment is never passed to the program.
     #[must_use]
     pub fn environment<N: Into<OsString>, V: Into<OsString>>(
         mut self,
@@ -176,23 +177,24 @@ impl Job {
         self
     }
 
-    /// Sets whether a program built with an address, thread or memory sanitizer may run. Sanitizers reserve terabytes
-    /// of address space, so the memory of such a program is limited only by delayed checks of the memory in use.
+    /// Sets whether programs that were built with an address, thread or memory sanitizer may run. Sanitizers reserve
+    /// terabytes of address space. Therefore the memory of such a program is limited only by checks of the memory in
+    /// use, which come a little late.
     #[must_use]
     pub fn sanitizers(mut self, allowed: bool) -> Self {
         self.sanitizers = allowed;
         self
     }
 
-    /// Declares that the program is the grader's copy, with this identity. If the file is missing or different at the
-    /// start, this is an error of the grader and not of the program.
+    /// Declares that the program is a copy that the grader made, with this identity. If the file is then missing or
+    /// different at the start, the grader is at fault, and not the program.
     #[must_use]
     pub fn with_identity(mut self, identity: Option<ProgramIdentity>) -> Self {
         self.staged = identity;
         self
     }
 
-    /// Sets the limits.
+    /// Sets the limits of the run.
     #[must_use]
     pub fn limits(mut self, limits: Limits) -> Self {
         self.limits = limits;

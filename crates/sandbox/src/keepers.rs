@@ -23,8 +23,8 @@ use super::{
     wire::{self, Report, RunOrder},
 };
 
-/// The properties that all runs of a keeper share: the whole order except arguments, environment and the working folder
-/// with its contents, and the identities of the files that the order names.
+/// The properties that all runs of a keeper share: the order except for the arguments, the environment, and the working
+/// folder with its contents; and the identities of the files that the order names.
 #[derive(Debug, PartialEq, Eq)]
 pub(super) struct Kind {
     order: RunOrder,
@@ -33,8 +33,8 @@ pub(super) struct Kind {
 }
 
 impl Kind {
-    /// Returns whether a keeper may serve the order. It may not if the run has no namespaces that end with it, or if
-    /// processes are not counted.
+    /// Returns whether a keeper may serve the order. It may not if processes are not counted, or if the run has no
+    /// namespaces that end with it.
     pub(super) fn exists_for(order: &RunOrder) -> bool {
         order.volatile && !order.tools && order.walls.namespaces && order.walls.seccomp
     }
@@ -58,7 +58,7 @@ impl Kind {
     }
 }
 
-/// A keeper process. Dropping the value ends the process and waits for its end.
+/// A keeper process. When the value is dropped, the process is ended and waited for.
 #[derive(Debug)]
 pub(super) struct Keeper {
     kind: Kind,
@@ -71,8 +71,8 @@ impl Keeper {
         Self { kind, child: Some(child), socket }
     }
 
-    /// Requests the run of an order, whose files have the contents `files`. Returns the connection to the run's
-    /// supervisor, and the file from which the supervisor's answers are read.
+    /// Requests a run. `files` are the contents of the files that the order names. Returns the connection to the run's
+    /// supervisor, and the file from which its answers are read.
     pub(super) fn request_run(&self, order: &RunOrder, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
         let folder = File::open(wire::path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
@@ -85,7 +85,7 @@ impl Keeper {
     }
 
     fn dismiss(&self) {
-        // The shutdown fails if the keeper has ended, which does not matter.
+        // This fails if the keeper has ended, which does not matter.
         let _ = self.socket.shutdown(Shutdown::Both);
     }
 }
@@ -100,14 +100,14 @@ impl Drop for Keeper {
     }
 }
 
-/// The idle keepers of a backend. There are never more keepers than there were runs at one time.
+/// The idle keepers of a backend. Their number never exceeds the largest number of runs at the same time.
 #[derive(Debug, Default)]
 pub(super) struct KeeperPool {
     idle: Mutex<Vec<Keeper>>,
 }
 
 impl KeeperPool {
-    /// Takes a keeper for runs of this kind. If there is none, an idle keeper of a different kind is removed to make
+    /// Takes an idle keeper for runs of this kind. If there is none, an idle keeper of another kind is ended to make
     /// room.
     pub(super) fn take(&self, kind: &Kind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
@@ -117,7 +117,7 @@ impl KeeperPool {
             None => idle.pop(),
         };
         drop(idle);
-        // The keeper is dropped here, outside the lock, so that no thread waits.
+        // The keeper is dropped here, after the lock is released, so that no thread waits for its end.
         taken.filter(|_| fits.is_some())
     }
 
@@ -126,17 +126,17 @@ impl KeeperPool {
     }
 }
 
-/// The supervisor of a run.
+/// The process that supervises a run.
 #[derive(Debug)]
 pub(super) enum Host {
-    /// A separate process.
+    /// A supervisor process for this run only.
     Own(Child),
-    /// A keeper, and the pool to which it returns.
+    /// A keeper, and the pool to which it returns after the run.
     Kept(Box<Keeper>, Arc<KeeperPool>),
 }
 
 impl Host {
-    /// Returns the error for a supervisor that ended without a report. Its channel must be closed.
+    /// Returns the error for a supervisor that ended without a report. The caller must have closed its channel.
     pub(super) fn loss_error(self) -> SandboxError {
         match self {
             Self::Own(child) => loss_error(child),
@@ -150,21 +150,21 @@ impl Host {
         }
     }
 
-    /// Kills the keeper in any state.
+    /// Kills the keeper, whatever it is doing.
     pub(super) fn kill(&mut self) {
         let child = match self {
             Self::Own(child) => Some(child),
             Self::Kept(keeper, _) => keeper.child.as_mut(),
         };
-        // Killing fails if the keeper has ended, which does not matter.
+        // This fails if the keeper has ended, which does not matter.
         let _ = child.map(Child::kill);
     }
 
-    /// Keeps the keeper for another run, if its run ended normally according to the report.
+    /// Keeps the keeper for another run, if the report shows that this run ended normally.
     pub(super) fn rest(self, report: Option<&Report>) -> Option<RestingKeeper> {
         match self {
             Self::Own(mut child) => {
-                // The supervisor ends by itself after its report; its exit status no longer matters.
+                // After its report, the supervisor ends by itself. Its exit status no longer matters.
                 let _ = child.wait();
                 None
             }
@@ -176,8 +176,8 @@ impl Host {
     }
 }
 
-/// A keeper between two runs. Dropping it makes it available to others. Before that, the folder of its last run must be
-/// removed, because the folder's pages count for the keeper's group.
+/// A keeper between two runs. When the value is dropped, others can use the keeper. The folder of the last run must be
+/// removed before that, because the pages of the folder count for the keeper's group.
 #[derive(Debug)]
 pub(super) struct RestingKeeper {
     keeper: Option<Box<Keeper>>,
@@ -192,7 +192,7 @@ impl Drop for RestingKeeper {
     }
 }
 
-/// Returns whether the program ended by itself, within its limits and with an exit code.
+/// Returns whether the program exited by itself, within its limits.
 fn has_simply_ended(report: &Report) -> bool {
     let calm = report.cause.is_none() && report.exec_errno.is_none() && report.survivors == 0 && !report.folder_over;
     calm && libc::WIFEXITED(report.status)

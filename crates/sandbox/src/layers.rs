@@ -1,13 +1,13 @@
 //! The layers of the sandbox, and which of them work on this host.
 //!
-//! The module contains only data, which `doctor` and reports print. A layer counts as active only if a probe process
-//! has set it up on this host.
+//! This module contains only data, which the command `doctor` and reports print. A layer counts as active only if a
+//! probe process could set it up on this host.
 
 use std::sync::Arc;
 
 use super::wire::{Probe, Walls};
 
-/// Each row has a layer and its name in reports.
+/// Declares the layers. Each row has a layer, and the layer's name in reports.
 macro_rules! layers {
     ($($(#[$about:meta])+ $layer:ident $name:literal;)+) => {
         /// A layer of the sandbox.
@@ -18,7 +18,7 @@ macro_rules! layers {
             /// All layers, in the order of a report.
             pub const ALL: [Self; [$(Self::$layer),+].len()] = [$(Self::$layer),+];
 
-            /// Returns the name in reports.
+            /// Returns the layer's name in reports.
             #[must_use]
             pub const fn name(self) -> &'static str {
                 match self { $(Self::$layer => $name,)+ }
@@ -28,19 +28,19 @@ macro_rules! layers {
 }
 
 layers! {
-    /// Executing a program never gains privileges.
+    /// Executing a program never gives privileges.
     NoNewPrivileges "no new privileges";
-    /// Resource limits, clocks and counters limit a program.
+    /// Resource limits, clocks and counters limit what a program uses.
     Limits "resource limits";
-    /// The supervisor adopts orphans, so no process outlives a run.
+    /// The supervisor adopts orphans, so that no process outlives a run.
     Reaper "reaper of orphans";
     /// Copies of programs can be executed. This is not a protection, but grading is impossible without it.
     Execution "executable copies";
-    /// Only listed system calls are allowed (seccomp).
+    /// Only system calls in a list are allowed (seccomp).
     CallFilter "system call filter";
-    /// Forbidden calls are named in the outcome.
+    /// The outcome names the forbidden call that a program made.
     NamedCalls "named violations";
-    /// Landlock's rules restrict files.
+    /// Landlock's rules restrict access to files.
     FileRules "file rules (Landlock)";
     /// Landlock's rules restrict signals and abstract sockets.
     Scopes "signal scope (Landlock)";
@@ -48,29 +48,30 @@ layers! {
     OwnUser "a user per program";
     /// Namespaces hide other processes, the network, and most files.
     Namespaces "namespaces";
-    /// Each run has a control group, with the kernel's own counts and a command that ends all processes.
+    /// Each run has a control group. In it, the kernel counts what the run uses, and a single command ends all
+    /// processes.
     ControlGroup "control group";
 }
 
 /// The first version of Landlock that restricts signals.
 const SIGNAL_SCOPE_ABI: u8 = 6;
 
-/// The state of one layer on this host.
+/// Whether a layer works on this host, and why or why not.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct LayerReport {
-    /// The layer.
+    /// The layer that the report is about.
     pub layer: Layer,
-    /// Whether the layer works.
+    /// Whether the layer works on this host.
     pub active: bool,
     /// Whether grading on this host requires the layer.
     pub required: bool,
     /// The effect of the layer, or the reason why it does not work.
     pub detail: String,
-    /// The component to install or enable, if the layer does not work and there is a remedy.
+    /// The component to install or enable so that the layer works; `None` if it works, or if there is no remedy.
     pub remedy: Option<&'static str>,
 }
 
-/// Returns the reports of a probe.
+/// Returns the reports on all layers, from the results of a probe.
 pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
     let mut reports = Vec::from(process_layers(probe));
     reports.extend(call_and_file_layers(probe));
@@ -78,7 +79,8 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
     reports
 }
 
-/// Returns the report on a layer: its effect if it has no problem, otherwise the problem and its remedy.
+/// Returns the report on a layer. If there is no problem, it contains what the layer does; otherwise the problem and
+/// its remedy.
 fn report(layer: Layer, problem: Option<String>, held: &str, required: bool, remedy: &'static str) -> LayerReport {
     LayerReport {
         layer,
@@ -94,7 +96,7 @@ fn has_own_user(probe: &Probe) -> bool {
     probe.root && probe.own_user.is_none()
 }
 
-/// Returns the layers that a process sets up around itself, and the execution of copies.
+/// Returns the reports on the layers that a process sets up around itself, and on the execution of copies.
 fn process_layers(probe: &Probe) -> [LayerReport; 4] {
     [
         report(
@@ -132,7 +134,7 @@ fn process_layers(probe: &Probe) -> [LayerReport; 4] {
     ]
 }
 
-/// Returns the layers that restrict system calls, files and signals.
+/// Returns the reports on the layers that restrict system calls, files and signals.
 fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
     let (user, hidden) = (has_own_user(probe), probe.namespaces.is_none());
     let scopes = match (&probe.landlock, probe.landlock_abi) {
@@ -183,7 +185,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
     ]
 }
 
-/// Returns the layers that only some hosts have: users, namespaces and groups.
+/// Returns the reports on the layers that only some hosts have: users, namespaces and control groups.
 fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
     let own_user = match (probe.root, probe.roots_group) {
         (true, _) => probe.own_user.clone(),
@@ -227,7 +229,7 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
     ]
 }
 
-/// Returns the reports as if `layer`, and the layers that depend on it, were missing.
+/// Returns the reports for the case that `layer` is missing, and all layers that depend on it.
 pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport> {
     let mut reports = reports.to_vec();
     for report in &mut reports {
@@ -237,7 +239,7 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
             report.remedy = None;
         }
     }
-    // Without file rules, root may grade only if the host's files are hidden.
+    // Without file rules, root may grade only if the files of the host are hidden.
     if [Layer::FileRules, Layer::Namespaces].contains(&layer) {
         let hidden = is_active(&reports, Layer::OwnUser) && is_active(&reports, Layer::Namespaces);
         for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules) {
@@ -247,7 +249,7 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
     reports
 }
 
-/// Returns the reports with the file rules of an older kernel.
+/// Returns the reports for the case that the kernel has this older version of Landlock.
 pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerReport> {
     let mut reports = if version < SIGNAL_SCOPE_ABI { without(reports, Layer::Scopes) } else { reports.to_vec() };
     for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules && report.active) {
@@ -256,14 +258,15 @@ pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerRe
     reports
 }
 
-/// Returns the layers that the supervisor sets up, from the reports. The error names missing required layers.
+/// Returns the layers that the supervisor must set up, according to the reports. If required layers are missing, the
+/// error names them.
 pub(super) fn select_layers(reports: &[LayerReport]) -> Result<Walls, String> {
     let missing = missing(reports);
     if missing.is_empty() { Ok(active(reports)) } else { Err(missing.join("\n")) }
 }
 
-/// Returns the layers that work, even if required ones are missing. The error names missing layers if root would have
-/// to run programs as itself.
+/// Returns the layers that work, even if required ones are missing. If root would have to run programs as root, the
+/// error names the missing layers.
 pub(super) fn available_layers(reports: &[LayerReport]) -> Result<Walls, String> {
     match reports.iter().find(|report| report.layer == Layer::OwnUser && report.required && !report.active) {
         Some(report) => Err(line(report)),
@@ -271,7 +274,7 @@ pub(super) fn available_layers(reports: &[LayerReport]) -> Result<Walls, String>
     }
 }
 
-/// Returns one line per required layer that does not work.
+/// Returns one line for each required layer that does not work.
 pub(super) fn missing(reports: &[LayerReport]) -> Vec<String> {
     reports.iter().filter(|report| report.required && !report.active).map(line).collect()
 }
@@ -293,7 +296,7 @@ fn active(reports: &[LayerReport]) -> Walls {
         landlock_version: 0,
         scopes: active(Layer::Scopes),
         seccomp: active(Layer::CallFilter),
-        // The listener is a part of the filter.
+        // The listener that names calls is a part of the filter.
         notify: active(Layer::NamedCalls) && active(Layer::CallFilter),
         own_user: active(Layer::OwnUser),
         namespaces: active(Layer::Namespaces),
@@ -301,7 +304,7 @@ fn active(reports: &[LayerReport]) -> Walls {
     }
 }
 
-/// Returns the layers for the outcome of a run that was never started.
+/// Returns reports for a run that was never started. All layers are inactive in them.
 pub(super) fn none() -> Arc<[LayerReport]> {
     let off = |layer| LayerReport {
         layer,

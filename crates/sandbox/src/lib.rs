@@ -1,8 +1,8 @@
 //! Runs one program under limits and reports how it ended.
 //!
-//! This crate does not use scenes, traces or verdicts: its inputs and outputs are bytes, and a [`RunOutcome`] contains
-//! the kernel's facts. A [`Job`] describes a run, a [`Backend`] starts it, and a [`RunningProgram`] is a started
-//! program.
+//! This crate knows nothing about scenes, traces or verdicts. Its inputs and outputs are bytes, and a [`RunOutcome`]
+//! contains what the kernel reports. A [`Job`] describes a run, a [`Backend`] starts it, and a [`RunningProgram`] is a
+//! program that was started.
 //!
 //! The grader starts its own binary again with a hidden first argument ([`supervisor_main`]). The new, single-threaded
 //! process is the *supervisor*. It becomes the reaper of all its descendants, forks, restricts the child (new session,
@@ -63,18 +63,18 @@ pub use supervisor::supervisor_main;
 #[doc(hidden)]
 pub use wire::read_messages;
 
-/// The processes whose processor time is requested.
+/// The processes whose processor time is measured.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ProcessorTimeScope {
-    /// The calling thread.
+    /// The thread that makes the call.
     Thread,
-    /// The calling process.
+    /// The process that makes the call.
     Process,
-    /// The processes of all finished runs, and their supervisors.
+    /// The processes of all finished runs, and the supervisors of these runs.
     Children,
 }
 
-/// Returns a processor time, in user mode and in the kernel together.
+/// Returns the processor time of these processes, in user mode and in the kernel together.
 #[must_use]
 pub fn processor_time(of: ProcessorTimeScope) -> std::time::Duration {
     match of {

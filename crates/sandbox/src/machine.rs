@@ -1,10 +1,10 @@
-//! The machine's memory and its use, as reported by the kernel.
+//! Reads from the kernel how much memory the machine has and how much is in use.
 
 #![expect(unsafe_code, reason = "these calls have no safe wrapper among the dependencies")]
 
-/// Returns the result of `sysinfo`.
+/// Returns what the kernel reports in `sysinfo`.
 fn read_sysinfo() -> libc::sysinfo {
-    // SAFETY: an all-zero structure is valid and outlives the call, which fills it or leaves it.
+    // SAFETY: an all-zero structure is valid and outlives the call, which fills it or leaves it unchanged.
     unsafe {
         let mut about: libc::sysinfo = std::mem::zeroed();
         libc::sysinfo(&raw mut about);
@@ -12,13 +12,13 @@ fn read_sysinfo() -> libc::sysinfo {
     }
 }
 
-/// Returns the number of bytes in the line of the kernel's report that begins with `word`, which is in kB there.
+/// Returns the number of bytes in the line of a kernel report that begins with `word`. The report gives it in kB.
 pub(super) fn bytes_of(text: &str, word: &str) -> Option<u64> {
     let line = text.lines().find_map(|line| line.strip_prefix(word)?.strip_suffix(" kB"))?;
     line.trim().parse::<u64>().ok().map(|kib| kib << 10)
 }
 
-/// Returns whether memory may be swapped to disk, where it is resident for no process.
+/// Returns whether memory may be swapped to disk. Swapped memory is not resident for any process.
 pub(super) fn has_swap() -> bool {
     read_sysinfo().totalswap > 0
 }

@@ -9,7 +9,7 @@ use std::{
 use super::machine;
 
 /// Returns whether a folder of `bytes` bytes may be in memory. The machine and the grader's control groups must have
-/// room for one folder per simultaneous run, and as much again for the programs.
+/// space for one folder per simultaneous run, and as much again for the programs.
 pub(super) fn is_enough_for(bytes: u64) -> bool {
     static SIMULTANEOUS_RUNS: OnceLock<u64> = OnceLock::new();
     let runs =
@@ -17,8 +17,8 @@ pub(super) fn is_enough_for(bytes: u64) -> bool {
     memory_left().is_some_and(|left| bytes <= left / (2 * runs.max(&2)))
 }
 
-/// Returns the remaining memory of the machine and the grader's groups. The value may be slightly outdated, because the
-/// kernel needs longer to compute it than to start a small program.
+/// Returns the memory that is left on the machine and in the grader's control groups. The value may be slightly
+/// outdated, because the kernel needs more time to compute it than a small program needs to start.
 fn memory_left() -> Option<u64> {
     const CACHE_LIFETIME: Duration = Duration::from_millis(500);
     static LAST_MEASUREMENT: Mutex<Option<(Instant, Option<u64>)>> = Mutex::new(None);
@@ -38,7 +38,7 @@ fn available() -> Option<u64> {
     machine::bytes_of(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
-/// A control group of this process that may have a limit.
+/// A control group of this process that may limit memory.
 #[derive(Debug, PartialEq, Eq)]
 struct LimitedGroup {
     limit: PathBuf,
@@ -46,14 +46,14 @@ struct LimitedGroup {
 }
 
 impl LimitedGroup {
-    /// Returns the remaining memory of the group; `None` without a limit.
+    /// Returns the memory that is left in the group; `None` if the group has no limit.
     fn memory_left(&self) -> Option<u64> {
         let number = |path: &Path| std::fs::read_to_string(path).ok()?.trim().parse::<u64>().ok();
         Some(number(&self.limit)?.saturating_sub(number(&self.usage)?))
     }
 }
 
-/// Returns the control groups of this process, in the files of both versions.
+/// Returns the control groups of this process, in both versions of control groups.
 fn groups() -> &'static [LimitedGroup] {
     static LIMITED_GROUPS: OnceLock<Vec<LimitedGroup>> = OnceLock::new();
     LIMITED_GROUPS.get_or_init(|| {

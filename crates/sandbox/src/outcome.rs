@@ -1,4 +1,4 @@
-//! The way a run ended, according to the kernel.
+//! The outcome of a run, as the kernel reports it.
 
 use std::{sync::Arc, time::Duration};
 
@@ -6,31 +6,31 @@ pub use fosssim_ended::{RunEnd, StartProblem};
 
 use super::layers::LayerReport;
 
-/// The output of a program to one stream.
+/// The bytes that a program wrote to standard output or standard error.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct CapturedOutput {
-    /// The first bytes, up to the limit. They come from the program and must be escaped before they are displayed.
+    /// The first bytes, up to the limit. They are not trusted, and must be escaped before they are displayed.
     pub bytes: Vec<u8>,
     /// Whether the output was longer than the limit.
     pub truncated: bool,
 }
 
-/// The outcome of one run.
+/// The outcome of a run of a program.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct RunOutcome {
-    /// The way the run ended.
+    /// The way in which the run ended.
     pub ended: RunEnd,
-    /// The processor time of the whole process tree, user and system.
+    /// The processor time of all processes of the run, in user mode and in the kernel.
     pub cpu: Duration,
-    /// The wall time.
+    /// The wall time of the run.
     pub wall: Duration,
-    /// The peak of the resident memory in bytes.
+    /// The largest amount of resident memory, in bytes.
     pub peak_memory: u64,
-    /// The standard output.
+    /// The bytes that the program wrote to standard output.
     pub stdout: CapturedOutput,
-    /// The standard error.
+    /// The bytes that the program wrote to standard error.
     pub stderr: CapturedOutput,
-    /// The state of all layers during the run.
+    /// Reports on all layers, as they were during the run.
     pub layers: Arc<[LayerReport]>,
 }
 

@@ -1,7 +1,8 @@
 //! Finds the grader's own files, which no submission may read or execute.
 //!
 //! The files contain the answers: the grader and its Python module compute the original's traces, and the sample is a
-//! right submission. Landlock can only allow files, so a folder that contains such a file is allowed entry by entry.
+//! right submission. Landlock can only allow files, not forbid them. Therefore, if a folder contains such a file, its
+//! other entries are allowed one by one.
 
 use std::{
     collections::{BTreeMap, BTreeSet},
@@ -15,9 +16,9 @@ use std::{
 
 /// The path of the current program.
 const CURRENT_PROGRAM: &str = "/proc/self/exe";
-/// The prefix of the sample's name.
+/// The prefix of the sample program's file name.
 const SAMPLE_PREFIX: &str = "fosssim-sample";
-/// The prefixes of the names of the grader's programs.
+/// The prefixes of the file names of the grader's programs.
 const PROGRAM_PREFIXES: [&str; 3] = ["fosssim-oracle", "fosssimoracle", "fosssim-sample"];
 /// The folders in which the programs are usually installed.
 const PROGRAM_FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/fosssim"];
@@ -26,14 +27,14 @@ const PROGRAM_FOLDERS: [&str; 4] = ["/usr/local/bin", "/usr/bin", "/bin", "/opt/
 pub const MARK_BACKWARDS: [u8; 32] = *b" di ekatsim htiw ,elpmas-misssof";
 /// The number of bytes that are searched for the mark at a time.
 const MARK_WINDOW: u64 = 1 << 20;
-/// The prefix of the names of the Python module and of the folder that `pip` creates next to it.
+/// The prefix of the Python module's name, and of the folder that `pip` creates next to the module.
 const MODULE_PREFIX: &str = "fosssim";
-/// The folders that contain Python installations.
+/// The folders in which Python installations are.
 const PYTHON_FOLDERS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/lib64"];
 /// The folders of modules within a Python installation.
 const MODULE_FOLDERS: [&str; 2] = ["dist-packages", "site-packages"];
 
-/// Returns whether the file has the name of a grader's program.
+/// Returns whether a file is called like one of the grader's programs.
 pub(super) fn is_name(path: &Path) -> bool {
     path.file_name().is_some_and(is_named)
 }
@@ -46,12 +47,12 @@ fn begins_with(name: &OsStr, own: &str) -> bool {
     name.as_bytes().get(..own.len()).is_some_and(|begin| begin.eq_ignore_ascii_case(own.as_bytes()))
 }
 
-/// Returns the entries of a folder; none if it cannot be read.
+/// Returns the entries of a folder. If the folder cannot be read, there are none.
 fn list_entries(folder: &Path) -> impl Iterator<Item = DirEntry> {
     std::fs::read_dir(folder).into_iter().flatten().flatten()
 }
 
-/// Returns the files and folders of the Python module, wherever `pip` has put them below `pythons`.
+/// Returns the files and folders of the Python module, wherever `pip` has put them below the folders `pythons`.
 fn list_modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
     let is_python = |entry: &DirEntry| ["python", "pypy"].iter().any(|kind| begins_with(&entry.file_name(), kind));
     let pythons = pythons.iter().flat_map(|folder| list_entries(folder).filter(is_python));
@@ -62,8 +63,8 @@ fn list_modules(pythons: &[PathBuf]) -> Vec<PathBuf> {
     modules.map(|entry| entry.path()).collect()
 }
 
-/// Returns the result of [`list_files`] for the current program and its supervisor. It is computed once for all runs,
-/// because `/usr/bin` alone may hold thousands of files.
+/// Returns the result of [`list_files`] for the current program and its supervisor. It is computed only once for all
+/// runs, because `/usr/bin` alone may contain thousands of files.
 pub(super) fn known_files(supervisor: &Path) -> Arc<[PathBuf]> {
     static KNOWN_FILES: Mutex<BTreeMap<PathBuf, Arc<[PathBuf]>>> = Mutex::new(BTreeMap::new());
     let mut known = KNOWN_FILES.lock().unwrap_or_else(PoisonError::into_inner);
@@ -73,12 +74,12 @@ pub(super) fn known_files(supervisor: &Path) -> Arc<[PathBuf]> {
         .clone()
 }
 
-/// Returns the resolved paths of `programs`, of the other programs next to them, and of installed ones.
+/// Returns the resolved paths of `programs`, of the grader's other programs next to them, and of the installed ones.
 fn list_files(programs: &[&Path]) -> Vec<PathBuf> {
     let programs: Vec<PathBuf> = programs.iter().filter_map(|program| program.canonicalize().ok()).collect();
     let beside = programs.iter().filter_map(|program| program.parent()).map(Path::to_path_buf);
     let installed = PROGRAM_FOLDERS.into_iter().map(PathBuf::from).chain(beside);
-    // Some of the files are large, and some are links to others.
+    // Some of these files are large, and some are links to others.
     let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
     let entries = folders.iter().flat_map(|folder| list_entries(folder));
     let named = entries.filter(|entry| is_named(&entry.file_name())).map(|entry| entry.path());
@@ -121,18 +122,20 @@ fn has_mark(mut bytes: impl Read) -> io::Result<bool> {
     Ok(false)
 }
 
-/// A path that may be allowed.
+/// A path to which rules may allow access.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) enum AllowedPath {
-    /// A path with everything below it.
+    /// The path, and everything below it.
     Whole(PathBuf),
-    /// A folder that may only be listed, with everything below it.
+    /// A folder that may be listed, and everything below it, but whose files may not be read.
     Listing(PathBuf),
 }
 
-/// Returns the rules that allow everything at and below `path` except `own` (resolved paths).
+/// Returns the rules that allow everything at and below `path`, except for the files `own`, whose paths must be
+/// resolved.
 ///
-/// Links below a split folder are left out; their targets are allowed at their own paths, or not at all.
+/// If the entries of a folder are allowed one by one, links are left out. The targets of links are allowed at their own
+/// paths, or not at all.
 pub(super) fn allow_all_except(path: &Path, own: &[PathBuf]) -> Vec<AllowedPath> {
     let Ok(path) = path.canonicalize() else { return Vec::new() };
     let mut allowed = Vec::new();

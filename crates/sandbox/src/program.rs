@@ -1,8 +1,8 @@
 //! Finds the kind of a program from its first bytes, before anything is executed.
 //!
-//! The headers of a submitted file are not followed. The first bytes show the machine for which it was built; the
-//! kernel and the loader read the rest, inside the limits. Only the first line of a script is read, because the
-//! system's interpreter is executed instead of the script.
+//! The headers of a submitted file are not followed. Its first bytes show for which machine it was built. The rest is
+//! read by the kernel and the loader, within the limits. Only the first line of a script is read, because the system's
+//! interpreter is executed instead of the script.
 
 use std::{
     fs::File,
@@ -15,42 +15,43 @@ use super::{outcome::StartProblem, own_files};
 
 /// The first bytes of an ELF file.
 const ELF_MAGIC: &[u8] = b"\x7fELF";
-/// The number of bytes that show the kind of a file. The kernel reads the same number for the first line of a script.
+/// The number of bytes from which the kind of a file is recognized. The kernel reads as many bytes for the first line
+/// of a script.
 const FIRST_BYTES: u64 = 256;
-/// The folders of the system's programs that a script may name, in the order of the sandbox's `PATH`.
+/// The folders of the system's programs that a script may name. They are in the same order as in the sandbox's `PATH`.
 const PROGRAM_FOLDERS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
-/// The folders of interpreters to which the folders of programs link.
+/// The folders of interpreters to which folders of programs may link.
 const LIBRARY_FOLDERS: [&str; 4] = ["/lib", "/usr/lib", "/usr/lib64", "/usr/libexec"];
 
-/// The facts about a program that the sandbox needs before the start.
+/// The facts about a program that the sandbox needs before starting it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Program {
     /// The interpreters that the kernel executes to start the program.
     pub(super) executable: Vec<PathBuf>,
-    /// The names by which the files are requested, which may be links.
+    /// The names by which these files are requested. They may be links.
     pub(super) named: Vec<PathBuf>,
-    /// The way to run a script, if the program is one.
+    /// The way to run the program, if it is a script.
     pub(super) script: Option<Script>,
 }
 
-/// The interpreter of a script, found like the kernel and `env` would find it. It is executed directly, so a script
-/// needs only one execution.
+/// The interpreter of a script. It is found in the same way as by the kernel and by `env`. Because it is executed
+/// directly, a script needs only one execution.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub(super) struct Script {
-    /// The interpreter's file.
+    /// The path of the interpreter.
     pub(super) interpreter: PathBuf,
-    /// The interpreter's own name, followed by its arguments before the script.
+    /// The name of the interpreter, followed by those of its arguments that precede the script.
     pub(super) words: Vec<String>,
-    /// The environment variables set by the first line.
+    /// The environment variables that the script's first line sets.
     pub(super) environment: Vec<(String, String)>,
 }
 
-/// Examines the file at `path`, following symbolic links. The grader's own programs, `own`, are never run as a
-/// submission, an interpreter or a loader.
+/// Examines the file at `path`. Symbolic links are followed. The grader's own programs, which are in `own`, are never
+/// run as a submission, an interpreter or a loader.
 ///
 /// # Errors
 ///
-/// Fails if the file cannot be started on this machine, with the reason.
+/// Fails if the file cannot be started on this machine. The error is the reason.
 pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProblem> {
     let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::PermissionDenied => StartProblem::NotPermitted,
@@ -68,7 +69,7 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
     if metadata.permissions().mode() & 0o111 == 0 {
         return Err(StartProblem::NotExecutable);
     }
-    // A program that may be executed but not read would also be closed to the supervisor's checks.
+    // A program that may be executed but not read would also prevent the checks of the supervisor.
     let start = first_bytes(path).ok_or(StartProblem::NotPermitted)?;
     match (start.strip_prefix(b"#!"), other_system(&start)) {
         (Some(line), _) => find_interpreter(line, own, 0),
@@ -77,18 +78,19 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
     }
 }
 
-/// Returns the operating system whose programs begin with the bytes `start`.
+/// Returns the other operating system whose programs begin with these bytes; `None` if it is unknown.
 fn other_system(start: &[u8]) -> Option<&'static str> {
     match *start.first_chunk::<8>()? {
         [b'M', b'Z', ..] => Some("Windows"),
         [0xcf | 0xce, 0xfa, 0xed, 0xfe, ..] => Some("macOS"),
-        // In a universal binary, this is the number of programs. A Java class has its version there, from 45 on.
+        // In a universal binary, this is the number of programs. In a Java class it is the version, which is at least
+        // 45.
         [0xca, 0xfe, 0xba, 0xbe, 0, 0, 0, 1..45] => Some("macOS"),
         _ => None,
     }
 }
 
-/// Returns the bytes that show the kind of the file; `None` if it cannot be read.
+/// Returns the bytes from which the kind of a file is recognized; `None` if the file cannot be read.
 fn first_bytes(path: &Path) -> Option<Vec<u8>> {
     let mut start = Vec::new();
     File::open(path).ok()?.take(FIRST_BYTES).read_to_end(&mut start).ok()?;
@@ -97,12 +99,12 @@ fn first_bytes(path: &Path) -> Option<Vec<u8>> {
 
 /// Returns a script's interpreter, given its first line without `#!`.
 ///
-/// Each program named in the line becomes executable for the submission. It must therefore be one of the system's own
-/// programs, after all links and `..` are resolved, because a script that names the grader's program would be graded by
-/// the grader's answers. Nothing outside the system's folders is examined, because that would reveal which files exist
-/// there.
+/// The submission may then execute each program that the line names. Therefore, after all links and `..` are resolved,
+/// each must be one of the system's own programs. Otherwise a script could name the grader's program, and would be
+/// graded on the grader's answers. Nothing outside the system's folders is examined, because that would reveal which
+/// files exist there.
 fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
-    /// The maximum depth of interpreters that are scripts; the same as the kernel's.
+    /// The maximum number of interpreters in a row that are scripts. The kernel has the same limit.
     const MAX_DEPTH: u32 = 4;
     let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
     let hint = "; install it, or name another one";
@@ -111,7 +113,7 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
         hint: hint.into(),
     };
     if line.ends_with('\r') {
-        // The kernel treats the carriage return as the last character of the name.
+        // For the kernel, the carriage return is the last character of the name.
         let hint =
             ": its name ends with a carriage return, because the lines end with CR LF; convert them with dos2unix";
         return Err(missing(line.trim_start(), hint));
@@ -165,9 +167,10 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
     Ok(Program { script: Some(script), ..program })
 }
 
-/// Returns the command that `env` would find, with its arguments, given the words after `env` in a script's first line.
+/// Returns the command that `env` would find, and its arguments. `rest` is the part of a script's first line after
+/// `env`.
 fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String, Vec<String>), StartProblem> {
-    // Without -S the kernel passes the rest of the line as one word.
+    // Without -S, the kernel passes the rest of the line as a single word.
     let Some(split) = rest.strip_prefix("-S").or_else(|| rest.strip_prefix("--split-string=")) else {
         return match rest {
             "" => Err(StartProblem::NoInterpreter),
@@ -183,7 +186,7 @@ fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String
     Ok((name.to_owned(), words.map(str::to_owned).collect()))
 }
 
-/// Returns whether the path is textually in one of the system's folders.
+/// Returns whether the text of the path begins with one of the system's folders.
 fn is_systems(path: &Path) -> bool {
     let plain = path.components().all(|part| matches!(part, Component::RootDir | Component::Normal(_)));
     plain && PROGRAM_FOLDERS.iter().chain(&LIBRARY_FOLDERS).any(|folder| path.starts_with(folder))
@@ -195,8 +198,8 @@ fn require_system_file(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartPro
     let refused = || StartProblem::NotTheSystems { path: path.to_string_lossy().escape_default().to_string() };
     let resolved = path.canonicalize().map_err(|_| refused())?;
     let beneath = |folder: &&str| Path::new(folder).canonicalize().is_ok_and(|folder| resolved.starts_with(folder));
-    // The permission bit that lets every user execute. A file that only its owner may execute would otherwise be
-    // rejected too late.
+    // The permission bit that lets every user execute a file. If only the owner could execute a file, this would be
+    // noticed too late.
     const EXECUTE_BIT: u32 = 0o001;
     let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE_BIT != 0);
     let named = [path, &resolved].into_iter().any(own_files::is_name);
@@ -207,14 +210,14 @@ fn require_system_file(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartPro
     Ok(resolved)
 }
 
-/// Returns whether the path leads to one of the files `own`, whatever its name.
+/// Returns whether the path leads to one of the files in `own`, under any name.
 fn is_one_of(path: &Path, own: &[PathBuf]) -> bool {
     let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
     let here = identity(path);
     here.is_some() && own.iter().any(|own| identity(own) == here)
 }
 
-/// Checks that a file beginning with `start` is an ELF program for this machine.
+/// Checks that a file which begins with `start` is an ELF program for this machine.
 fn require_elf(start: &[u8]) -> Result<(), StartProblem> {
     if !start.starts_with(ELF_MAGIC) {
         return Err(StartProblem::NotAProgram);

@@ -1,4 +1,4 @@
-//! A running program, which can be stopped, with its outcome and the files that it left.
+//! A running program. It can be stopped, and in the end there are its outcome and the files that it left.
 
 use std::{
     fs::File,
@@ -22,7 +22,7 @@ use super::{
 /// The connection to the supervisor; `None` after the run.
 type ControlSocket = Arc<Mutex<Option<UnixStream>>>;
 
-/// A running program. Dropping the value stops the program and waits until every process has ended.
+/// A running program. When the value is dropped, the program is stopped, and all its processes have ended.
 #[derive(Debug)]
 pub struct RunningProgram {
     state: State,
@@ -32,11 +32,11 @@ pub struct RunningProgram {
 
 #[derive(Debug)]
 enum State {
-    /// The run is controlled by a supervisor.
+    /// A supervisor controls the run.
     Supervised(Box<SupervisedRun>),
-    /// The outcome is known.
+    /// The outcome is known, and was not returned to the caller yet.
     Known(Box<RunOutcome>),
-    /// The outcome was returned to the caller.
+    /// The outcome has been returned to the caller.
     Taken,
 }
 
@@ -52,34 +52,34 @@ pub(super) struct SupervisedRun {
 }
 
 impl RunningProgram {
-    /// Creates a run whose supervisor has reported that it is ready.
+    /// Creates the value for a run whose supervisor has reported that it is ready.
     pub(super) fn new(supervised: SupervisedRun, control: UnixStream, in_memory: Option<OpenFolder>) -> Self {
         let folder = LeftFolder { in_memory, path: wire::path(&supervised.order.folder), _keeper: None };
         let control = Arc::new(Mutex::new(Some(control)));
         Self { state: State::Supervised(Box::new(supervised)), folder, canceller: Canceller { control } }
     }
 
-    /// Returns a run in the folder `path` whose outcome is known.
+    /// Creates the value for a run in the folder `path` whose outcome is already known.
     pub(super) fn from_outcome(outcome: RunOutcome, path: PathBuf) -> Self {
         let folder = LeftFolder { in_memory: None, path, _keeper: None };
         let canceller = Canceller { control: ControlSocket::default() };
         Self { state: State::Known(Box::new(outcome)), folder, canceller }
     }
 
-    /// Returns whether the program works in a copy of its working folder in memory, so that the folder itself does not
+    /// Returns whether the program works in a copy of its working folder in memory. The folder on disk then does not
     /// change.
     #[must_use]
     pub fn is_in_memory(&self) -> bool {
         self.folder.in_memory.is_some()
     }
 
-    /// Returns a handle that stops the program, for other threads and for Ctrl-C.
+    /// Returns a handle that stops the program. It can be used in other threads, and on Ctrl-C.
     #[must_use]
     pub fn canceller(&self) -> Canceller {
         self.canceller.clone()
     }
 
-    /// Waits until the program and all its processes are dead.
+    /// Waits until the program and all its processes have ended.
     ///
     /// # Errors
     ///
@@ -105,7 +105,7 @@ impl RunningProgram {
 
     fn conclude(&self, mut supervised: SupervisedRun) -> Result<(RunOutcome, Option<RestingKeeper>), SandboxError> {
         let answer = receive(&mut supervised.answers);
-        // A supervisor that has reported needs no more commands.
+        // A supervisor that has reported needs no further commands.
         drop(self.canceller.control.lock().unwrap_or_else(PoisonError::into_inner).take());
         let (event, stdout, stderr) = match answer {
             Ok(answer) => answer,
@@ -142,13 +142,13 @@ impl RunningProgram {
     }
 }
 
-/// The working folder after the program's end. Every process of the run has ended, so the folder no longer changes.
-/// Dropping it makes the run's supervisor available to others.
+/// The working folder after the program has ended. All processes of the run have ended as well, so the folder no longer
+/// changes. When the value is dropped, other runs can use the supervisor.
 #[derive(Debug, Default)]
 pub struct LeftFolder {
     in_memory: Option<OpenFolder>,
     path: PathBuf,
-    // The host is dropped last, because the pages of a folder in memory would count for the keeper's next run.
+    // The host is dropped last. Otherwise the pages of a folder in memory would count for the keeper's next run.
     _keeper: Option<RestingKeeper>,
 }
 
@@ -160,8 +160,8 @@ impl LeftFolder {
         self.in_memory.as_ref()
     }
 
-    /// Opens a regular file of the folder, of at most `longest` bytes, and returns it with its length. Links are not
-    /// followed.
+    /// Opens a regular file in the folder, and returns it with its length. The file must have at most `longest` bytes.
+    /// Links are not followed.
     ///
     /// # Errors
     ///
@@ -179,13 +179,13 @@ impl Drop for RunningProgram {
     fn drop(&mut self) {
         if let State::Supervised(supervised) = std::mem::replace(&mut self.state, State::Taken) {
             self.canceller.cancel();
-            // The grader stopped the program, so its further actions do not matter.
+            // The caller no longer needs the program, so errors do not matter.
             let _ = self.conclude(*supervised);
         }
     }
 }
 
-/// Returns the supervisor's last message and the captured bytes after it.
+/// Returns the supervisor's last message, and the captured bytes that follow it.
 fn receive(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
     let event = wire::receive(&mut *answers)?;
     let mut bytes = |length| wire::receive_bytes(&mut *answers, length);
@@ -196,17 +196,17 @@ fn receive(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
     Ok((event, first, second))
 }
 
-/// Stops a program; does nothing if the program has ended.
+/// A handle that stops a program. If the program has ended, the handle does nothing.
 #[derive(Debug, Clone)]
 pub struct Canceller {
     control: ControlSocket,
 }
 
 impl Canceller {
-    /// Kills the program and all its processes; [`RunningProgram::wait`] then returns `Cancelled`.
+    /// Kills the program and all its processes. Then [`RunningProgram::wait`] returns `Cancelled`.
     pub fn cancel(&self) {
         if let Some(control) = self.control.lock().unwrap_or_else(PoisonError::into_inner).as_mut() {
-            // Writing fails if the supervisor has ended, which does not matter.
+            // This fails if the supervisor has ended, which does not matter.
             let _ = control.write_all(&[COMMAND_CANCEL]);
         }
     }

@@ -1,8 +1,9 @@
-//! The system calls that the standard library does not offer, each wrapped in a safe function; most use `rustix`.
+//! The system calls that the standard library does not offer, each wrapped in a safe function. Most functions use
+//! `rustix`.
 //!
 //! This file, `machine.rs` and `mounts.rs` are the sandbox's only files with `unsafe` code. Every function passes the
-//! kernel valid pointers to live values, converts its result into a `Result`, and keeps no pointer. The only call with
-//! a precondition, [`fork`], checks it.
+//! kernel valid pointers to live values, converts its result into a `Result`, and keeps no pointer. Only [`fork`] has a
+//! precondition, which it checks.
 
 #![expect(unsafe_code, reason = "fork, execve, seccomp and their kin have no safe wrapper among the dependencies")]
 
@@ -32,29 +33,29 @@ pub(super) use rustix::{
     process::Resource,
 };
 
-/// Converts a result of -1 into the error of the kernel.
+/// Turns a result of -1 into the error that the kernel reports.
 pub(super) fn check(answer: i64) -> io::Result<i64> {
     if answer < 0 { Err(io::Error::last_os_error()) } else { Ok(answer) }
 }
 
-/// Returns the error of a call whose result has no other content.
+/// Turns a result of -1 into the error that the kernel reports, for calls with no other result.
 pub(super) fn check_answer(answer: i32) -> io::Result<()> {
     check(i64::from(answer)).map(drop)
 }
 
-/// The two sides of a fork.
+/// The two processes after a fork.
 pub(super) enum Fork {
-    /// The child process.
+    /// This is the child process.
     Child,
-    /// The parent process, with the child's process id.
+    /// This is the parent process. The value is the child's process number.
     Parent(i32),
 }
 
-/// The proof that this process, or the one that it was forked from, has one thread, and starts none. The memory copy of
-/// a forked child is then consistent.
+/// The proof that this process has only one thread and starts no others, or that the process from which it was forked
+/// did. The memory of a forked child is then consistent.
 pub(super) struct SingleThread(());
 
-/// Checks that this process has one thread.
+/// Checks that this process has only one thread.
 ///
 /// # Errors
 ///
@@ -66,14 +67,14 @@ pub(super) fn single_thread() -> io::Result<SingleThread> {
     }
 }
 
-/// Forks the process, which must have one thread.
+/// Forks the process, which must have only one thread.
 pub(super) fn fork() -> io::Result<Fork> {
     fork_alone(&single_thread()?)
 }
 
-/// Forks a process that is known to have one thread.
+/// Forks a process that was proved to have only one thread.
 pub(super) fn fork_alone(_: &SingleThread) -> io::Result<Fork> {
-    // SAFETY: the process has one thread, so the child's copy of memory is consistent.
+    // SAFETY: the process has only one thread, so the child's copy of its memory is consistent.
     match check(i64::from(unsafe { libc::fork() }))? {
         0 => Ok(Fork::Child),
         pid => Ok(Fork::Parent(pid as i32)),
@@ -82,16 +83,16 @@ pub(super) fn fork_alone(_: &SingleThread) -> io::Result<Fork> {
 
 /// Ends the process immediately, without running exit handlers.
 pub(super) fn exit_now(code: i32) -> ! {
-    // SAFETY: takes an integer and does not return.
+    // SAFETY: the argument is an integer, and the call does not return.
     unsafe { libc::_exit(code) }
 }
 
-/// Returns the effective user.
+/// Returns the effective user of this process.
 pub(super) fn user_id() -> u32 {
     rustix::process::geteuid().as_raw()
 }
 
-/// Returns the effective group.
+/// Returns the effective group of this process.
 pub(super) fn group_id() -> u32 {
     rustix::process::getegid().as_raw()
 }
@@ -101,28 +102,28 @@ pub(super) fn new_session() -> io::Result<()> {
     Ok(rustix::process::setsid().map(drop)?)
 }
 
-/// Makes this process adopt orphans among its descendants.
+/// Makes this process adopt the orphans among its descendants.
 pub(super) fn become_reaper() -> io::Result<()> {
     Ok(rustix::process::set_child_subreaper(Some(rustix::process::getpid()))?)
 }
 
-/// Makes the kernel kill this process when its parent dies.
+/// Makes the kernel kill this process when its parent ends.
 pub(super) fn die_with_parent() -> io::Result<()> {
     Ok(rustix::process::set_parent_process_death_signal(Some(Signal::KILL))?)
 }
 
-/// Prevents permanently that executing a program gains privileges.
+/// Prevents for good that executing a program gives privileges.
 pub(super) fn no_new_privileges() -> io::Result<()> {
     Ok(rustix::thread::set_no_new_privs(true)?)
 }
 
-/// Sets a soft and hard limit, never above the existing hard limit.
+/// Sets both the soft and the hard limit. They never exceed the hard limit that exists.
 pub(super) fn set_limit(resource: Resource, value: u64) -> io::Result<()> {
     let value = Some(getrlimit(resource).maximum.map_or(value, |most| value.min(most)));
     Ok(setrlimit(resource, Rlimit { current: value, maximum: value })?)
 }
 
-/// Becomes another user and group permanently, and leaves all supplementary groups.
+/// Becomes another user and group for good, and leaves all supplementary groups.
 pub(super) fn switch_user(id: u32) -> io::Result<()> {
     let (user, group) = (Uid::from_raw(id), Gid::from_raw(id));
     rustix::thread::set_thread_groups(&[])?;
@@ -130,14 +131,16 @@ pub(super) fn switch_user(id: u32) -> io::Result<()> {
     Ok(rustix::thread::set_thread_res_uid(user, user, user)?)
 }
 
-/// Calls a function with the file permissions of another user. Root can then read that user's `/proc` entries without
-/// the capability to trace. Only the supervisor's single thread does this, and it always restores its own user.
+/// Calls a function with another user's file permissions. In this way, root can read the user's entries in `/proc`
+/// without the capability to trace. Only the single thread of the supervisor does this, and it always restores its own
+/// user.
 pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) -> T {
     let Some(user) = user else { return action() };
-    // SAFETY: integers only; both return the previous id, and change nothing if it is not allowed.
+    // SAFETY: all arguments are integers. Both calls return the previous number, and change nothing if that is not
+    // allowed.
     let (old_group, old_user) = unsafe { (libc::setfsgid(user), libc::setfsuid(user)) };
     let result = action();
-    // SAFETY: as above.
+    // SAFETY: all arguments are integers, as above.
     unsafe {
         libc::setfsuid(old_user.cast_unsigned());
         libc::setfsgid(old_group.cast_unsigned());
@@ -145,14 +148,14 @@ pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) ->
     result
 }
 
-/// Installs the three descriptors as standard input, output and error, which stay open across `execve`.
+/// Makes the three descriptors standard input, output and error. They stay open across `execve`.
 pub(super) fn connect(input: &OwnedFd, output: &OwnedFd, error: &OwnedFd) -> io::Result<()> {
     rustix::stdio::dup2_stdin(input)?;
     rustix::stdio::dup2_stdout(output)?;
     Ok(rustix::stdio::dup2_stderr(error)?)
 }
 
-/// Returns a copy of the descriptor with a number of at least `least`, closed by the next `execve`.
+/// Returns a copy of the descriptor whose number is at least `least`. The next `execve` closes it.
 pub(super) fn duplicate_from(fd: BorrowedFd<'_>, least: u32) -> io::Result<OwnedFd> {
     Ok(rustix::io::fcntl_dupfd_cloexec(fd, least.cast_signed())?)
 }
@@ -162,9 +165,9 @@ pub(super) fn keep_on_execute(fd: BorrowedFd<'_>) -> io::Result<()> {
     Ok(rustix::io::fcntl_setfd(fd, FdFlags::empty())?)
 }
 
-/// Marks every descriptor from 3 on to be closed by the next `execve`.
+/// Marks all descriptors from number 3 on, so that the next `execve` closes them.
 pub(super) fn close_on_execute() -> io::Result<()> {
-    // SAFETY: integers only.
+    // SAFETY: all arguments are integers.
     if unsafe { libc::syscall(libc::SYS_close_range, 3_u32, u32::MAX, libc::CLOSE_RANGE_CLOEXEC) } == 0 {
         return Ok(());
     }
@@ -172,19 +175,19 @@ pub(super) fn close_on_execute() -> io::Result<()> {
     for entry in std::fs::read_dir("/proc/self/fd")? {
         let Some(fd) = entry?.file_name().to_str().and_then(|name| name.parse::<RawFd>().ok()) else { continue };
         if fd > 2 {
-            // SAFETY: integers only; the kernel rejects a descriptor that was closed meanwhile.
+            // SAFETY: all arguments are integers, and the kernel rejects a descriptor that was closed in the meantime.
             unsafe { libc::fcntl(fd, libc::F_SETFD, libc::FD_CLOEXEC) };
         }
     }
     Ok(())
 }
 
-/// Returns the signals that this process ignores. Only ignored signals stay ignored when a program is executed; handled
-/// signals get the default reaction.
+/// Returns the signals that this process ignores. When a program is executed, ignored signals are still ignored, and
+/// handled signals get the default reaction.
 pub(super) fn ignored_signals() -> Vec<i32> {
     let is_ignored = |signal: &i32| {
-        // SAFETY: an all-zero action is valid and outlives the call, which only reads; the kernel rejects numbers
-        // without a signal.
+        // SAFETY: an all-zero action is valid and outlives the call, which only reads. The kernel rejects numbers that
+        // are not signals.
         unsafe {
             let mut action: libc::sigaction = std::mem::zeroed();
             libc::sigaction(*signal, std::ptr::null(), &raw mut action) == 0 && action.sa_sigaction == libc::SIG_IGN
@@ -193,10 +196,10 @@ pub(super) fn ignored_signals() -> Vec<i32> {
     (1..=64).filter(is_ignored).collect()
 }
 
-/// Restores the default reaction to `ignored` signals, and unblocks all signals.
+/// Restores the default reaction to the signals in `ignored`, and unblocks all signals.
 pub(super) fn default_signals(ignored: &[i32]) {
-    // SAFETY: the default action needs no function; the kernel rejects numbers without a signal. The set is initialized
-    // by `sigemptyset` before it is read.
+    // SAFETY: the default action needs no function, and the kernel rejects numbers that are not signals. `sigemptyset`
+    // initializes the set before it is read.
     unsafe {
         for signal in ignored {
             libc::signal(*signal, libc::SIG_DFL);
@@ -217,17 +220,17 @@ pub(super) fn kill(pid: i32, signal: i32) -> io::Result<()> {
     if pid <= 1 {
         return Err(io::Error::other("the supervisor must signal single processes"));
     }
-    // SAFETY: integers only; the process id is positive, so that no group is meant.
+    // SAFETY: all arguments are integers. The process number is positive, so that no process group is meant.
     check_answer(unsafe { libc::kill(pid, signal) })
 }
 
-/// Kills all processes of this process namespace if this process is its first, and returns whether it is; otherwise
-/// does nothing.
+/// Kills all processes in this process namespace, if this process is the first one in it. Returns whether it is; if
+/// not, nothing is killed.
 pub(super) fn kill_namespace() -> bool {
     let is_first = std::process::id() == 1;
     if is_first {
-        // SAFETY: integers only. For the first process of a namespace -1 means all other processes in it, and none
-        // outside.
+        // SAFETY: all arguments are integers. If the first process of a namespace calls this, -1 means all other
+        // processes in the namespace, and none outside.
         unsafe { libc::kill(-1, libc::SIGKILL) };
     }
     is_first
@@ -235,13 +238,13 @@ pub(super) fn kill_namespace() -> bool {
 
 /// A process that has ended.
 pub(super) struct ReapedProcess {
-    /// The process id.
+    /// The number of the process.
     pub(super) pid: i32,
     /// The raw wait status of the process.
     pub(super) status: i32,
 }
 
-/// Reaps one ended child without waiting; `None` if none has ended.
+/// Reaps a child that has ended, without waiting. Returns `None` if no child has ended.
 ///
 /// # Errors
 ///
@@ -259,9 +262,9 @@ pub(super) fn wait_for(pid: i32) -> io::Result<u8> {
     Ok(code.unwrap_or_default() as u8)
 }
 
-/// Returns the processor time and the largest resident set (bytes) of all reaped children and their descendants.
+/// Returns the processor time and the largest resident memory in bytes, of all reaped children and their descendants.
 pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
-    // SAFETY: an all-zero `rusage` is a valid value; the kernel fills it.
+    // SAFETY: an all-zero `rusage` is a valid value, and the kernel fills it.
     let usage = unsafe {
         let mut usage: libc::rusage = std::mem::zeroed();
         check_answer(libc::getrusage(libc::RUSAGE_CHILDREN, &raw mut usage))?;
@@ -273,18 +276,19 @@ pub(super) fn children_usage() -> io::Result<(Duration, u64)> {
     Ok((time(usage.ru_utime) + time(usage.ru_stime), usage.ru_maxrss.unsigned_abs() * 1024))
 }
 
-/// The result of [`poll`] for a descriptor.
+/// The state of a descriptor, as [`poll`] reports it.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Readiness {
     /// There is nothing to do.
     Idle,
-    /// There is data to read, or the end of the stream.
+    /// There are data to read, or the stream has ended.
     Ready,
-    /// The other end is closed, and there is no data to read.
+    /// The other end is closed, and there are no data to read.
     HungUp,
 }
 
-/// Waits until one of the descriptors can be read or was hung up, or until the time is over. Returns the state of each.
+/// Waits until one of the descriptors can be read or was hung up, or until the time is over. Returns the state of each
+/// descriptor.
 pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Duration) -> io::Result<[Readiness; N]> {
     let there = fds.iter().flatten();
     let mut list: Vec<PollFd<'_>> = there.map(|fd| PollFd::from_borrowed_fd(*fd, PollFlags::IN)).collect();
@@ -301,7 +305,7 @@ pub(super) fn poll<const N: usize>(fds: [Option<BorrowedFd<'_>>; N], time: Durat
     }))
 }
 
-/// Lets writes beyond the limit of file sizes fail instead of ending the process.
+/// Makes writes beyond the limit of file sizes fail, instead of ending the process.
 pub(super) fn ignore_file_size_signal() {
     // SAFETY: ignoring a signal needs no function.
     unsafe { libc::signal(libc::SIGXFSZ, libc::SIG_IGN) };
@@ -312,61 +316,62 @@ pub(super) fn process_descriptor(pid: i32) -> Option<OwnedFd> {
     rustix::process::pidfd_open(Pid::from_raw(pid)?, PidfdFlags::empty()).ok()
 }
 
-/// Sets whether reads and writes on the descriptor wait or return immediately.
+/// Sets whether reads and writes on the descriptor wait, or return immediately.
 pub(super) fn set_blocking(fd: BorrowedFd<'_>, blocking: bool) -> io::Result<()> {
     Ok(rustix::io::ioctl_fionbio(fd, !blocking)?)
 }
 
-/// Opens `name` below the folder with `flags`, never leaving the folder and never following a symbolic link.
+/// Opens `name` below a folder, with `flags`. The folder is never left, and symbolic links are never followed.
 pub(super) fn open_beneath(folder: BorrowedFd<'_>, name: &CStr, flags: OFlags) -> io::Result<OwnedFd> {
     let flags = flags | OFlags::CLOEXEC | OFlags::NOFOLLOW;
     let inside = ResolveFlags::BENEATH | ResolveFlags::NO_SYMLINKS | ResolveFlags::NO_MAGICLINKS;
     let plain = !name.to_bytes().contains(&b'/') && name != c"..";
     match rustix::fs::openat2(folder, name, flags, Mode::empty(), inside) {
-        // Kernels before 5.6 and old container profiles have no `openat2`; a single name needs less protection.
+        // Kernels before 5.6 and old container profiles have no `openat2`. A name without slashes needs less
+        // protection.
         Err(Errno::NOSYS | Errno::PERM) if plain => Ok(rustix::fs::openat(folder, name, flags, Mode::empty())?),
         opened => Ok(opened?),
     }
 }
 
-/// Changes the owner of an open file or folder (including one opened with `O_PATH`) to a user and group.
+/// Changes the owner and the group of an open file or folder. It may have been opened with `O_PATH`.
 pub(super) fn change_owner(fd: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
     let (user, group) = (Some(Uid::from_raw(user)), Some(Gid::from_raw(group)));
     Ok(rustix::fs::chownat(fd, c"", user, group, AtFlags::EMPTY_PATH)?)
 }
 
-/// Changes the current folder to the open folder.
+/// Makes the open folder the current folder.
 pub(super) fn enter_folder(fd: BorrowedFd<'_>) -> io::Result<()> {
     Ok(rustix::process::fchdir(fd)?)
 }
 
-/// Returns whether the current user has the access `mode` to the path.
+/// Returns whether the current user may access the path in the way that `mode` says.
 pub(super) fn is_accessible(path: &CStr, mode: Access) -> bool {
     rustix::fs::access(path, mode).is_ok()
 }
 
-/// Returns a file in memory that no other process can name.
+/// Creates a file in memory that no other process can name.
 pub(super) fn memory_file() -> io::Result<OwnedFd> {
     Ok(rustix::fs::memfd_create(c"program", MemfdFlags::CLOEXEC)?)
 }
 
-/// Returns null-terminated pointers to the strings, which must outlive the list.
+/// Returns a null-terminated list of pointers to the strings. The strings must outlive the list.
 fn to_pointers(strings: &[CString]) -> Vec<*const libc::c_char> {
     strings.iter().map(|text| text.as_ptr()).chain([std::ptr::null()]).collect()
 }
 
-/// Replaces this process with the program at `path`; returns only if there is an error.
+/// Replaces this process with the program at `path`. Returns only if there is an error.
 pub(super) fn execute(path: &CStr, arguments: &[CString], environment: &[CString]) -> io::Error {
     let (arguments, environment) = (to_pointers(arguments), to_pointers(environment));
-    // SAFETY: both lists end with a null pointer and, like the path, outlive the call.
+    // SAFETY: both lists end with a null pointer. The lists and the path outlive the call.
     unsafe { libc::execve(path.as_ptr(), arguments.as_ptr(), environment.as_ptr()) };
     io::Error::last_os_error()
 }
 
-/// Replaces this process with the program in the open file; returns only if there is an error.
+/// Replaces this process with the program in an open file. Returns only if there is an error.
 pub(super) fn execute_open(file: BorrowedFd<'_>, arguments: &[CString], environment: &[CString]) -> io::Error {
     let (arguments, environment) = (to_pointers(arguments), to_pointers(environment));
-    // SAFETY: as in `execute`; the empty path is a constant and means the descriptor itself.
+    // SAFETY: the lists are as in `execute`. The empty path is a constant, and means the descriptor itself.
     unsafe {
         libc::syscall(
             libc::SYS_execveat,
@@ -380,8 +385,8 @@ pub(super) fn execute_open(file: BorrowedFd<'_>, arguments: &[CString], environm
     io::Error::last_os_error()
 }
 
-/// Installs a seccomp filter for this thread and its children. With `listener`, calls that the filter passes to user
-/// space are announced on the returned descriptor.
+/// Installs a seccomp filter for this thread and its children. With `listener`, the returned descriptor announces the
+/// calls that the filter passes to user space.
 pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Result<Option<OwnedFd>> {
     #[repr(C)]
     struct Program {
@@ -391,30 +396,30 @@ pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Res
     let length = u16::try_from(program.len()).map_err(io::Error::other)?;
     let program = Program { length, filter: program.as_ptr() };
     let flags = if listener { libc::SECCOMP_FILTER_FLAG_NEW_LISTENER } else { 0 };
-    // SAFETY: the structure has the layout of the kernel's `sock_fprog` and outlives the call, as does its array.
+    // SAFETY: the structure has the layout of the kernel's `sock_fprog`. It outlives the call, and so does its array.
     let answer = unsafe { libc::syscall(libc::SYS_seccomp, libc::SECCOMP_SET_MODE_FILTER, flags, &raw const program) };
     let fd = check(answer)?;
-    // SAFETY: with the flag the answer is a descriptor that the kernel has just opened for us alone.
+    // SAFETY: with this flag, the result is a descriptor that the kernel has just opened for this process alone.
     Ok(listener.then(|| unsafe { OwnedFd::from_raw_fd(fd as RawFd) }))
 }
 
-/// A system call that waits for a decision.
+/// A system call of the program that waits for a decision.
 pub(super) struct PendingCall {
     /// The number of the announcement.
     pub(super) id: u64,
-    /// The calling thread.
+    /// The number of the thread that made the call.
     pub(super) thread: u32,
-    /// The call's number.
+    /// The number of the system call.
     pub(super) call: i64,
-    /// The call's arguments.
+    /// The arguments of the system call.
     pub(super) arguments: [u64; 6],
 }
 
 /// Receives the next announcement; `None` if the caller has ended.
 pub(super) fn next_announcement(listener: BorrowedFd<'_>) -> io::Result<Option<PendingCall>> {
-    // SAFETY: an all-zero notification is valid, and the kernel requires zeros.
+    // SAFETY: an all-zero notification is valid, and the kernel requires that it is zero.
     let mut notification: libc::seccomp_notif = unsafe { std::mem::zeroed() };
-    // SAFETY: this request fills exactly this structure, which outlives the call.
+    // SAFETY: this request fills exactly this structure, and the structure outlives the call.
     let answer = unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_RECV, &raw mut notification) };
     match check(i64::from(answer)) {
         Err(error) if matches!(error.raw_os_error(), Some(libc::ENOENT | libc::EINTR)) => Ok(None),
@@ -434,13 +439,13 @@ pub(super) fn is_waiting(listener: BorrowedFd<'_>, id: u64) -> bool {
     unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_ID_VALID, &raw const id) == 0 }
 }
 
-/// Returns the processor time of this process, or of this thread alone.
+/// Returns the processor time of this process. With `of_thread`, that of the calling thread alone.
 pub(super) fn processor_time(of_thread: bool) -> Duration {
     let time = rustix::time::clock_gettime(if of_thread { ClockId::ThreadCPUTime } else { ClockId::ProcessCPUTime });
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
 }
 
-/// Returns the time since the epoch of a clock: the calendar's clock, or the monotonic clock.
+/// Returns the time of a clock: the time since 1970 if `calendar`, otherwise the time of the monotonic clock.
 pub(super) fn time_by(calendar: bool) -> Duration {
     let time = rustix::time::clock_gettime(if calendar { ClockId::Realtime } else { ClockId::Monotonic });
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
@@ -449,15 +454,15 @@ pub(super) fn time_by(calendar: bool) -> Duration {
 /// The answer to an announced call.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CallAnswer {
-    /// The call continues as if it had not been announced.
+    /// The kernel executes the call, as if it had not been announced.
     GoOn,
-    /// The call has already succeeded.
+    /// The call has already been carried out, and succeeds.
     Done,
     /// The call fails with this error number.
     Refused(i32),
 }
 
-/// Answers the announced call instead of the kernel.
+/// Answers an announced call.
 pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> io::Result<()> {
     let (error, flags) = match answer {
         CallAnswer::GoOn => (0, libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32),
@@ -465,14 +470,14 @@ pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> i
         CallAnswer::Refused(errno) => (-errno, 0),
     };
     let mut answer = libc::seccomp_notif_resp { id, val: 0, error, flags };
-    // SAFETY: this request reads exactly this structure, which outlives the call.
+    // SAFETY: this request reads exactly this structure, and the structure outlives the call.
     check_answer(unsafe { libc::ioctl(listener.as_raw_fd(), libc::SECCOMP_IOCTL_NOTIF_SEND, &raw mut answer) })
 }
 
-/// The maximum number of descriptors in one message.
+/// The maximum number of descriptors in a message.
 const MAX_DESCRIPTORS: usize = 8;
 
-/// Sends one byte together with descriptors.
+/// Sends one byte, together with descriptors.
 pub(super) fn send_descriptors<const N: usize>(to: &UnixStream, byte: u8, fds: [BorrowedFd<'_>; N]) -> io::Result<()> {
     const { assert!(N <= MAX_DESCRIPTORS, "they fit into the control space") };
     let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MAX_DESCRIPTORS))];
@@ -482,7 +487,7 @@ pub(super) fn send_descriptors<const N: usize>(to: &UnixStream, byte: u8, fds: [
     Ok(())
 }
 
-/// Receives bytes together with descriptors. No bytes mean that the other side is closed.
+/// Receives bytes, together with descriptors. If there are no bytes, the other side is closed.
 pub(super) fn receive_descriptors(from: &UnixStream, buffer: &mut [u8]) -> io::Result<(usize, Vec<OwnedFd>)> {
     let mut space = [MaybeUninit::uninit(); rustix::cmsg_space!(ScmRights(MAX_DESCRIPTORS))];
     let mut control = RecvAncillaryBuffer::new(&mut space);
@@ -500,10 +505,10 @@ pub(super) fn page_size() -> u64 {
     rustix::param::page_size() as u64
 }
 
-/// Returns Landlock's version in the running kernel; 0 if there is none.
+/// Returns the version of Landlock in the running kernel; 0 if it has no Landlock.
 pub(super) fn landlock_version() -> i32 {
     let version_flag = 1_u32;
-    // SAFETY: with this flag the kernel reads no structure: the pointer is null and the size zero.
+    // SAFETY: with this flag the kernel reads no structure. The pointer is null, and the size is zero.
     let answer =
         unsafe { libc::syscall(libc::SYS_landlock_create_ruleset, std::ptr::null::<u8>(), 0_usize, version_flag) };
     i32::try_from(answer).unwrap_or(0).max(0)

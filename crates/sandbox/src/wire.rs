@@ -1,9 +1,9 @@
 //! The messages between the grader and its supervisor process.
 //!
-//! The grader writes one length-prefixed [`RunOrder`] to the supervisor's standard input, a socket, and then, if
-//! needed, a command byte. An open working folder in memory is returned on the same socket. The supervisor answers on
-//! its standard output with length-prefixed [`Event`]s; the last one is followed by the captured bytes. Paths are sent
-//! as bytes, because they may not be UTF-8.
+//! The supervisor's standard input is a socket. The grader writes a length-prefixed [`RunOrder`] to it, and later a
+//! command byte if needed. If the working folder is in memory, its descriptor is returned on the same socket. The
+//! supervisor answers on its standard output with length-prefixed [`Event`]s. The captured bytes follow the last event.
+//! Paths are sent as bytes, because they may not be UTF-8.
 
 use std::{
     io::{self, Read, Write},
@@ -17,22 +17,22 @@ use serde::{Deserialize, Serialize, de::DeserializeOwned};
 
 use super::job::Limits;
 
-/// The hidden first argument that turns the binary into the supervisor.
+/// The hidden first argument that makes the program start as a supervisor.
 pub(super) const SUPERVISOR_ARGUMENT: &str = "__sandbox-supervisor";
 /// The command byte that stops the program.
 pub(super) const COMMAND_CANCEL: u8 = b'c';
-/// The size that few messages exceed, in bytes.
+/// A size in bytes that few messages exceed.
 const USUAL_MESSAGE_BYTES: u64 = 4 << 10;
 /// The maximum size of a message, in bytes. A larger size means that the stream is corrupt.
 const MAX_MESSAGE_BYTES: u64 = 64 << 20;
 
-/// The byte that starts a run in a supervisor of several runs. It is sent with three descriptors: the channel of
-/// commands, the channel of answers, and the working folder on disk.
+/// The byte that requests a run from a keeper. It is sent with three descriptors: the channel for commands, the channel
+/// for answers, and the working folder on disk.
 pub(super) const RUN_BYTE: u8 = b'r';
-/// The byte that announces a working folder in memory to the grader. It is sent with the folder.
+/// The byte that tells the grader of a working folder in memory. It is sent with the folder's descriptor.
 pub(super) const FOLDER_BYTE: u8 = b'f';
 
-/// The bytes of a path or an argument.
+/// A path or an argument, as bytes.
 pub(super) type RawBytes = Vec<u8>;
 
 /// Converts a path into bytes.
@@ -45,17 +45,17 @@ pub(super) fn path(raw: &RawBytes) -> PathBuf {
     PathBuf::from(std::ffi::OsString::from_vec(raw.clone()))
 }
 
-/// Returns the bytes as the name of a folder's entry, if the name does not leave the folder.
+/// Returns the bytes as the name of an entry of a folder; `None` if the name would leave the folder.
 pub(super) fn plain_name(raw: &[u8]) -> Option<&Path> {
     let leads_on = raw.is_empty() || raw == b"." || raw == b".." || raw.iter().any(|byte| matches!(byte, b'/' | 0));
     (!leads_on).then(|| Path::new(std::ffi::OsStr::from_bytes(raw)))
 }
 
-/// The layers that the supervisor must set up. A requested layer that fails is an error, never skipped.
+/// The layers that the supervisor must set up. If one of them fails, that is an error.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Walls {
     pub(super) landlock: bool,
-    /// The version of the Landlock rules, if they are those of an older kernel; 0 for the newest.
+    /// The version of Landlock whose rules are used; 0 for the newest.
     pub(super) landlock_version: u8,
     pub(super) scopes: bool,
     pub(super) seccomp: bool,
@@ -65,7 +65,7 @@ pub(super) struct Walls {
     pub(super) group: bool,
 }
 
-/// The order for one run.
+/// The order for a run, which tells the supervisor everything about it.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct RunOrder {
     pub(super) program: RawBytes,
@@ -75,23 +75,23 @@ pub(super) struct RunOrder {
     pub(super) readable: Vec<RawBytes>,
     /// The interpreters that the kernel executes to start the program.
     pub(super) executable: Vec<RawBytes>,
-    /// The names that the program and the kernel use for the files, which may be links.
+    /// The names by which the program and the kernel request these files. They may be links.
     pub(super) named: Vec<RawBytes>,
-    /// The grader's own files, which no run may see. The grader finds them once for all runs.
+    /// The grader's own files, which no run may see. The grader finds them only once for all runs.
     pub(super) own: Vec<RawBytes>,
     /// The name of the trace in the working folder.
     pub(super) trace: Option<RawBytes>,
-    /// The files that are written into the working folder, by name, with their length; their bytes follow the order.
-    /// Used only if the folder is in memory.
+    /// The files that are written into the working folder. Each has its name and its length, and the bytes follow the
+    /// order. They are used only if the folder is in memory.
     pub(super) files: Vec<(RawBytes, u64)>,
-    /// Whether the working folder is in memory. The supervisor then sends it to the grader.
+    /// Whether the working folder is in memory. The supervisor then sends its descriptor to the grader.
     pub(super) volatile: bool,
     pub(super) tools: bool,
-    /// The interpreter of a script, which is executed instead of it.
+    /// The interpreter, if the program is a script. It is executed instead of the script.
     pub(super) interpreter: Option<RawBytes>,
-    /// The interpreter's own name, followed by its arguments before the script.
+    /// The name of the interpreter, followed by those of its arguments that precede the script.
     pub(super) words: Vec<RawBytes>,
-    /// Whether the program may use a sanitizer, which reserves terabytes of address space.
+    /// Whether the program may have been built with a sanitizer, which reserves terabytes of address space.
     pub(super) sanitizers: bool,
     pub(super) walls: Walls,
     pub(super) limits: Limits,
@@ -104,29 +104,30 @@ impl RunOrder {
         self.limits.folder_bytes.saturating_add(trace)
     }
 
-    /// Returns the maximum size of a file. One byte beyond the limit of the trace shows that it is too long.
+    /// Returns the maximum size of a file in bytes. A trace may have one byte more than its limit, which shows that it
+    /// is too long.
     pub(super) fn file_bytes(&self) -> u64 {
         let trace = if self.trace.is_some() { self.limits.trace_bytes.saturating_add(1) } else { 0 };
         self.limits.folder_bytes.max(trace)
     }
 }
 
-/// A message of the supervisor.
+/// A message from the supervisor to the grader.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) enum Event {
-    /// The child was forked. Holds its session, unless its process namespace has separate numbers, and its own user, if
-    /// it has one.
+    /// The child process exists. The message contains its session, unless numbers in its process namespace are
+    /// different, and its own user, if it has one.
     Ready { session: Option<i32>, user: Option<u32> },
-    /// The sandbox could not be set up, which is an error of the grader or host.
+    /// The sandbox could not be set up. This is an error of the grader or the host.
     Failed(Failure),
-    /// All processes have ended; the captured bytes of both streams follow.
+    /// All processes have ended. The captured bytes of both streams follow.
     Done(Report),
 }
 
-/// The setup step whose failure is the program's and not the grader's.
+/// The step of the set-up whose failure is the program's fault, and not the grader's.
 pub(super) const EXECUTE_STEP: &str = "execute the program";
 
-/// A failed setup step.
+/// A step of the set-up that failed.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Failure {
     pub(super) stage: String,
@@ -134,32 +135,32 @@ pub(super) struct Failure {
 }
 
 impl Failure {
-    /// Creates a failure of `stage` with the error's number (0 if it has none).
+    /// Creates a failure of the step `stage` from an error. It contains the error's number, or 0 if there is none.
     pub(super) fn new(stage: impl Into<String>, error: &io::Error) -> Self {
         Self { stage: stage.into(), errno: error.raw_os_error().unwrap_or(0) }
     }
 }
 
-/// Converts an error of the system into a failure of the stage `name`.
+/// Returns a function that turns a system error into a failure of the step `name`.
 pub(super) fn failure_at(name: &'static str) -> impl FnOnce(io::Error) -> Failure {
     move |error| Failure::new(name, &error)
 }
 
-/// The facts of a finished run.
+/// The supervisor's report on a finished run.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Report {
-    /// The first reason to kill the program, if there was one.
+    /// The reason why the supervisor killed the program; `None` if it did not.
     pub(super) cause: Option<RunEnd>,
-    /// The raw wait status of the main process.
+    /// The raw wait status of the run's main process.
     pub(super) status: i32,
-    /// The error number of `execve`, if the program never ran.
+    /// The error number of `execve`, if the program could not be started.
     pub(super) exec_errno: Option<i32>,
     pub(super) cpu: Duration,
     pub(super) wall: Duration,
     pub(super) peak_memory: u64,
     /// Whether the trace is longer than its limit.
     pub(super) trace_over: bool,
-    /// Whether the folder exceeds a limit at the end.
+    /// Whether the working folder exceeds a limit at the end of the run.
     pub(super) folder_over: bool,
     pub(super) stdout_bytes: u64,
     pub(super) stderr_bytes: u64,
@@ -169,11 +170,11 @@ pub(super) struct Report {
     pub(super) survivors: u32,
 }
 
-/// The results of the probe; a text is the reason why a layer does not work.
+/// The results of testing the layers. A text is the reason why a layer does not work.
 #[derive(Debug, Clone, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Probe {
     pub(super) root: bool,
-    /// Whether the grader is in root's group without being root.
+    /// Whether the grader belongs to root's group without being root.
     pub(super) roots_group: bool,
     pub(super) landlock_abi: i32,
     pub(super) no_new_privileges: Option<String>,
@@ -183,25 +184,25 @@ pub(super) struct Probe {
     pub(super) notify: Option<String>,
     pub(super) own_user: Option<String>,
     pub(super) reaper: Option<String>,
-    /// The reason why copies of programs cannot be executed.
+    /// The reason why copies of programs cannot be executed; `None` if they can.
     pub(super) execution: Option<String>,
-    /// Whether copies are executed in memory, because the temporary folder forbids execution.
+    /// Whether copies must be executed in memory, because nothing can be executed in the temporary folder.
     pub(super) from_memory: bool,
     pub(super) namespaces: Option<String>,
     pub(super) group: Option<String>,
-    /// The quantities that the kernel limits for a control group.
+    /// The names of the quantities that the kernel can limit for a control group.
     pub(super) group_controls: Vec<String>,
-    /// Whether a control group can be ended as a whole.
+    /// Whether all processes in a control group can be ended together.
     pub(super) group_ends: bool,
 }
 
-/// Writes one message.
+/// Writes a message, after its length.
 pub(super) fn send<T: Serialize>(mut to: impl Write, message: &T) -> io::Result<()> {
     to.write_all(&encode_packet(message)?)?;
     to.flush()
 }
 
-/// Returns the encoded form of one message.
+/// Returns the bytes of a message, after its length.
 pub(super) fn encode_packet<T: Serialize>(message: &T) -> io::Result<Vec<u8>> {
     let body = serde_json::to_vec(message)?;
     let mut packet = (body.len() as u64).to_le_bytes().to_vec();
@@ -209,7 +210,7 @@ pub(super) fn encode_packet<T: Serialize>(message: &T) -> io::Result<Vec<u8>> {
     Ok(packet)
 }
 
-/// Reads `length` bytes. Memory grows as they arrive.
+/// Reads `length` bytes. The buffer grows while they arrive.
 pub(super) fn receive_bytes(from: impl Read, length: u64) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::with_capacity(usize::try_from(length.min(USUAL_MESSAGE_BYTES)).unwrap_or_default() + 1);
     if from.take(length).read_to_end(&mut bytes)? as u64 != length {
@@ -218,7 +219,7 @@ pub(super) fn receive_bytes(from: impl Read, length: u64) -> io::Result<Vec<u8>>
     Ok(bytes)
 }
 
-/// Reads exactly one message.
+/// Reads exactly one message, after its length.
 pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T> {
     let mut length = [0; 8];
     from.read_exact(&mut length)?;
@@ -229,12 +230,12 @@ pub(super) fn receive<T: DeserializeOwned>(mut from: impl Read) -> io::Result<T>
             "the supervisor sent an unexpected message; please report this",
         ));
     }
-    // Do not trust the length in the message.
+    // The length in the message is not trusted.
     Ok(serde_json::from_slice(&receive_bytes(from, length)?)?)
 }
 
-/// Reads as many messages of each kind as the bytes contain, and requires that each is the same after sending; for the
-/// fuzz target. Returns the number of messages.
+/// Reads as many messages of each kind as the bytes contain, for the fuzz target. Panics if a message differs after it
+/// was sent again. Returns the number of messages.
 #[doc(hidden)]
 #[must_use]
 pub fn read_messages(bytes: &[u8]) -> usize {

@@ -1,7 +1,7 @@
-//! Parses the head of an attack's source: its promise, and its expected end.
+//! Parses the first lines of an attack's source, which contain the promise and how the run should end.
 //!
-//! The first lines of the C file are comments of the form `// key: value`. `promise` and `expect` are required;
-//! `policy`, `wall` (milliseconds), `needs` and `leaves` are not.
+//! The first lines of the C file are comments of the form `// key: value`. The keys `promise` and `expect` are
+//! required. The keys `policy`, `wall` (milliseconds), `needs` and `leaves` are optional.
 
 use std::time::Duration;
 
@@ -11,22 +11,22 @@ use crate::{
     outcome::RunEnd,
 };
 
-/// A requirement of an attack, without which it proves nothing.
+/// A requirement of an attack. On a host that does not meet it, the attack proves nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct AttackNeed {
     pub(super) name: &'static str,
-    /// The layers that stop the attack; one of them is enough.
+    /// The layers that stop the attack. One of them is enough.
     walls: &'static [Layer],
-    /// Whether the processor meets the requirement.
+    /// Whether the processor offers what the attack needs.
     by_processor: bool,
 }
 
 impl AttackNeed {
     const DENIED_NEEDS: [Self; 7] = [
         Self::new("file rules", &[Layer::FileRules]),
-        // Files of the host are forbidden or hidden.
+        // Files of the host cannot be read, or cannot be seen.
         Self::new("hidden files", &[Layer::FileRules, Layer::Namespaces]),
-        // Files of the host are in mounts of the run.
+        // The run has mounts of its own.
         Self::new("private mounts", &[Layer::Namespaces]),
         Self::new("private processes", &[Layer::Namespaces]),
         Self::new("signal scope", &[Layer::Scopes, Layer::OwnUser]),
@@ -38,13 +38,13 @@ impl AttackNeed {
         Self { name, walls, by_processor: false }
     }
 
-    /// Returns whether a host with `layers` meets this requirement.
+    /// Returns whether a host with these layers offers what the attack needs.
     pub(super) fn is_met(self, layers: &[LayerReport]) -> bool {
         self.by_processor || self.walls.iter().any(|wall| is_active(layers, *wall))
     }
 }
 
-/// One way in which the run may end.
+/// A way in which the run may end.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct ExpectedEnd {
     kind: String,
@@ -57,7 +57,7 @@ impl ExpectedEnd {
         let detail = match ended {
             RunEnd::Exited(code) => code.to_string(),
             RunEnd::Signalled(signal) => signal.to_string(),
-            // Usually the forbidden call is named; if calls cannot be named, any violation is accepted.
+            // Usually the forbidden call is named. If calls cannot be named on this host, any violation is accepted.
             RunEnd::Violation { call } if call.contains("of another architecture") => return self.kind == "violation",
             RunEnd::Violation { call } => call.split(' ').next().unwrap_or_default().into(),
             _ => String::new(),
@@ -66,7 +66,7 @@ impl ExpectedEnd {
     }
 }
 
-/// A hostile program of the attack suite.
+/// A hostile program that tests one promise of the sandbox.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct Attack {
     pub(super) name: String,
@@ -75,12 +75,12 @@ pub(super) struct Attack {
     pub(super) policy: Policy,
     pub(super) wall: Option<Duration>,
     pub(super) needs: Vec<AttackNeed>,
-    /// The expected `trace.bin`: `nothing`, `refused`, or its text.
+    /// The trace that the attack should leave: `nothing`, `refused`, or the text of `trace.bin`.
     pub(super) leaves: Option<String>,
 }
 
 impl Attack {
-    /// Returns whether the run must end with a forbidden call.
+    /// Returns whether the run must end because of a forbidden call.
     pub(super) fn expects_violation(&self) -> bool {
         self.expected.iter().any(|expected| expected.kind == "violation")
     }
@@ -90,7 +90,7 @@ impl Attack {
         self.expected.iter().any(|expected| expected.kind == "exited")
     }
 
-    /// Parses the head of a source.
+    /// Parses the first lines of an attack's source.
     pub(super) fn parse(name: &str, source: &str) -> Result<Self, String> {
         let mut attack = Self {
             name: name.into(),

@@ -1,4 +1,4 @@
-//! Decoys that a hostile program tries to reach: secrets, a scene, another submission, a process.
+//! Decoys that a hostile program tries to reach, such as secrets, a scene, another submission and a process.
 //!
 //! The state of all decoys is recorded before and after a run, including permission bits and times of change.
 
@@ -12,10 +12,10 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-/// One set of decoys, for one run.
+/// The decoys for one run.
 pub(super) struct Decoy {
     root: PathBuf,
-    /// The working folder.
+    /// The working folder of the hostile program.
     pub(super) work: PathBuf,
     /// The scene, which the program may read.
     pub(super) scene: PathBuf,
@@ -23,13 +23,13 @@ pub(super) struct Decoy {
     victim: Child,
 }
 
-/// The state of the decoys: metadata and contents for every path.
+/// The state of the decoys: the metadata and the contents of each path.
 pub(super) struct State(BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>);
 
 type DecoyFacts = [i64; 7];
 
 impl State {
-    /// Returns the first path that differs, if there is one.
+    /// Returns the first path whose state differs; `None` if the states are equal.
     pub(super) fn difference(&self, after: &Self) -> Option<String> {
         let changed = self.0.iter().find(|(path, state)| after.0.get(*path) != Some(state)).map(|(path, _)| path);
         let added = || after.0.keys().find(|path| !self.0.contains_key(*path));
@@ -38,7 +38,7 @@ impl State {
 }
 
 impl Decoy {
-    /// Creates a new set of decoys below `root`.
+    /// Creates decoys below `root`.
     pub(super) fn set_up(root: &Path) -> io::Result<Self> {
         if root.exists() {
             std::fs::remove_dir_all(root)?;
@@ -61,7 +61,7 @@ impl Decoy {
             std::fs::write(&path, text)?;
             std::fs::set_permissions(&path, std::fs::Permissions::from_mode(mode))?;
         }
-        // The umask must not protect the secrets, so every folder on the path is opened to all users.
+        // The umask must not be what protects the secrets, so every folder on the path is opened to all users.
         for folder in [root, &secrets, &secrets.join("inner"), &scenes, &neighbor] {
             std::fs::set_permissions(folder, std::fs::Permissions::from_mode(0o755))?;
         }
@@ -70,14 +70,15 @@ impl Decoy {
         Ok(Self { root: root.into(), work, scene, secret: secret.to_string(), victim })
     }
 
-    /// Copies the program to the decoys.
+    /// Copies the hostile program next to the decoys.
     pub(super) fn bring(&self, program: &Path) -> io::Result<PathBuf> {
         let own = self.root.join("program");
         std::fs::copy(program, &own)?;
         Ok(own)
     }
 
-    /// Returns the arguments of the program: secrets, victim, scene and neighbor.
+    /// Returns the arguments of the hostile program: the secrets, the victim's process, the scene, and the other
+    /// submission.
     pub(super) fn arguments(&self) -> [OsString; 4] {
         [
             self.root.join("secrets").into(),
@@ -87,17 +88,17 @@ impl Decoy {
         ]
     }
 
-    /// Returns whether the text contains the secret.
+    /// Returns whether a text contains the secret.
     pub(super) fn contains_secret(&self, text: &[u8]) -> bool {
         text.windows(self.secret.len()).any(|window| window == self.secret.as_bytes())
     }
 
-    /// Returns whether the victim process is alive.
+    /// Returns whether the process among the decoys is alive.
     pub(super) fn is_alive(&mut self) -> bool {
         matches!(self.victim.try_wait(), Ok(None))
     }
 
-    /// Returns the state of everything except the working folder.
+    /// Returns the state of all decoys, without the working folder.
     pub(super) fn state(&self) -> io::Result<State> {
         let mut state = BTreeMap::new();
         for folder in ["secrets", "scenes", "neighbor"] {
@@ -106,7 +107,7 @@ impl Decoy {
         Ok(State(state))
     }
 
-    /// Removes everything.
+    /// Removes all decoys.
     pub(super) fn clear(self) -> io::Result<()> {
         std::fs::remove_dir_all(&self.root)
     }
@@ -114,7 +115,7 @@ impl Decoy {
 
 impl Drop for Decoy {
     fn drop(&mut self) {
-        // The attack may have killed the victim.
+        // The attack may have killed this process.
         let _ = self.victim.kill();
         let _ = self.victim.wait();
     }
@@ -135,7 +136,7 @@ fn record(path: &Path, state: &mut BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>) -> 
         i64::from(metadata.uid()),
         i64::from(metadata.gid()),
         metadata.nlink().cast_signed(),
-        // The time of change is updated with every change of owner, mode, name or contents.
+        // The kernel updates the time of change whenever the owner, the mode, the name or the contents change.
         metadata.ctime(),
         metadata.ctime_nsec(),
         metadata.ino().cast_signed(),

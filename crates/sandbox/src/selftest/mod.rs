@@ -1,4 +1,4 @@
-//! Runs the attack suite on this machine, with one hostile program for each promise of the sandbox.
+//! Runs the attack suite on this machine. For each promise of the sandbox, there is a hostile program.
 //!
 //! The programs are the C files of `tests/attacks`, which are part of the binary. Each runs in the sandbox next to
 //! decoys: secrets, a scene, another submission and a process. A promise is kept if the program ends as expected, the
@@ -34,46 +34,47 @@ use super::{
 
 static SOURCES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../tests/attacks");
 
-/// The environment variable that permits the hostile programs to start.
+/// The environment variable without which the hostile programs do nothing.
 const PERMIT_VARIABLE: &str = "FOSSSIM_ATTACK";
-/// The variables that give a hostile program the path of the grader's program, and the grader's group.
+/// The environment variables that give a hostile program the path of the grader's program, and the number of the
+/// grader's process group.
 const GRADER_VARIABLE: &str = "FOSSSIM_GRADER";
 const GROUP_VARIABLE: &str = "FOSSSIM_GRADER_GROUP";
 /// The end of an attack whose forbidden call was denied, but not by the sandbox, which would have ended the attack.
 const DENIED_END: RunEnd = RunEnd::Exited(77);
-/// Attacks are built without optimization, which would remove stores and loops that seem useless.
+/// Attacks are built without optimization, because it would remove stores and loops that seem to have no effect.
 const COMPILER_FLAGS: [&str; 3] = ["-O0", "-w", "-pthread"];
-/// The file name of the trace.
+/// The file name of the trace that attacks write.
 const TRACE_NAME: &str = "trace.bin";
-/// The maximum size of a collected trace, in bytes.
+/// The maximum size of an attack's trace, in bytes.
 const MAX_TRACE_BYTES: u64 = 1 << 20;
 
-/// The state of a promise on this machine.
+/// Whether the sandbox keeps a promise on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub enum PromiseState {
-    /// The attack failed and left nothing behind.
+    /// The promise is kept: the attack failed, and left nothing behind.
     Held,
-    /// The sandbox broke the promise. Holds a description.
+    /// The promise is broken. The value describes how.
     Broken(String),
-    /// The promise could not be tested here. Holds the reason.
+    /// The promise could not be tested on this machine. The value is the reason.
     NotTested(String),
 }
 
-/// One row of the promise table.
+/// A promise of the sandbox, and whether it is kept on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct Promise {
-    /// The name of the attack and of its file.
+    /// The name of the attack, which is also the name of its file.
     pub attack: String,
     /// The promise, as one sentence.
     pub promise: String,
-    /// The state of the promise.
+    /// Whether the promise is kept.
     pub state: PromiseState,
 }
 
-/// The promises of the sandbox, with their states on this machine.
+/// All promises of the sandbox, and whether they are kept on this machine.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct PromiseTable {
-    /// All promises, ordered by the attack's name.
+    /// The promises, in the order of the names of their attacks.
     pub promises: Vec<Promise>,
 }
 
@@ -90,14 +91,14 @@ impl PromiseTable {
     }
 }
 
-/// Builds every attack with the C compiler `cc` and runs it with `backend`, several at a time. `report` is called after
-/// each attack. All files are written below `folder`, which must exist; built programs stay there for the next
-/// self-test.
+/// Builds every attack with the C compiler `cc` and runs it with `backend`. Several attacks run at the same time.
+/// `report` is called after each attack. All files are written below `folder`, which must exist. The built programs are
+/// kept there for the next self-test.
 ///
 /// # Errors
 ///
-/// Fails with [`SandboxError::Missing`] if the backend does not filter system calls, because the attacks are never run
-/// without layers; and if `folder` cannot be used. A broken promise is not an error.
+/// Fails with [`SandboxError::Missing`] if the backend does not filter system calls, because attacks are never run
+/// without layers. Also fails if `folder` cannot be used. A broken promise is not an error.
 pub fn run(
     backend: &Backend,
     cc: &Path,
@@ -107,7 +108,7 @@ pub fn run(
     run_some(backend, cc, folder, |_| true, report)
 }
 
-/// Runs the self-test like [`run`], for the attacks named in `chosen`.
+/// Runs the self-test like [`run`], but only for the attacks that `chosen` names.
 ///
 /// # Errors
 ///
@@ -156,7 +157,7 @@ pub fn run_some(
     Ok(PromiseTable { promises })
 }
 
-/// Returns the attacks that are embedded in the binary, ordered by name.
+/// Returns the attacks that the binary contains, in the order of their names.
 fn attacks() -> Vec<Attack> {
     let sources = SOURCES.files().filter(|file| file.path().extension().is_some_and(|extension| extension == "c"));
     let mut attacks: Vec<Attack> = sources
@@ -166,7 +167,7 @@ fn attacks() -> Vec<Attack> {
     attacks
 }
 
-/// The folders and tools of a self-test.
+/// The folders and the tools that a self-test uses.
 struct Place<'a> {
     backend: &'a Backend,
     cc: &'a Path,
@@ -176,7 +177,7 @@ struct Place<'a> {
 }
 
 impl Place<'_> {
-    /// Tries one attack. Both `Ok` and `Err` are states of its promise.
+    /// Tries one attack, and returns the state of its promise, as `Ok` or as `Err`.
     fn try_attack(&self, attack: &Attack) -> Result<PromiseState, PromiseState> {
         if let Some(need) = attack.needs.iter().find(|need| !need.is_met(self.backend.layers())) {
             return Ok(PromiseState::NotTested(format!("this machine lacks: {}", need.name)));
@@ -186,7 +187,7 @@ impl Place<'_> {
         let fault = |error: &dyn std::fmt::Display| PromiseState::NotTested(format!("the test itself failed: {error}"));
         let mut decoy = Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique_name())))
             .map_err(|e| fault(&e))?;
-        // Each run gets a separate copy of the program, so that surviving processes can be recognized.
+        // Each run gets its own copy of the program, by which processes that survive the run can be recognized.
         let program = decoy.bring(&built).map_err(|e| fault(&e))?;
         let before = decoy.state().map_err(|e| fault(&e))?;
         let job = Job::new(&program, &decoy.work)
@@ -199,7 +200,7 @@ impl Place<'_> {
             .limits(attack_limits(attack));
         let mut running = self.backend.start(&job).map_err(|e| fault(&e))?;
         if attack.expects_exit() && running.is_in_memory() {
-            // Such runs share a supervisor, so the next run would see anything that is left in it.
+            // These runs share a supervisor, so anything that a run leaves in it would affect the next run.
             let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
             if !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
                 return Err(broken(format!("in a first run it {}{}", outcome.ended, last_output(&outcome))));
@@ -214,7 +215,8 @@ impl Place<'_> {
         if let Some(left) = find_survivor(&program) {
             return Err(broken(format!("process {left} outlived the run")));
         }
-        // In a container, the engine's filter may be the first to deny a forbidden call; then the call is not reported.
+        // In a container, the filter of the container engine may be the first to deny a forbidden call. Such a call is
+        // not reported.
         let refused = outcome.ended == DENIED_END && attack.expects_violation() && is_filtered();
         if !refused && !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
             return Err(broken(format!("it {}{}", outcome.ended, last_output(&outcome))));
@@ -234,7 +236,7 @@ impl Place<'_> {
         Ok(PromiseState::Held)
     }
 
-    /// Returns the built program. It is rebuilt only if a source or the compiler's name has changed.
+    /// Returns the built attack. It is built again only if a source file or the name of the compiler has changed.
     fn build(&self, attack: &Attack) -> Result<PathBuf, String> {
         let source = SOURCES.get_file(format!("{}.c", attack.name)).ok_or("its source is missing")?;
         let header = SOURCES.get_file("attack.h").ok_or("attack.h is missing")?;
@@ -252,7 +254,7 @@ impl Place<'_> {
         let said = |error: std::io::Error| format!("{}: {error}", self.cc.display());
         let path = self.sources.join(format!("{}.c", attack.name));
         write_file(&path, source.contents()).map_err(said)?;
-        // Build under a temporary name, so that an incomplete program is never used.
+        // The program gets its name after it is complete, so that an incomplete one is never used.
         let fresh = self.programs.join(format!("{}-{}", attack.name, unique_name()));
         let output =
             Command::new(self.cc).args(COMPILER_FLAGS).arg("-o").args([&fresh, &path]).output().map_err(said)?;
@@ -265,20 +267,20 @@ impl Place<'_> {
     }
 }
 
-/// Returns a unique suffix, because other self-tests may use the same folder at the same time.
+/// Returns a suffix that no other self-test uses. Others may use the same folder at the same time.
 fn unique_name() -> String {
     static NAME_COUNT: AtomicUsize = AtomicUsize::new(0);
     format!("{}.{}", std::process::id(), NAME_COUNT.fetch_add(1, Ordering::Relaxed))
 }
 
-/// Writes a file atomically, because others may be reading it.
+/// Writes a file so that others, who may be reading it, see either the old or the new contents.
 fn write_file(path: &Path, contents: &[u8]) -> std::io::Result<()> {
     let fresh = path.with_extension(unique_name());
     std::fs::write(&fresh, contents)?;
     std::fs::rename(&fresh, path)
 }
 
-/// Returns small limits, so that the suite is fast, and harmless even if a layer is missing.
+/// Returns small limits. With them, the suite is fast, and harmless even if a layer is missing.
 fn attack_limits(attack: &Attack) -> Limits {
     Limits {
         cpu: Duration::from_millis(300),
@@ -293,7 +295,7 @@ fn attack_limits(attack: &Attack) -> Limits {
     }
 }
 
-/// Returns the environment of a hostile program.
+/// Returns the environment variables of a hostile program.
 fn environment() -> [(&'static str, String); 3] {
     let grader = std::fs::read_link("/proc/self/exe").unwrap_or_default();
     [
@@ -303,13 +305,13 @@ fn environment() -> [(&'static str, String); 3] {
     ]
 }
 
-/// Returns whether a system call filter, such as a container's, already applies to this process.
+/// Returns whether this process already has a system call filter, such as that of a container.
 fn is_filtered() -> bool {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
     status.lines().any(|line| line.strip_prefix("Seccomp:").is_some_and(|mode| mode.trim() == "2"))
 }
 
-/// Returns a process that still runs the program, in any of its threads.
+/// Returns a process in which the program still runs, in any thread; `None` if there is none.
 fn find_survivor(program: &Path) -> Option<i32> {
     processes::list_all().find(|pid| {
         processes::list_threads(*pid)
@@ -317,7 +319,7 @@ fn find_survivor(program: &Path) -> Option<i32> {
     })
 }
 
-/// Returns the end of the program's output, for the report about a broken promise.
+/// Returns the last part of the program's output, for the report on a broken promise.
 fn last_output(outcome: &RunOutcome) -> String {
     let last = |bytes: &[u8]| {
         let text = String::from_utf8_lossy(bytes);
@@ -329,7 +331,7 @@ fn last_output(outcome: &RunOutcome) -> String {
     }
 }
 
-/// Checks that the folder contains the expected trace.
+/// Checks that the folder contains the trace that the attack should leave.
 fn check_left_trace(attack: &Attack, work: &LeftFolder) -> Result<(), String> {
     let collected = work.regular_file(TRACE_NAME, MAX_TRACE_BYTES).and_then(|(mut file, _)| {
         let mut bytes = Vec::new();

@@ -1,4 +1,5 @@
-//! Answers calls instead of the kernel, whose answer would reveal other runs, or let them interfere.
+//! Answers some system calls instead of the kernel. The kernel's answers would reveal other runs, or would let runs
+//! interfere.
 
 use std::{
     fs::File,
@@ -9,18 +10,20 @@ use std::{
 
 use crate::sys::{self, CallAnswer, PendingCall};
 
-/// Returns the memory of the thread that waits for an answer. If other layers block access to it, the kernel answers
+/// Opens the memory of the thread that waits for an answer. Fails if other layers prevent this; the kernel then answers
 /// the call.
 fn open_memory(announced: &PendingCall, user: Option<u32>) -> io::Result<File> {
     let path = format!("/proc/{}/mem", announced.thread);
     sys::with_files_of(user, || File::options().read(true).write(true).open(path))
 }
 
-/// Threads that wait for a futex word that other processes might share, as the C library waits for the end of a thread.
+/// Threads that wait until a futex word changes. The word might be shared with other processes. The C library waits in
+/// this way for the end of a thread.
 ///
-/// The kernel identifies shared words by their position in a file. A word in a library's pages would be shared with
-/// other runs, whose threads could wake the waiting one. Therefore no thread waits in the kernel. The supervisor checks
-/// the word after doubling pauses, until the word has changed or the time limit has passed.
+/// The kernel identifies shared words by their position in a file. If a word is in the pages of a library, it is shared
+/// with other runs, and their threads could wake the waiting thread. Therefore no thread waits in the kernel. Instead,
+/// the supervisor checks the word until it has changed or the time limit has passed. Each pause between two checks is
+/// twice as long as the one before.
 #[derive(Debug, Default)]
 pub(super) struct SharedWaits(Vec<SharedWait>);
 
@@ -29,11 +32,11 @@ struct SharedWait {
     id: u64,
     memory: File,
     word: u64,
-    /// The value of the word while the wait continues.
+    /// The value that the word has as long as the thread must wait.
     value: u32,
     limit: Option<Instant>,
     pause: Duration,
-    /// The time of the next check.
+    /// The time at which the word is checked next.
     due: Instant,
 }
 
@@ -41,7 +44,7 @@ impl SharedWaits {
     const SHORTEST_WAIT: Duration = Duration::from_micros(50);
     const MAX_PAUSE: Duration = Duration::from_millis(2);
 
-    /// Adds a waiting thread. Returns the answer if no wait is needed.
+    /// Adds a thread that waits. If it does not need to wait, returns the answer.
     pub(super) fn add(&mut self, announced: &PendingCall, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
         let Ok(memory) = open_memory(announced, user) else { return Some(CallAnswer::GoOn) };
         let [word, _, value, ..] = announced.arguments;
@@ -61,12 +64,12 @@ impl SharedWaits {
         }
     }
 
-    /// Returns the time of the next check of a word.
+    /// Returns the time at which the next word must be checked.
     pub(super) fn next(&self) -> Option<Instant> {
         self.0.iter().map(|wait| wait.due).min()
     }
 
-    /// Answers threads whose word has changed or whose time limit has passed.
+    /// Answers the threads whose words have changed, or whose time limits have passed.
     pub(super) fn answer(&mut self, listener: BorrowedFd<'_>, now: Instant) {
         self.0.retain_mut(|wait| {
             if wait.due > now {
@@ -75,10 +78,10 @@ impl SharedWaits {
             wait.pause = (2 * wait.pause).min(Self::MAX_PAUSE);
             wait.due = now + wait.pause;
             match wait.answer(now) {
-                // A signal may have ended the wait already.
+                // A signal may already have ended the wait.
                 None => sys::is_waiting(listener, wait.id),
                 Some(answer) => {
-                    // Answering fails if the thread has ended, which does not matter.
+                    // This fails if the thread has ended, which does not matter.
                     let _ = sys::answer(listener, wait.id, answer);
                     false
                 }
@@ -88,7 +91,7 @@ impl SharedWaits {
 }
 
 impl SharedWait {
-    /// Returns the answer to the wait, if it is over.
+    /// Returns the answer if the wait is over.
     fn answer(&self, now: Instant) -> Option<CallAnswer> {
         let mut word = [0; 4];
         match self.memory.read_exact_at(&mut word, self.word) {
@@ -99,7 +102,8 @@ impl SharedWait {
     }
 }
 
-/// Returns the time until which the thread waits: relative to now (`FUTEX_WAIT`), or by a clock (`FUTEX_WAIT_BITSET`).
+/// Returns the time until which the thread waits. In the call it is relative to now (`FUTEX_WAIT`), or a time of a
+/// clock (`FUTEX_WAIT_BITSET`).
 fn apply_limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<Option<Instant>, i32> {
     let [_, operation, _, place, ..] = announced.arguments;
     if place == 0 {
@@ -116,7 +120,7 @@ fn apply_limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<O
         libc::FUTEX_WAIT => Duration::ZERO,
         _ => sys::time_by(operation & libc::FUTEX_CLOCK_REALTIME != 0),
     };
-    // A time beyond the clock's range means no limit.
+    // If the time is beyond the range of the clock, there is no limit.
     Ok(now.checked_add(Duration::new(seconds, nanoseconds).saturating_sub(passed)))
 }
 

@@ -1,13 +1,13 @@
-//! The system calls by name, in the groups of the filter.
+//! The system calls by name, in groups that the filter treats differently.
 //!
 //! A call in no group does not exist for the program (`ENOSYS`); programs treat it like a call that is newer than the
 //! kernel. A real submission of the course uses 21 calls. POSIX timers (`timer_create`) are in no group, because all
 //! programs of a user share their number; `setitimer`, `alarm` and `timerfd_create` do not affect others.
 
-/// A call's name and number.
+/// The name and the number of a system call.
 pub(super) type Call = (&'static str, i64);
 
-/// A list of calls. Those after `old` are older names, or dangers, that only x86_64 has.
+/// Lists calls. The calls after `old` exist only on x86_64: older names, and dangerous calls.
 macro_rules! calls {
     ($($name:ident)* $(; old: $($old:ident)*)?) => {
         &[
@@ -17,8 +17,8 @@ macro_rules! calls {
     };
 }
 
-/// Calls that every program needs for its own memory, files, time, threads and signals. Landlock limits file calls; the
-/// resource limits limit amounts.
+/// Calls that every program needs for its own memory, files, time, threads and signals. For file calls, Landlock
+/// decides which files; resource limits decide how much.
 pub(super) const ALLOWED_CALLS: &[Call] = calls![
     SYS_read SYS_write SYS_readv SYS_writev SYS_pread64 SYS_pwrite64 SYS_preadv SYS_pwritev SYS_preadv2 SYS_pwritev2
     SYS_openat SYS_close SYS_close_range SYS_lseek SYS_fstat SYS_newfstatat SYS_statx SYS_faccessat SYS_faccessat2
@@ -43,29 +43,29 @@ pub(super) const ALLOWED_CALLS: &[Call] = calls![
     SYS_pause SYS_alarm SYS_time SYS_getpgrp SYS_getrlimit SYS_setrlimit SYS_arch_prctl
 ];
 
-/// Calls that start a process by the older names. Compilers need them, submissions do not.
+/// Older calls that start a process. Compilers need them, and submissions do not.
 pub(super) const FORK_CALLS: &[Call] = calls![; old: SYS_fork SYS_vfork];
 
-/// Calls that create links and special files, most of which the folder's rules also forbid. They are answered with
-/// `EPERM`.
+/// Calls that create links and special files. They are answered with `EPERM`. The folder's rules forbid most of them as
+/// well.
 pub(super) const LINK_CALLS: &[Call] = calls![
     SYS_linkat SYS_symlinkat SYS_mknodat
     ; old:
     SYS_link SYS_symlink SYS_mknod
 ];
 
-/// Calls that change permission bits by name or descriptor. Landlock does not restrict them, so a program under the
-/// grader's user could change the grader's files.
+/// Calls that change permission bits, by name or by descriptor. Landlock does not restrict them, so a program that runs
+/// as the grader's user could change the grader's files.
 pub(super) const MODE_CALLS: &[Call] = calls![SYS_fchmodat SYS_fchmod; old: SYS_chmod];
 
-/// Calls that change times of files, which Landlock does not restrict either.
+/// Calls that change the times of files. Landlock does not restrict them either.
 pub(super) const TIME_CALLS: &[Call] = calls![SYS_utimensat];
-/// Calls that change times of files under older names. They never take an open file.
+/// Older calls that change the times of files. They take a name, and never an open file.
 pub(super) const TIMES_BY_NAME: &[Call] = calls![; old: SYS_utime SYS_utimes SYS_futimesat];
 
-/// Calls that libraries try but do not need. They are denied with `EPERM` or `EACCES` and do not count as an attack.
-/// For example, the C library connects to the name service by a socket. Counters of free blocks are included, because
-/// they reveal what others wrote.
+/// Calls that libraries try but do not need. They are denied with `EPERM` or `EACCES`, and do not count as an attack.
+/// An example is the socket by which the C library connects to the name service. The list includes calls that count
+/// free blocks, because they reveal what others wrote.
 pub(super) const DENIED_CALLS: &[Call] = calls![
     SYS_socket SYS_socketpair SYS_truncate SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr
     SYS_removexattr SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler SYS_sched_setparam SYS_sched_setattr
@@ -77,8 +77,8 @@ pub(super) const DENIED_CALLS: &[Call] = calls![
     SYS_chown SYS_lchown
 ];
 
-/// Dangerous calls of the kernel. No submission makes them by accident, so the program is stopped and the call is
-/// named.
+/// Calls that are dangerous for the kernel. No submission makes such a call by accident, so the program is stopped, and
+/// the outcome names the call.
 pub(super) const FORBIDDEN_CALLS: &[Call] = calls![
     SYS_ptrace SYS_process_vm_readv SYS_process_vm_writev SYS_kcmp SYS_pidfd_getfd SYS_unshare SYS_setns SYS_mount
     SYS_umount2 SYS_pivot_root SYS_chroot SYS_open_tree SYS_move_mount SYS_fsopen SYS_fsconfig SYS_fsmount SYS_fspick
@@ -92,15 +92,16 @@ pub(super) const FORBIDDEN_CALLS: &[Call] = calls![
     SYS_iopl SYS_ioperm SYS_modify_ldt SYS_kexec_file_load
 ];
 
-/// Calls that lock whole files. They need no right to write, so only build tools may use them, in their own folder.
+/// Calls that lock whole files. Because locking a file does not require the right to write it, only build tools may use
+/// them, and only in their own folder.
 pub(super) const LOCK_CALLS: &[Call] = calls![SYS_flock];
 
-/// Calls that change the user. The kernel denies them without privileges, which no program has; `make` sets its own
+/// Calls that change the user. The kernel denies them without privileges, which no program has. `make` sets its own
 /// user again before every command.
 pub(super) const IDENTITY_CALLS: &[Call] =
     calls![SYS_setuid SYS_setgid SYS_setreuid SYS_setregid SYS_setresuid SYS_setresgid];
 
-/// All groups, which together hold all existing calls.
+/// All groups. Together they contain all calls that exist.
 pub(super) const CALL_GROUPS: [&[Call]; 10] = [
     ALLOWED_CALLS,
     FORK_CALLS,
@@ -114,7 +115,7 @@ pub(super) const CALL_GROUPS: [&[Call]; 10] = [
     FORBIDDEN_CALLS,
 ];
 
-/// Returns the common name of a call.
+/// Returns the usual name of a call.
 pub(super) fn name(number: i64) -> String {
     let known = CALL_GROUPS.into_iter().flatten().find(|(_, known)| *known == number);
     known.map_or_else(|| format!("number {number}"), |(name, _)| name.trim_start_matches("SYS_").to_string())

@@ -1,7 +1,8 @@
-//! The child's steps from the fork to the program. It sets up every layer, in the order in which that is possible.
+//! The steps of the child process between the fork and the program's start. It sets up each layer, in an order in which
+//! that is possible.
 //!
-//! No function returns to the supervisor's code. A step that fails reports to the supervisor through the status socket,
-//! which closes by itself when the program has started.
+//! No function returns to the supervisor's code. If a step fails, it is reported to the supervisor through the status
+//! socket. The socket closes by itself when the program has started.
 
 use std::{
     ffi::CString,
@@ -29,22 +30,22 @@ use crate::{
 /// The byte that announces a seccomp listener.
 pub(super) const LISTENER_BYTE: u8 = b'L';
 
-/// The data that the child needs, prepared by the supervisor.
+/// The data that the child needs, which the supervisor has prepared before the fork.
 pub(super) struct ChildPlan {
     pub(super) order: Rc<RunOrder>,
     pub(super) supervisor: u32,
     pub(super) folder: OwnedFd,
-    /// The program or script, opened while it is accessible, for a user who cannot open it.
+    /// The program or the script as an open file, if the run's user cannot open it later.
     pub(super) opened: Option<OpenedFile>,
-    /// The program as an open file with a number beyond the limit of descriptors, from which it is executed if
-    /// executions are not announced.
+    /// The program as an open file whose number is beyond the limit of descriptors. If executions are not announced,
+    /// the program is executed from it.
     pub(super) entrance: Option<OwnedFd>,
     pub(super) rules: Option<RulesetCreated>,
-    /// The compiled filters, if they exist.
+    /// The compiled filters, if system calls are filtered.
     pub(super) filters: Option<Filters>,
-    /// Ignored signals that must be reset.
+    /// The signals that are ignored, and must be reset before the program starts.
     pub(super) ignored: Rc<[i32]>,
-    /// The files through which the child enters the run's control group.
+    /// The files by which the child enters the run's control group.
     pub(super) groups: Vec<File>,
     pub(super) user: Option<u32>,
     pub(super) input: OwnedFd,
@@ -53,9 +54,9 @@ pub(super) struct ChildPlan {
     pub(super) status: UnixStream,
 }
 
-/// Sets up the layers and executes the program in this process.
+/// Sets up the layers, and executes the program in this process.
 pub(super) fn become_program(mut plan: ChildPlan) -> ! {
-    // Write to the socket as to a file, because the filter allows no socket calls.
+    // The socket is written like a file, because the filter allows no socket calls.
     let mut status = match plan.status.as_fd().try_clone_to_owned() {
         Ok(status) => File::from(status),
         Err(_) => sys::exit_now(125),
@@ -64,14 +65,14 @@ pub(super) fn become_program(mut plan: ChildPlan) -> ! {
         Err(failure) => failure,
         Ok((arguments, environment)) => Failure::new(EXECUTE_STEP, &execute(&plan, &arguments, &environment)),
     };
-    // The supervisor waits for this message or for the end of the program; without readers the message is lost.
+    // The supervisor waits for this message, or for the end of the program. If nobody reads it, it is lost.
     let _ = serde_json::to_writer(&mut status, &failure).map(|()| status.flush());
     sys::exit_now(125)
 }
 
 type Strings = Vec<CString>;
 
-/// Sets up every layer. Returns the program's arguments and environment.
+/// Sets up all layers. Returns the arguments and the environment of the program.
 fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     sys::new_session().map_err(failure_at("start a session"))?;
     for group in &mut plan.groups {
@@ -82,17 +83,17 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     sys::set_file_mask(0o022);
     sys::enter_folder(plan.folder.as_fd()).map_err(failure_at("enter the working folder"))?;
     if plan.order.walls.namespaces && !plan.order.tools {
-        // The current folder changes as well.
+        // This also changes the current folder.
         view::leave_processes(&plan.order)?;
     }
-    // Makes this the first process that the kernel kills when memory runs out. Some containers forbid the setting.
+    // If memory runs out, the kernel should kill this process first. Some containers do not allow this setting.
     let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
     set_limits(&plan.order, plan.user.is_some()).map_err(failure_at("set the resource limits"))?;
     if let Some(user) = plan.user {
         sys::switch_user(user).map_err(failure_at("become the sandbox's user"))?;
     }
-    // A change of user resets the parent-death signal, so the signal is set afterwards. A parent that ended earlier is
-    // detected here.
+    // A change of user resets the parent-death signal, so the signal is set afterwards. If the parent has ended before,
+    // this is detected here.
     sys::die_with_parent().map_err(failure_at("bind the program's life to the supervisor's"))?;
     if std::os::unix::process::parent_id() != plan.supervisor {
         sys::exit_now(125);
@@ -124,19 +125,21 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     Ok(strings)
 }
 
-/// Sets the resource limits. Except for file sizes they are a second line behind the supervisor's checks.
+/// Sets the resource limits. Except for the limit of file sizes, they are only a second protection after the
+/// supervisor's checks.
 fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
-    // This is the default of Linux, so that a deep recursion ends in the same way on every host.
+    // This is the default of Linux. With it, a deep recursion ends in the same way on every host.
     const STACK_BYTES: u64 = 8 << 20;
     const SPARE_MEMORY: u64 = 512 << 20;
     const SPARE_SECONDS: u64 = 2;
     const SPARE_PROCESSES: u64 = 16;
-    // The run's own user has other processes only in another container that uses the same numbers.
+    // The run's own user can have other processes only in another container that uses the same numbers.
     const SPARE_FOR_OTHERS: u64 = 128;
     const PENDING_SIGNALS: u64 = 1024;
-    // The address sanitizer reserves 20 TiB in addition to the program's own space; other sanitizers reserve more.
+    // The address sanitizer reserves 20 TiB in addition to the space that the program itself uses. Other sanitizers
+    // reserve more.
     const SANITIZERS_SPACE: u64 = 64 << 40;
-    // The limit is one byte instead of zero, because with zero the kernel may pipe core dumps to a handler.
+    // The limit is one byte and not zero. With zero, the kernel may pass core dumps to a handler.
     sys::set_limit(Resource::Core, 1)?;
     let limits = &order.limits;
     sys::set_limit(Resource::Fsize, order.file_bytes())?;
@@ -147,15 +150,16 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     sys::set_limit(Resource::Memlock, 64 << 10)?;
     sys::set_limit(Resource::Msgqueue, 0)?;
     sys::set_limit(Resource::Rtprio, 0)?;
-    // The kernel counts pending signals per user, like processes.
+    // The kernel counts pending signals per user, in the same way as processes.
     sys::set_limit(Resource::Sigpending, PENDING_SIGNALS)?;
-    // Address space is not memory: libraries reserve more than they use. The memory in use is checked separately.
+    // Address space is not memory in use: libraries reserve more than they use. The memory in use is checked
+    // separately.
     let space = limits.memory.saturating_mul(2).saturating_add(SPARE_MEMORY);
     sys::set_limit(Resource::As, if order.sanitizers { space.max(SANITIZERS_SPACE) } else { space })?;
-    // The kernel counts per user or user namespace. If these are shared with other runs, the limit only stops bombs,
-    // because the supervisor counts the run's own processes.
+    // The kernel counts per user or per user namespace. If other runs share it, this limit only stops fork bombs, and
+    // the supervisor counts the processes of the run itself.
     let processes = u64::from(limits.processes) + SPARE_PROCESSES;
-    // Processes of a bomb take memory and time until the supervisor has counted them; threads take little.
+    // The processes of a fork bomb use memory and time until the supervisor has counted them; threads use little.
     let most_runs = if order.tools { 8 } else { 64 };
     let processes = match own_user || order.walls.namespaces {
         true => processes + SPARE_FOR_OTHERS,
@@ -164,16 +168,16 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     sys::set_limit(Resource::Nproc, processes)
 }
 
-/// Filters that were compiled before the child existed, with their purpose.
+/// Filters that were compiled before the child existed, and the purpose for which they were compiled.
 pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
-/// Returns the purpose of the filters of a child with process number `number`.
+/// Returns the purpose of the filters for a child with the process number `number`.
 pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, number: i32) -> Purpose {
     let walls = order.walls;
     Purpose {
         tools: order.tools,
         announce: walls.notify,
-        // Tools signal their own children, which Landlock's scope or the separate user distinguish from other
+        // Tools send signals to their own children. Landlock's scope or a separate user distinguishes these from other
         // processes.
         own_process: (!order.tools || !(walls.scopes || walls.own_user)).then_some(number),
         entrance,
@@ -181,7 +185,7 @@ pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, n
     }
 }
 
-/// Installs the filters and sends the listener to the supervisor.
+/// Installs the filters, and sends the listener to the supervisor.
 fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
     let walls = plan.order.walls;
     let entrance = plan.entrance.as_ref().map(|file| file.as_raw_fd() as u64);
@@ -199,10 +203,11 @@ fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
     Ok(())
 }
 
-/// Executes the program; returns only if there is an error.
+/// Executes the program. This returns only if there is an error.
 ///
-/// A newly written file can be busy for a moment: another thread of the grader may have forked while the file was open
-/// for writing, and its child holds a copy of the descriptor until it executes. The execution is therefore retried.
+/// A file that has just been written can be busy for a moment. Another thread of the grader may have forked while the
+/// file was open for writing, and that child has a copy of the descriptor until it executes. Therefore the execution is
+/// tried again.
 fn execute(plan: &ChildPlan, arguments: &[CString], environment: &[CString]) -> io::Error {
     const MAX_TRIES: u32 = 25;
     const PAUSE: Duration = Duration::from_millis(20);
@@ -216,7 +221,8 @@ fn execute(plan: &ChildPlan, arguments: &[CString], environment: &[CString]) -> 
     execute_once(plan, arguments, environment)
 }
 
-/// Executes the program by its path, or by the open file if the sandbox's user cannot reach the path.
+/// Executes the program by its path. If the sandbox's user cannot reach the path, the program is executed from the open
+/// file.
 fn execute_once(plan: &ChildPlan, arguments: &[CString], environment: &[CString]) -> io::Error {
     let path = plan.order.interpreter.as_ref().unwrap_or(&plan.order.program);
     let Ok(path) = c_string(path) else { return io::Error::from_raw_os_error(libc::EINVAL) };
@@ -244,17 +250,18 @@ fn arguments(plan: &ChildPlan) -> io::Result<Strings> {
     order.words.iter().chain([&program]).chain(&order.arguments).map(c_string).collect()
 }
 
-/// Returns the script if its interpreter must read it by a descriptor, because the run's user cannot reach its path.
+/// Returns the open script if its interpreter must read it by a descriptor, because the run's user cannot reach the
+/// script's path.
 fn script_by_descriptor(plan: &ChildPlan) -> Option<&OpenedFile> {
     let opened = plan.opened.as_ref().filter(|_| plan.order.interpreter.is_some())?;
     let readable = c_string(&plan.order.program).is_ok_and(|path| sys::is_accessible(&path, Access::READ_OK));
     (!readable).then_some(opened)
 }
 
-/// Returns the few variables that every program gets, followed by the job's.
+/// Returns the environment variables that every program gets, followed by those of the job.
 fn environment(order: &RunOrder) -> io::Result<Strings> {
     let folder = c_string(&order.folder)?;
-    // A folder whose parents are closed to the sandbox's user is used as the current folder.
+    // If the sandbox's user cannot enter a parent of the folder, the folder is used as the current folder.
     let home = if sys::is_accessible(&folder, Access::WRITE_OK | Access::EXEC_OK) {
         order.folder.clone()
     } else {
@@ -267,7 +274,7 @@ fn environment(order: &RunOrder) -> io::Result<Strings> {
         (b"TMPDIR".to_vec(), home),
     ];
     if order.sanitizers {
-        // The leak check starts a process that traces its parent, which no filter allows.
+        // The leak check would start a process that traces its parent, which no filter allows.
         variables.push((b"ASAN_OPTIONS".to_vec(), b"detect_leaks=0".to_vec()));
     }
     for (name, value) in &order.environment {
@@ -281,16 +288,16 @@ fn c_string(raw: &RawBytes) -> io::Result<CString> {
     CString::new(raw.as_slice()).map_err(io::Error::other)
 }
 
-/// The program as an open file that any user may execute.
+/// A program as an open file that every user may execute.
 pub(super) struct OpenedFile {
     file: OwnedFd,
     copied: bool,
 }
 
 impl OpenedFile {
-    /// Opens the program: the file itself, or a copy in memory if its permission bits are for the owner only or its
-    /// folder forbids execution. A program that its user may not read would be closed to the supervisor's checks as
-    /// well. A copy of more than `most` bytes fails as if the kernel had no memory.
+    /// Opens the program. If only its owner may use it, or if nothing can be executed in its folder, it is copied into
+    /// memory, and the copy is opened. If the user of the run could not read the program, the supervisor's checks would
+    /// not work either. A copy of more than `most` bytes fails as if the kernel had no memory left.
     pub(super) fn new(path: &Path, for_another: bool, most: u64) -> Result<Self, Failure> {
         let open = || -> io::Result<Self> {
             const READ_AND_EXECUTE: u32 = 0o005;
@@ -308,17 +315,17 @@ impl OpenedFile {
         })
     }
 
-    /// Returns a copy of the program in memory that keeps the holes.
+    /// Copies the program into memory. Holes in the file remain holes.
     fn copy(program: &File, most: u64) -> io::Result<Self> {
         let mut copy = File::from(sys::memory_file()?);
         memory_folder::copy_blocks(program, &mut copy, most)?;
         copy.set_permissions(Permissions::from_mode(0o555))?;
-        // A file that is open for writing cannot be executed, so it is opened again for reading only.
+        // A file that is open for writing cannot be executed, so it is opened again only for reading.
         let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;
         Ok(Self { file: again.into(), copied: true })
     }
 
-    /// Returns the file with a descriptor number of at least `least`.
+    /// Returns the file under a descriptor number that is at least `least`.
     pub(super) fn under_number(&self, least: u32) -> io::Result<OwnedFd> {
         sys::duplicate_from(self.file.as_fd(), least)
     }

@@ -1,10 +1,12 @@
-//! The seccomp filters: a list of allowed calls, denials with an error number, and calls that end the program.
+//! The seccomp filters. They allow the calls in a list, deny some calls with an error number, and end the program for
+//! others.
 //!
-//! Each answer has a separate filter. The strictest answer counts, in the order kill, error, announce, allow; of equal
-//! answers, that of the last filter counts. Forbidden calls are announced to the supervisor, which names the call and
-//! kills; that filter comes first. If the kernel cannot announce, the call kills with `SIGSYS`. The list of existing
-//! calls is installed last, because it removes the calls that install filters. Every filter ends programs that use
-//! another architecture's calls (32-bit `int 0x80`); x32 numbers are in no group and therefore do not exist.
+//! There is a separate filter for each kind of answer. For a call, the strictest answer counts, in the order kill,
+//! error, announce, allow. Of equal answers, that of the last filter counts. Forbidden calls are announced to the
+//! supervisor, which names the call and kills the program. The filter that announces is the first. If the kernel cannot
+//! announce calls, a forbidden call kills the program with `SIGSYS`. The filter for calls that do not exist is
+//! installed last, because it also removes the calls that install filters. Every filter ends programs that use another
+//! architecture's calls (32-bit `int 0x80`); x32 numbers are in no group and therefore do not exist.
 
 use std::{collections::BTreeMap, io};
 
@@ -14,7 +16,7 @@ use seccompiler::{
 
 use super::calls::{self, Call};
 
-/// Represents "announce" while a filter is compiled, because the compiler does not support that action.
+/// The value that stands for "announce" while a filter is compiled, because the compiler does not know that action.
 const ANNOUNCE_PLACEHOLDER: u16 = 0x5151;
 const RETURN_CONSTANT: u16 = 0x06;
 const ACTION_ANNOUNCE: u32 = 0x7fc0_0000;
@@ -31,8 +33,9 @@ pub(super) const NAMESPACE_FLAGS: [u64; 8] = [
     0x80, // CLONE_NEWTIME
 ];
 
-/// Commands for descriptors that affect only their holder. Commands that make the kernel signal others or make them
-/// wait (owner, signal, lease, notice) are missing, and so is the size of pipes, which shrinks if a user has many.
+/// Commands for descriptors that affect only the process that uses them. The list does not contain commands by which
+/// the kernel sends signals to others or makes them wait (owner, signal, lease, notice). It does not contain the size
+/// of pipes either, because all pipes become smaller if a user has many.
 const HARMLESS_COMMANDS: [u64; 8] = [
     libc::F_DUPFD as u64,
     libc::F_GETFD as u64,
@@ -44,7 +47,7 @@ const HARMLESS_COMMANDS: [u64; 8] = [
     libc::F_GET_SEALS as u64,
 ];
 
-/// Commands that lock parts of files, or find the holder of a lock.
+/// Commands that lock parts of files, or that report which process holds a lock.
 pub(super) const LOCK_COMMANDS: [u64; 6] = [
     libc::F_GETLK as u64,
     libc::F_SETLK as u64,
@@ -54,7 +57,7 @@ pub(super) const LOCK_COMMANDS: [u64; 6] = [
     libc::F_OFD_SETLKW as u64,
 ];
 
-/// Queries about a process whose number is the first argument.
+/// Calls that query a process. Their first argument is the number of the process.
 const PROCESS_QUERIES: [i64; 6] = [
     libc::SYS_getsid,
     libc::SYS_getpgid,
@@ -64,13 +67,14 @@ const PROCESS_QUERIES: [i64; 6] = [
     libc::SYS_get_robust_list,
 ];
 
-/// Advice about memory that affects only the caller, by number, because some C libraries lack names: usual, random and
-/// sequential reading, needed or not, free, remove, for children, huge pages, dumps, populate, and guards. Advice that
-/// evicts, ages, merges or moves pages is missing, because others would notice it or no counter shows it.
+/// Advice about memory that affects only the caller. Numbers are used, because some C libraries have no names for them:
+/// usual, random and sequential reading, needed or not, free, remove, for children, huge pages, dumps, populate, and
+/// guards. The list does not contain advice that evicts, ages, merges or moves pages, because others would notice it,
+/// or no counter would show it.
 const HARMLESS_ADVICE: [u64; 20] = [0, 1, 2, 3, 4, 8, 9, 10, 11, 13, 14, 15, 16, 17, 18, 19, 22, 23, 102, 103];
 
-/// Waits for a word that may be shared, with the allowed clocks for a time limit. The C library needs them to wait for
-/// the end of a thread.
+/// Operations that wait for a futex word that may be shared, with the clocks that are allowed for a time limit. The C
+/// library needs them to wait for the end of a thread.
 const SHARED_WAITS: [u64; 4] = [
     libc::FUTEX_WAIT as u64,
     libc::FUTEX_WAIT_BITSET as u64,
@@ -78,10 +82,11 @@ const SHARED_WAITS: [u64; 4] = [
     (libc::FUTEX_WAIT_BITSET | libc::FUTEX_CLOCK_REALTIME) as u64,
 ];
 
-/// Wakes for shared words. The supervisor itself notices that a word has changed, so the calls need no effect.
+/// Operations that wake threads which wait for a shared futex word. The supervisor itself notices that a word has
+/// changed, so these calls need no effect.
 const SHARED_WAKES: [u64; 2] = [libc::FUTEX_WAKE as u64, libc::FUTEX_WAKE_BITSET as u64];
 
-/// Requests about terminals and descriptors that the C library and compilers make for any file.
+/// Requests about terminals and descriptors that the C library and compilers send for any file.
 const HARMLESS_REQUESTS: [u64; 8] = [
     libc::TCGETS,
     libc::TIOCGWINSZ,
@@ -110,22 +115,22 @@ const HARMLESS_OPTIONS: [i32; 10] = [
 /// The purpose of a set of filters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct Purpose {
-    /// Whether the program is a build tool, which may start processes, execute programs and create links within its
-    /// folder.
+    /// Whether the program is a build tool. Build tools may start processes, execute programs, and create links within
+    /// their folder.
     pub(super) tools: bool,
     /// Whether forbidden calls are announced to the supervisor instead of killing the program.
     pub(super) announce: bool,
-    /// The process that the filter applies to, the only one that it may signal; `None` if other layers restrict its
+    /// The process to which the filter applies. It may send signals only to itself. `None` if other layers restrict its
     /// signals.
     pub(super) own_process: Option<i32>,
     /// The descriptor from which the program itself is executed, if calls are not announced. Its number is beyond the
-    /// limit of descriptors, so no other file can ever have it.
+    /// limit of descriptors, so no other file can get it.
     pub(super) entrance: Option<u64>,
-    /// Whether the program has its own user, whose permissions protect the files of others.
+    /// Whether the program runs as its own user, so that permissions protect the files of others.
     pub(super) own_user: bool,
 }
 
-/// Returns the filters in the order of installation; the first one announces.
+/// Returns the filters in the order in which they are installed. The first one announces calls.
 pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     let strictest = if purpose.announce { announce() } else { SeccompAction::KillProcess };
     let mut filters = vec![compile(forbidden(purpose)?, strictest, SeccompAction::Allow)?];
@@ -137,20 +142,21 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     for (errno, rules) in denials(purpose)? {
         filters.push(compile(rules, SeccompAction::Errno(errno as u32), SeccompAction::Allow)?);
     }
-    // A call in any group exists, and earlier filters decide about it. Other calls do not exist.
+    // If a call is in any group, it exists, and the earlier filters decide about it. Other calls do not exist.
     let known = calls::CALL_GROUPS.into_iter().flatten().map(|(_, call)| (*call, Vec::new())).collect();
     filters.push(compile(known, SeccompAction::Allow, SeccompAction::Errno(libc::ENOSYS as u32))?);
     Ok(filters)
 }
 
-/// Returns the denied calls by error number; 0 is for calls that succeed without any effect.
+/// Returns the calls that are denied, by their error numbers. The number 0 means that a call succeeds without any
+/// effect.
 fn denials(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     let mut refusals: BTreeMap<i32, CallRules> = BTreeMap::new();
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
         refusals.entry(errno).or_default().insert(call, rules);
     };
     let own_files = purpose.tools && purpose.own_user;
-    // The supervisor decides about these calls for a build tool.
+    // If the program is a build tool, the supervisor decides about these calls.
     let asked = purpose.tools && purpose.announce;
     for (group, is_rejected) in [
         (calls::DENIED_CALLS, true),
@@ -166,12 +172,13 @@ fn denials(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
         }
     }
     if !own_files {
-        // A build tool may set the times of a file that it has open (a null path), which is what most tools do.
+        // A build tool may set the times of a file that it has open, in which case the path is null. Most tools do it
+        // in this way.
         let named = is_not_null(1)?;
         refuse(libc::EPERM, libc::SYS_utimensat, if purpose.tools { vec![named] } else { Vec::new() });
     }
-    // Words in a file's pages are shared by every process that maps the file, so a library's words would wake other
-    // runs.
+    // Futex words in the pages of a file are shared by all processes that map the file, so a word in a library would
+    // wake threads of other runs.
     let private = libc::FUTEX_PRIVATE_FLAG as u64;
     let harmless = if purpose.announce { [&SHARED_WAITS[..], &SHARED_WAKES].concat() } else { SHARED_WAITS.into() };
     let shared = std::iter::once(condition(1, SeccompCmpOp::MaskedEq(private), 0)).chain(differs_from(1, &harmless));
@@ -182,7 +189,7 @@ fn denials(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     refuse(libc::EINVAL, libc::SYS_madvise, vec![all_differ(2, &HARMLESS_ADVICE)?]);
     refuse(libc::ENOTTY, libc::SYS_ioctl, vec![all_differ(1, &HARMLESS_REQUESTS)?]);
     refuse(libc::EINVAL, libc::SYS_prctl, vec![all_differ(0, &HARMLESS_OPTIONS.map(|option| option as u64))?]);
-    // Shared memory outside files, and huge pages, are resident for no process, so no counter would show them.
+    // Shared memory outside of files, and huge pages, are not resident for any process, so no counter would show them.
     let unseen = (libc::MAP_ANONYMOUS | libc::MAP_SHARED) as u64;
     let huge = libc::MAP_HUGETLB as u64;
     refuse(libc::EPERM, libc::SYS_mmap, vec![mask_rule(3, unseen, unseen)?, mask_rule(3, huge, huge)?]);
@@ -191,12 +198,12 @@ fn denials(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
         vec![condition(1, SeccompCmpOp::Eq, libc::F_SETFL as u64)?, condition(2, SeccompCmpOp::MaskedEq(flag), flag)?];
     let commands = if asked { [&HARMLESS_COMMANDS[..], &LOCK_COMMANDS[..]].concat() } else { HARMLESS_COMMANDS.into() };
     refuse(libc::EPERM, libc::SYS_fcntl, vec![all_differ(1, &commands)?, rule(asynchronous)?]);
-    // Opening a file for reading can truncate it, which older versions of Landlock do not prevent.
+    // Opening a file for reading can truncate it. Older versions of Landlock do not prevent that.
     let (mask, emptied) = ((libc::O_ACCMODE | libc::O_TRUNC) as u64, libc::O_TRUNC as u64);
     refuse(libc::EPERM, libc::SYS_openat, vec![mask_rule(2, mask, emptied)?]);
     #[cfg(target_arch = "x86_64")]
     refuse(libc::EPERM, libc::SYS_open, vec![mask_rule(1, mask, emptied)?]);
-    // Without shared descriptors, open files could be hidden from the supervisor.
+    // If threads could stop sharing descriptors, they could hide open files from the supervisor.
     refuse(libc::EINVAL, libc::SYS_close_range, vec![all_differ(2, &[0, u64::from(libc::CLOSE_RANGE_CLOEXEC)])?]);
     for (errno, call, rules) in on_others(purpose)? {
         refuse(errno, call, rules);
@@ -204,7 +211,8 @@ fn denials(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     Ok(refusals)
 }
 
-/// Returns denials of calls that name a process other than the caller: error number, call, rules.
+/// Returns the denials of calls that name another process than the caller. Each has the error number, the call, and the
+/// rules.
 fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> {
     let own = purpose.own_process.map(|pid| pid as u64);
     let mut refusals = vec![
@@ -218,7 +226,8 @@ fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> 
     }
     if let Some(pid) = own.filter(|_| !purpose.tools) {
         for call in PROCESS_QUERIES {
-            // The argument may also be a thread's number. The C library works without this call if it does not exist.
+            // The argument may also be the number of a thread. If this call does not exist, the C library works without
+            // it.
             let errno = if call == libc::SYS_sched_getaffinity { libc::ENOSYS } else { libc::EPERM };
             refusals.push((errno, call, vec![all_differ(0, &[0, pid])?]));
         }
@@ -229,7 +238,7 @@ fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> 
 
 type CallRules = BTreeMap<i64, Vec<SeccompRule>>;
 
-/// Returns the calls that end the program, or that the supervisor decides about.
+/// Returns the calls that end the program, and those about which the supervisor decides.
 fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     let always = |group: &[Call]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<CallRules>();
     let mut rules = always(calls::FORBIDDEN_CALLS);
@@ -237,8 +246,8 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     if !purpose.tools {
         rules.extend(always(calls::FORK_CALLS));
         clone.push(mask_rule(0, libc::CLONE_THREAD as u64, 0)?);
-        // The supervisor allows the first execution, which starts the program itself. Without a listener, only
-        // execution from the reserved descriptor passes the filter.
+        // The supervisor allows the first execution, which starts the program itself. Without a listener, the filter
+        // allows executions only from the reserved descriptor.
         rules.insert(libc::SYS_execve, Vec::new());
         let entrance = purpose.entrance.map(|number| all_differ(0, &[number]));
         rules.insert(libc::SYS_execveat, entrance.into_iter().collect::<io::Result<_>>()?);
@@ -247,34 +256,34 @@ fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
     clone.push(mask_rule(0, parted, libc::CLONE_THREAD as u64)?);
     rules.insert(libc::SYS_clone, clone);
     if purpose.announce {
-        // The supervisor answers that a thread may have ended, without a wait that others could end.
+        // The supervisor answers these calls itself, so that other runs cannot end the wait for a thread.
         rules.insert(libc::SYS_futex, match_each(1, &SHARED_WAITS)?);
     }
     if purpose.tools && purpose.announce {
-        // The supervisor checks the location of the file.
+        // The supervisor checks where the file is.
         rules.extend(always(calls::LOCK_CALLS));
         rules.insert(libc::SYS_fcntl, match_each(1, &LOCK_COMMANDS)?);
     }
     if purpose.tools && purpose.announce && !purpose.own_user {
-        // The supervisor itself changes the mode, only in the working folder.
+        // The supervisor itself changes the mode, and only in the working folder.
         rules.extend(always(calls::MODE_CALLS));
     }
     Ok(rules)
 }
 
-/// Represents the announcement while a filter is compiled.
+/// Returns the action that stands for an announcement while a filter is compiled.
 fn announce() -> SeccompAction {
     SeccompAction::Trace(ANNOUNCE_PLACEHOLDER.into())
 }
 
-/// Returns the filter with the answer `matched` to the calls that match, and `otherwise` to all others.
+/// Compiles a filter. Its answer is `matched` for calls that match a rule, and `otherwise` for all others.
 fn compile(rules: CallRules, matched: SeccompAction, otherwise: SeccompAction) -> io::Result<BpfProgram> {
     let machine = std::env::consts::ARCH.try_into().map_err(io::Error::other)?;
     let filter = SeccompFilter::new(rules, otherwise, matched, machine);
     filter.and_then(BpfProgram::try_from).map_err(io::Error::other)
 }
 
-/// Matches if the argument is none of the values.
+/// Returns a rule that matches if the argument has none of these values.
 fn all_differ(argument: u8, values: &[u64]) -> io::Result<SeccompRule> {
     rule(differs_from(argument, values).collect::<io::Result<_>>()?)
 }
@@ -283,18 +292,18 @@ fn differs_from(argument: u8, values: &[u64]) -> impl Iterator<Item = io::Result
     values.iter().map(move |value| condition(argument, SeccompCmpOp::Ne, *value))
 }
 
-/// Returns rules that match if the argument is one of the values.
+/// Returns rules that match if the argument has one of these values.
 fn match_each(argument: u8, values: &[u64]) -> io::Result<Vec<SeccompRule>> {
     values.iter().map(|value| rule(vec![condition(argument, SeccompCmpOp::Eq, *value)?])).collect()
 }
 
-/// Matches if the argument is not a null pointer.
+/// Returns a rule that matches if the argument is not a null pointer.
 fn is_not_null(argument: u8) -> io::Result<SeccompRule> {
     let given = SeccompCondition::new(argument, SeccompCmpArgLen::Qword, SeccompCmpOp::Ne, 0);
     rule(vec![given.map_err(io::Error::other)?])
 }
 
-/// Matches if the bits of the mask have the given value.
+/// Returns a rule that matches if the bits of `mask` in the argument have the given value.
 fn mask_rule(argument: u8, mask: u64, value: u64) -> io::Result<SeccompRule> {
     rule(vec![condition(argument, SeccompCmpOp::MaskedEq(mask), value)?])
 }
@@ -303,7 +312,8 @@ fn rule(conditions: Vec<SeccompCondition>) -> io::Result<SeccompRule> {
     SeccompRule::new(conditions).map_err(io::Error::other)
 }
 
-/// Compares the low 32 bits, because the arguments are `int`s and the kernel ignores the higher bits.
+/// Returns a condition on the low 32 bits of the argument. These arguments are of the type `int`, so the kernel ignores
+/// the higher bits.
 fn condition(argument: u8, operator: SeccompCmpOp, value: u64) -> io::Result<SeccompCondition> {
     let value = value & u64::from(u32::MAX);
     SeccompCondition::new(argument, SeccompCmpArgLen::Dword, operator, value).map_err(io::Error::other)

@@ -1,7 +1,7 @@
-//! The supervisor's view of the working folder: its size and its owner.
+//! Measures the working folder for the supervisor, and changes the owner of its contents.
 //!
-//! The program changes the folder while the supervisor reads it. Folders are therefore opened by descriptor, without
-//! following links, and an entry that disappears is not an error.
+//! The program changes the folder while the supervisor reads it. Therefore folders are opened by descriptor, without
+//! following links. It is not an error if an entry disappears.
 
 use std::{
     ffi::CString,
@@ -22,12 +22,12 @@ use crate::{
     sys::{self, OFlags},
 };
 
-/// The maximum depth of folders. Nobody nests folders deeper by accident.
+/// The maximum depth of folders. It is more than programs need.
 const MAX_DEPTH: u32 = 32;
-/// The size of the blocks in which `stat` counts, in bytes.
+/// The size of the blocks that `stat` counts, in bytes.
 pub(super) const BLOCK_BYTES: u64 = 512;
 
-/// The total size and number of the files in a folder.
+/// The numbers of bytes and files in a folder.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct FolderUsage {
     /// The number of bytes on disk.
@@ -36,12 +36,12 @@ pub(super) struct FolderUsage {
     pub(super) files: u64,
     /// The number of folders, if they were counted.
     pub(super) folders: u64,
-    /// Whether a part could not be counted because it is too deep, closed, or beyond the limits.
+    /// Whether a part could not be counted, because it is too deep, cannot be entered, or is beyond the limits.
     pub(super) over: bool,
 }
 
 impl FolderUsage {
-    /// Returns the field-wise maximum.
+    /// Returns the larger value of each field.
     pub(super) fn at_least(self, other: Self) -> Self {
         Self {
             bytes: self.bytes.max(other.bytes),
@@ -52,15 +52,15 @@ impl FolderUsage {
     }
 }
 
-/// Returns the contents of the file system whose root is `folder`, by the kernel's own count, which includes removed
-/// files in use.
+/// Returns the bytes and files in the file system whose root is `folder`, as the kernel counts them. This includes
+/// removed files that are still in use.
 pub(super) fn in_use(folder: BorrowedFd<'_>) -> FolderUsage {
     let (bytes, files) = mounts::file_system_usage(folder).unwrap_or_default();
-    // The root folder itself counts as one file.
+    // The root folder is counted as a file, so it is subtracted.
     FolderUsage { bytes, files: files.saturating_sub(1), ..FolderUsage::default() }
 }
 
-/// Counts the folder's contents, and stops as soon as a limit is exceeded.
+/// Counts the bytes and files in a folder. Counting stops as soon as a limit is exceeded.
 pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) -> FolderUsage {
     let mut contents = FolderUsage::default();
     let whole = walk(folder, 0, &mut |_, metadata| {
@@ -73,13 +73,13 @@ pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) 
     contents
 }
 
-/// Changes the owner of the folder and its contents to a user and group: folders, and files that have no second name
-/// (which might be elsewhere). Must be called only when no process of the program is alive.
+/// Changes the owner and the group of the folder and its contents. Files with a second name are left out, because that
+/// name may be elsewhere. This must be called only when no process of the program is alive.
 pub(super) fn change_owner(folder: BorrowedFd<'_>, user: u32, group: u32) -> io::Result<()> {
     walk(folder, 0, &mut |path, metadata| {
         let kind = metadata.file_type();
         if kind.is_dir() || (kind.is_file() && metadata.nlink() == 1) {
-            // An entry whose owner cannot be changed stays unchanged; the program then cannot change it.
+            // If the owner of an entry cannot be changed, the program cannot change this entry.
             let _ = std::os::unix::fs::lchown(path, Some(user), Some(group));
         }
         true
@@ -87,9 +87,9 @@ pub(super) fn change_owner(folder: BorrowedFd<'_>, user: u32, group: u32) -> io:
     sys::change_owner(folder, user, group)
 }
 
-/// Opens folders that are closed to their own owner, so that they can be read and removed, at any depth. Entries deeper
-/// than [`MAX_DEPTH`] are moved up into `folder`, because the process that removes it would run out of descriptors.
-/// Returns whether no entry was that deep. Must be called only when no process of the program is alive.
+/// Sets the permissions of all folders so that their owner can read and remove them, at any depth. Entries deeper than
+/// [`MAX_DEPTH`] are moved up into `folder`, because the process that removes it would run out of descriptors. Returns
+/// true if no entry was that deep. This must be called only when no process of the program is alive.
 pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
     let mut moved: Vec<CString> = Vec::new();
     open_level(folder, folder, 0, &mut moved);
@@ -103,7 +103,8 @@ pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
     moved.is_empty()
 }
 
-/// Opens the folders below a folder at `depth`, and records the new names of those that were too deep.
+/// Sets the permissions of the folders below a folder that is at `depth`. Records the new names of those that were too
+/// deep.
 fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &mut Vec<CString>) {
     let Ok(entries) = std::fs::read_dir(read_descriptor_path(folder)) else { return };
     for entry in entries.flatten().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())) {
@@ -115,7 +116,7 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
             continue;
         };
         if mode & 0o700 != 0o700 {
-            // The next measurement reports a folder that stays closed as over the limit.
+            // If a folder still cannot be read, the next measurement reports it as beyond the limit.
             let _ =
                 std::fs::set_permissions(read_descriptor_path(opened.as_fd()), Permissions::from_mode(mode | 0o700));
         }
@@ -132,7 +133,7 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
     }
 }
 
-/// Returns a name that is not used in the folder.
+/// Returns a name that no entry of the folder has.
 fn free_name(folder: BorrowedFd<'_>, from: usize) -> Option<String> {
     const MAX_TRIES: usize = 100_000;
     let names = (from..from + MAX_TRIES).map(|number| format!(".too-deep-{number}"));
@@ -144,8 +145,8 @@ fn read_descriptor_path(folder: BorrowedFd<'_>) -> PathBuf {
     PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()))
 }
 
-/// Visits everything below the folder until the visitor stops it. Returns whether everything was visited. Paths lead
-/// through `/proc/self/fd` and are valid during the visit.
+/// Visits everything below the folder until the visitor stops it. Returns whether everything was visited. The paths
+/// that the visitor receives begin with `/proc/self/fd`, and are valid only during the visit.
 fn walk(folder: BorrowedFd<'_>, depth: u32, visit: &mut dyn FnMut(&Path, &Metadata) -> bool) -> bool {
     let Ok(entries) = std::fs::read_dir(format!("/proc/self/fd/{}", folder.as_raw_fd())) else { return false };
     for entry in entries {

@@ -1,9 +1,9 @@
 //! A control group for one run, if the grader may create one.
 //!
-//! The kernel then counts memory and threads continuously, ends a run that takes too much, and ends all its processes
-//! with one command. The group is created below the group of this process, or below one of that group's parents. No
-//! controller is enabled and no other process is moved. The supervisor's own counts stay decisive, so that a verdict
-//! does not depend on the groups of a host.
+//! The kernel then counts memory and threads at all times, ends a run that uses too much, and ends all its processes by
+//! a single command. The group is created below the group of this process, or below one of that group's parents. No
+//! controller is enabled and no other process is moved. The supervisor's own counts still decide, so that a verdict
+//! does not depend on whether a host offers groups.
 //!
 //! Version 2 is preferred. If it has no controller for memory, version 1 limits memory, but cannot end a run.
 
@@ -21,42 +21,44 @@ use crate::{
     wire::RunOrder,
 };
 
-/// The prefix of the groups' names.
+/// The prefix of the names of control groups.
 const GROUP_PREFIX: &str = "fosssim-oracle-";
-/// Additional memory for pipe buffers, page tables and other data of the kernel, which count as well.
+/// Memory that is added to the limit, for pipe buffers, page tables and other data of the kernel that are counted as
+/// well.
 const SPARE_MEMORY: u64 = 64 << 20;
 const SPARE_PROCESSES: u32 = 16;
 
-/// The kind of a hierarchy of groups.
+/// The hierarchy to which a control group belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Kind {
-    /// The single hierarchy of version 2.
+    /// The single hierarchy of control groups in version 2.
     Unified,
-    /// The memory hierarchy of version 1.
+    /// The hierarchy of version 1 that limits memory.
     Memory,
 }
 
-/// A control group. If the host's files are visible when it is dropped, it is removed once it has no processes.
+/// A control group for one run. If the host's files are visible when the value is dropped, the group is removed as soon
+/// as it has no processes.
 pub(super) struct Group {
     parts: Vec<Part>,
 }
 
-/// The group in one hierarchy. Its folder is locked while it is in use.
+/// The control group in one hierarchy. Its folder is locked while it is in use.
 struct Part {
     kind: Kind,
     path: PathBuf,
     folder: File,
-    /// The quantities with an available controller, which the kernel limits.
+    /// The names of the quantities that the kernel limits, because their controllers are available.
     limits: Vec<&'static str>,
 }
 
 impl Group {
-    /// Creates a group with the limits of the order, if there is a place for one.
+    /// Creates a control group with the limits of the order.
     ///
     /// # Errors
     ///
-    /// Fails if no hierarchy has a permitted place, or only version 2 has one on a kernel before 5.14, which cannot end
-    /// a group.
+    /// Fails if the grader may create a group in no hierarchy. Also fails if it may create one only in version 2, and
+    /// the kernel is older than 5.14, so that it cannot end a group.
     pub(super) fn make(order: &RunOrder) -> io::Result<Self> {
         let mounts = std::fs::read_to_string("/proc/self/mountinfo")?;
         let groups = std::fs::read_to_string("/proc/self/cgroup")?;
@@ -81,24 +83,24 @@ impl Group {
         Ok(group)
     }
 
-    /// Returns the quantities that the kernel limits.
+    /// Returns the names of the quantities that the kernel limits.
     pub(super) fn controls(&self) -> Vec<&'static str> {
         let mut limits: Vec<&str> = self.parts.iter().flat_map(|part| part.limits.iter().copied()).collect();
         limits.sort_unstable();
         limits
     }
 
-    /// Opens the files through which a process enters the group, by writing a zero to each.
+    /// Opens the files by which a process enters the group. The process writes a zero to each of them.
     pub(super) fn entrances(&self) -> io::Result<Vec<File>> {
         self.parts.iter().map(Part::entrance).collect()
     }
 
-    /// Returns whether all processes of the group can be ended with one command.
+    /// Returns whether all processes of the group can be ended by a single command.
     pub(super) fn can_kill(&self) -> bool {
         self.unified_part().is_some()
     }
 
-    /// Ends all processes in the group, if that is possible.
+    /// Ends all processes of the group, if that is possible.
     pub(super) fn kill(&self) -> io::Result<()> {
         self.unified_part().map_or(Ok(()), |part| part.open(c"cgroup.kill", OFlags::WRONLY)?.write_all(b"1"))
     }
@@ -121,8 +123,8 @@ impl Group {
     }
 
     fn set_limits(&self, order: &RunOrder) -> io::Result<()> {
-        // Files count here, mainly the working folder's, and so do buffers of others; neither counts for the program's
-        // own limit.
+        // Files are counted here, mainly those in the working folder, and so are buffers of others. Neither counts for
+        // the program's own limit.
         let limits = &order.limits;
         let memory = limits.memory.saturating_add(order.folder_bytes()).saturating_add(SPARE_MEMORY);
         let processes = limits.processes.saturating_add(SPARE_PROCESSES);
@@ -142,7 +144,7 @@ impl Group {
             for (file, value) in values {
                 match part.open(file, OFlags::WRONLY) {
                     Ok(mut file) => file.write_all(value.as_bytes())?,
-                    // A missing controller is not an error, because `controls` reports it.
+                    // It is not an error if a controller is missing; `controls` reports it.
                     Err(error) if error.kind() == io::ErrorKind::NotFound => {}
                     Err(error) => return Err(error),
                 }
@@ -152,11 +154,11 @@ impl Group {
     }
 }
 
-/// A quantity that the kernel can limit for a group, and the file that sets the limit.
+/// A quantity that the kernel can limit for a group, and the file in which the limit is set.
 type HeldLimit = (&'static str, &'static CStr);
 
 impl Kind {
-    /// Returns the limits of a control group of this version whose controllers are available.
+    /// Returns the limits that this version of control groups offers.
     fn limits(self) -> &'static [HeldLimit] {
         match self {
             Self::Unified => &[("memory", c"memory.max"), ("threads and processes", c"pids.max")],
@@ -166,14 +168,15 @@ impl Kind {
 }
 
 impl Part {
-    /// Creates a group in the first place that has all limits, otherwise in the first possible place.
+    /// Creates a group in the first of the places in which all limits work. If there is no such place, in the first one
+    /// in which a group can be created.
     fn make(kind: Kind, places: &[PathBuf]) -> io::Result<Option<Self>> {
         let (mut weaker, mut problem) = (None, None);
         for place in places {
             sweep(place);
             match Self::make_in(kind, place) {
                 Ok(part) if part.limits.len() == kind.limits().len() => return Ok(Some(part)),
-                // A group of version 1 is useless without the limit.
+                // A group of version 1 without the limit is useless.
                 Ok(part) if weaker.is_none() && kind == Kind::Unified => weaker = Some(part),
                 Ok(_) => {}
                 Err(error) => problem = Some(error),
@@ -190,7 +193,7 @@ impl Part {
         let mut tries = 0;
         loop {
             match Self::try_in(kind, place) {
-                // A cleanup may have removed the group before it was locked.
+                // A cleanup by another supervisor may have removed the group before it was locked.
                 Err(error) if error.kind() == io::ErrorKind::NotFound && tries < MAX_TRIES && place.is_dir() => {
                     tries += 1
                 }
@@ -202,7 +205,7 @@ impl Part {
     fn try_in(kind: Kind, place: &Path) -> io::Result<Self> {
         let (path, folder) = claim(place)?;
         let mut part = Self { kind, path, folder, limits: Vec::new() };
-        // A group is useful only if it can be entered and, in version 2, ended.
+        // A group is useful only if it can be entered and, in version 2, can be ended.
         if kind == Kind::Unified {
             part.open(c"cgroup.kill", OFlags::WRONLY)?;
         }
@@ -247,48 +250,49 @@ impl Drop for Part {
     }
 }
 
-/// Returns the number after `key` in a file of lines `key number`.
+/// Returns the number after `key` in a file that consists of lines of the form `key number`.
 fn value_of(text: &str, key: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(' ')?.trim().parse().ok())
 }
 
-/// Creates a folder and locks it, so that no cleanup removes it.
+/// Creates the folder of a control group and locks it, so that no cleanup removes it.
 ///
 /// # Errors
 ///
 /// Fails with `NotFound` if the group was removed before it was locked.
 fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
-    // In other process namespaces, a process may have the same number.
+    // In another process namespace, a process may have the same number.
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default().as_nanos();
     let path = place.join(format!("{GROUP_PREFIX}{}-{now}", std::process::id()));
     std::fs::create_dir(&path)?;
     let folder = File::open(&path)?;
     folder.try_lock().map_err(|_| io::ErrorKind::NotFound)?;
-    // A process that removes a group holds the lock, so this group stays.
+    // A process that removes a group holds its lock, so this group is not removed.
     path.symlink_metadata()?;
     Ok((path, folder))
 }
 
-/// Removes empty groups of killed supervisors, each while its lock is held.
+/// Removes empty groups of killed supervisors. Each is locked while it is removed.
 fn sweep(place: &Path) {
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(GROUP_PREFIX));
         let Some(folder) = ours.then(|| File::open(entry.path()).ok()).flatten() else { continue };
         if folder.try_lock().is_ok() {
-            // A group with a process in it cannot be removed.
+            // This fails if the group still has a process.
             let _ = std::fs::remove_dir(entry.path());
         }
     }
 }
 
-/// Returns the groups that limit this process's memory, its own group first.
+/// Returns the control groups that limit the memory of this process. The innermost group comes first.
 pub(crate) fn memory_groups() -> Vec<PathBuf> {
     let read = |path| std::fs::read_to_string(path).unwrap_or_default();
     let (mounts, groups) = (read("/proc/self/mountinfo"), read("/proc/self/cgroup"));
     [Kind::Unified, Kind::Memory].into_iter().flat_map(|kind| places_in(&mounts, &groups, kind)).collect()
 }
 
-/// Returns the places for a new group: in this process's group, then in its parents up to the mounted root.
+/// Returns the places in which a new group can be created: in the group of this process, and then in its parents, up to
+/// the mounted root.
 fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
     let of_memory = |list: &str| list.split(',').any(|word| word == "memory");
     let own = groups.lines().find_map(|line| match kind {
@@ -309,7 +313,7 @@ fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
     });
     let Some((root, top)) = mounted else { return Vec::new() };
     let top = Path::new(top);
-    // A group outside the mounted part cannot be named here.
+    // A group outside of the mounted part cannot be named in this namespace.
     let Ok(inside) = Path::new(own).strip_prefix(root) else { return vec![top.into()] };
     inside.ancestors().map(|part| if part.as_os_str().is_empty() { top.into() } else { top.join(part) }).collect()
 }

@@ -1,5 +1,5 @@
-//! Measures files and memory of processes that neither the folder nor resident memory shows: files without a name that
-//! are open, mapped or executed, and mapped memory that is resident for no process.
+//! Measures files and memory of processes that are neither in the folder nor in the count of resident memory. These are
+//! files without a name that are open, mapped or executed, and mapped memory that is not resident for any process.
 
 use std::{
     collections::BTreeSet,
@@ -11,23 +11,24 @@ use std::{
 use super::folder::BLOCK_BYTES;
 use crate::machine;
 
-/// The kernel's mark for a file that has no name any more.
+/// The text by which the kernel marks a file that no longer has a name.
 const DELETED_SUFFIX: &[u8] = b" (deleted)";
-/// The names of shared memory that is in no folder.
+/// The names of shared memory that is not in a folder.
 const SHARED_MEMORY: [&[u8]; 3] = [b"/dev/zero", b"/memfd:", b"/SYSV"];
 
-/// The sum over several processes.
+/// The files and the memory that several processes hold together.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Holdings {
     /// The number of bytes of files without a name.
     pub(super) nameless: u64,
-    /// The number of bytes of memory that need not be resident for any process.
+    /// The number of bytes of memory that may be resident for no process.
     pub(super) memory: u64,
 }
 
-/// Returns the memory and files of `members` (each process with one of its threads). `root` is the working folder, the
-/// only place in which they create files. `executed` adds the files that they execute, and `page_tables` the kernel's
-/// tables for their memory, which matter if address space is not limited.
+/// Returns the memory and files that `members` hold. Each member is a process and one of its threads. `root` is the
+/// working folder, the only place in which they can create files. With `executed`, files that they execute are
+/// included. With `page_tables`, the kernel's tables for their memory are included, which matter if address space is
+/// not limited.
 pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> Holdings {
     let mut holdings = Holdings::default();
     let mut seen = BTreeSet::new();
@@ -54,7 +55,7 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
         }
     }
     let shown = path_in_maps(root);
-    // Only root can find how much of a mapped file is on disk, so the whole mapped size counts.
+    // Only root can find out how much of a mapped file is on disk, so the size of the whole mapping counts.
     mapped.sort_unstable_by_key(|mapping| (mapping.inode, std::cmp::Reverse(mapping.end)));
     for mapping in mapped {
         let memory = mapping.shared && SHARED_MEMORY.iter().any(|name| mapping.name.starts_with(name));
@@ -66,13 +67,13 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
     holdings
 }
 
-/// Returns the path as written in `maps`, where names with newlines would make the lines ambiguous.
+/// Returns a path as it is written in `maps`, where a newline in a name would be ambiguous.
 fn path_in_maps(path: &Path) -> Vec<u8> {
     let lines: Vec<&[u8]> = path.as_os_str().as_bytes().split(|byte| *byte == b'\n').collect();
     lines.join(&b"\\012"[..])
 }
 
-/// A mapping of a file that has no name any more.
+/// A mapping of a file that no longer has a name.
 struct Mapping {
     shared: bool,
     /// The offset in the file at which the mapping ends.

@@ -1,15 +1,15 @@
-//! A supervisor for all runs of one submission, one after the other.
+//! The keeper, which is the supervisor for all runs of one submission, one after the other.
 //!
-//! The parts common to all runs are created once: the process itself, a user and a control group, a root folder with
-//! the files that every run may read, a namespace without network, Landlock's places and the filters. For each run the
-//! keeper forks into new namespaces of processes, mounts and messages; the child is the run's supervisor and the first
-//! process of its namespace, with a copy of the prepared mounts, a working folder in memory and a separate `/proc`.
-//! Everything that a run could leave behind is removed with them; the prepared root is read-only, and no filter allows
-//! sockets. The next run begins when the kernel has ended the last process of the previous run. After a run that did
-//! not end by itself, the grader uses no keeper again.
+//! The parts that all runs have in common are created once: the process itself, a user and a control group, a root
+//! folder with the files that every run may read, a namespace without network, the places for Landlock, and the
+//! filters. For each run, the keeper forks into new namespaces of processes, mounts and messages. The child is the
+//! run's supervisor, and the first process in its namespace. It has a copy of the prepared mounts, a working folder in
+//! memory, and its own `/proc`. Everything that a run could leave behind is removed with these namespaces. The prepared
+//! root is read-only, and no filter allows sockets. The next run begins after the kernel has ended the last process of
+//! the previous run. After a run that did not end by itself, the grader does not use the keeper again.
 //!
-//! The guardian outside holds the user and the control group until the keeper has ended. The keeper dies with the
-//! guardian, and every run with the keeper.
+//! A guardian process outside of the namespaces holds the user and the control group until the keeper has ended. If the
+//! guardian ends, the keeper ends, and with the keeper every run.
 
 use std::{
     fs::File,
@@ -34,18 +34,18 @@ use crate::{
     wire::{self, Event, Failure, RawBytes, RunOrder, failure_at},
 };
 
-/// The time after which a keeper without orders ends, so that others can use its user.
+/// The time without orders after which a keeper ends, so that others can use its user.
 const MAX_IDLE: Duration = Duration::from_secs(2);
-/// The number of a program in its process namespace, where the supervisor is the first.
+/// The number of the program's process in its namespace, in which the supervisor is number 1.
 const PROGRAM_PID: i32 = 2;
 
-/// Serves the requests from standard input, a socket.
+/// Serves the requests that arrive on standard input, which is a socket.
 pub(super) fn main() -> ExitCode {
     let Ok(socket) = io::stdin().as_fd().try_clone_to_owned().map(UnixStream::from) else { return ExitCode::from(2) };
     let Ok(Some(mut first)) = RunRequest::next(&socket) else { return ExitCode::from(2) };
     ExitCode::from(match fork_keeper(&first.order) {
         Ok(Side::Guardian { keeper, held }) => {
-            // The pipe that the grader reads must be closed at the end of the run.
+            // The pipe from which the grader reads must be closed at the end of the run.
             drop((first, socket));
             let code = sys::wait_for(keeper).unwrap_or(1);
             drop(held);
@@ -53,14 +53,15 @@ pub(super) fn main() -> ExitCode {
         }
         Ok(Side::Keeper(keeper)) => keeper.serve(first, &socket),
         Err(failure) => {
-            // Sending fails if the grader has ended, which does not matter.
+            // This fails if the grader has ended, which does not matter.
             let _ = wire::send(&mut first.answers, &Event::Failed(failure));
             1
         }
     })
 }
 
-/// One run: its order, the connection with the grader, the working folder on disk, and further files for that folder.
+/// A requested run: its order, the connection to the grader, the working folder on disk, and further files for that
+/// folder.
 struct RunRequest {
     order: RunOrder,
     control: File,
@@ -70,7 +71,7 @@ struct RunRequest {
 }
 
 impl RunRequest {
-    /// Returns the next request; `None` if the grader has no more.
+    /// Returns the next request; `None` if the grader has no more requests.
     fn next(socket: &UnixStream) -> io::Result<Option<Self>> {
         let mut byte = [0];
         let (length, descriptors) = sys::receive_descriptors(socket, &mut byte)?;
@@ -88,7 +89,7 @@ impl RunRequest {
 }
 
 enum Side {
-    /// Outside the namespaces: the process only waits for the keeper.
+    /// The process outside of the namespaces, which only waits for the keeper.
     Guardian {
         keeper: i32,
         held: HeldResources,
@@ -96,7 +97,7 @@ enum Side {
     Keeper(Keeper),
 }
 
-/// Takes the run's exclusive resources, and prepares its namespaces in a child.
+/// Takes the exclusive resources of the runs, and prepares their namespaces in a child process.
 fn fork_keeper(order: &RunOrder) -> Result<Side, Failure> {
     sys::new_session().map_err(failure_at("start the supervisor's session"))?;
     let alone = sys::single_thread().map_err(failure_at("fork"))?;
@@ -111,13 +112,13 @@ fn fork_keeper(order: &RunOrder) -> Result<Side, Failure> {
 }
 
 struct Keeper {
-    /// The resources, of which every run uses a copy.
+    /// The exclusive resources. Each run uses a copy of their descriptors.
     held: Option<HeldResources>,
     prepared: PreparedRun,
 }
 
 impl Keeper {
-    /// Serves one request after the other, until there are no more or one ends unexpectedly.
+    /// Serves one request after the other. Ends when there are no more, or when a run ends unexpectedly.
     fn serve(mut self, first: RunRequest, socket: &UnixStream) -> u8 {
         let mut next = Some(first);
         while let Some(request) = next {
@@ -136,14 +137,14 @@ impl Keeper {
     fn run(&mut self, mut request: RunRequest) -> u8 {
         let folder = wire::path(&request.order.folder);
         let namespaces = libc::CLONE_NEWPID | libc::CLONE_NEWNS | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
-        // The mount point of the folder exists only during its run.
+        // The mount point for the folder exists only during the run.
         let forked = std::fs::create_dir_all(&folder).and_then(|()| self.prepared.fork_into(namespaces));
         match forked {
             Ok(Fork::Child) => sys::exit_now(self.supervise(request).into()),
             Ok(Fork::Parent(supervisor)) => {
                 drop(request);
                 let code = sys::wait_for(supervisor).unwrap_or(1);
-                // A folder that was visible before must not be removed.
+                // If the folder was visible before, it must not be removed.
                 let _ = std::fs::remove_dir(folder);
                 code
             }
@@ -151,7 +152,7 @@ impl Keeper {
         }
     }
 
-    /// Serves one run, and returns its exit code.
+    /// Serves one run, and returns the exit code of its supervisor.
     fn supervise(&mut self, request: RunRequest) -> u8 {
         let RunRequest { order, control, mut answers, folder, files } = request;
         let Some(held) = self.held.take() else { return 1 };

@@ -1,21 +1,21 @@
 //! Locks files on behalf of build tools, only in the working folder.
 //!
-//! A lock needs no right to write, so every program that may read a file of the system could block the whole machine
-//! with a lock. Submissions lock nothing. Locks of build tools are announced, and allowed if the open file is beneath
-//! the working folder. (A thread that replaces the descriptor between check and lock gets a harmless lock for the
-//! duration of the build.)
+//! Locking a file does not require the right to write it. Every program that may read a file of the system could
+//! therefore block the whole machine with a lock. Submissions must not lock files. Locks of build tools are announced,
+//! and are allowed if the open file is below the working folder. (If a thread replaces the descriptor between the check
+//! and the lock, it gets a harmless lock for the duration of the build.)
 
 use std::path::Path;
 
 use super::filter::LOCK_COMMANDS;
 use crate::sys::PendingCall;
 
-/// Returns whether the call locks a file. Other commands for descriptors are never announced.
+/// Returns whether the call locks a file. Other commands for descriptors are not announced.
 pub(super) fn is_lock_call(call: i64) -> bool {
     call == libc::SYS_flock || call == libc::SYS_fcntl
 }
 
-/// Returns whether the announced lock is of a file below `root`.
+/// Returns whether the announced call locks a file below `root`.
 pub(super) fn is_inside(announced: &PendingCall, root: &Path) -> bool {
     let known = announced.call == libc::SYS_flock || LOCK_COMMANDS.contains(&(announced.arguments[1] & 0xffff_ffff));
     let entry = format!("/proc/{}/fd/{}", announced.thread, announced.arguments[0] as i32);

@@ -1,7 +1,8 @@
-//! A working folder in memory, which is a file system whose size and number of files the kernel limits.
+//! A working folder in memory. It is a file system, and the kernel limits its size and its number of files.
 //!
-//! Its files are removed with the run, unless the grader holds them open. Their pages belong to no process, so they
-//! count as resident memory of a program only while it maps them. A control group's limit has room for all of them.
+//! Its files are removed at the end of the run, unless the grader still has them open. Their pages do not belong to a
+//! process, so they count as a program's resident memory only while the program maps them. The limit of a control group
+//! is large enough for all of them.
 
 use std::{
     fs::{File, Permissions},
@@ -14,20 +15,21 @@ use rustix::io::Errno;
 
 use crate::wire::{self, RawBytes, RunOrder};
 
-/// Additional bytes beyond the limit, so that the supervisor can see that a program exceeds it.
+/// The number of bytes beyond the limit, by which the supervisor notices that a program exceeds it.
 const SPARE_BYTES: u64 = 1 << 20;
 const SPARE_FILES: u64 = 64;
 /// The number of bytes that are copied at a time.
 const BYTES_PER_COPY: usize = 1 << 16;
 
-/// Returns the mount options for the order's folder.
+/// Returns the mount options for the folder of an order.
 pub(super) fn options(order: &RunOrder) -> String {
     let bytes = order.folder_bytes().saturating_add(SPARE_BYTES);
     let files = order.limits.folder_files.saturating_add(SPARE_FILES);
     format!("mode=700,size={bytes},nr_inodes={files}")
 }
 
-/// Copies files and folders with their permission bits. Holes are kept; links and special files are not copied.
+/// Copies files and folders with their permission bits. Holes in files remain holes. Links and special files are not
+/// copied.
 pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
     for entry in std::fs::read_dir(from)? {
         let entry = entry?;
@@ -45,11 +47,11 @@ pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
     Ok(())
 }
 
-/// Adds files to the folder.
+/// Writes files into the folder.
 ///
 /// # Errors
 ///
-/// Fails if a name leads out of the folder, or writing fails.
+/// Fails if a name leads out of the folder, or if writing fails.
 pub(super) fn add(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()> {
     for (name, content) in files {
         let plain = wire::plain_name(name).ok_or(io::ErrorKind::InvalidInput)?;
@@ -58,7 +60,7 @@ pub(super) fn add(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()
     Ok(())
 }
 
-/// Copies the data blocks of a file, and keeps the holes between them.
+/// Copies the blocks of a file that contain data. Holes between them remain holes.
 ///
 /// # Errors
 ///
@@ -67,7 +69,7 @@ pub(super) fn copy_blocks(from: &File, to: &mut File, most: u64) -> io::Result<(
     let mut buffer = vec![0; BYTES_PER_COPY];
     let (mut at, mut copied) = (0, 0);
     loop {
-        // On a file system without hole detection, a file has no holes.
+        // If the file system cannot detect holes, the file has no holes.
         at = match rustix::fs::seek(from, rustix::fs::SeekFrom::Data(at)) {
             Err(Errno::NXIO) => break,
             Err(Errno::INVAL) => at,

@@ -1,6 +1,6 @@
-//! The supervisor, a new process of this binary that runs one program and reports when all processes have ended.
+//! The supervisor is a new process of this binary. It runs one program, and reports after all processes have ended.
 //!
-//! It never reads a scene, a trace or a verdict, and trusts only the kernel's wait status, counters and announcements,
+//! It never reads a scene, a trace or a verdict. It trusts the kernel's wait status, counters and announcements, but
 //! not the program's output.
 
 mod answers;
@@ -30,14 +30,14 @@ use std::{ffi::OsString, process::ExitCode};
 pub(super) use self::{folder::open_up, group::memory_groups};
 use super::wire::SUPERVISOR_ARGUMENT;
 
-/// The mode for one run.
+/// The mode in which the supervisor serves one run.
 pub(super) const MODE_RUN: &str = "run";
-/// The mode for all runs of one submission.
+/// The mode in which the supervisor serves all runs of one submission.
 pub(super) const MODE_KEEP: &str = "keep";
-/// The mode that tests the layers and reports the results.
+/// The mode in which the supervisor tests the layers and reports the results.
 pub(super) const MODE_PROBE: &str = "probe";
 
-/// Turns this process into a supervisor if it was started as one; otherwise `None`.
+/// Turns this process into a supervisor, if it was started as one. Returns its exit code then, and otherwise `None`.
 ///
 /// A program that uses the sandbox must call this first in its `main`, before it starts any thread, with its own
 /// arguments (`std::env::args_os()`), and must return the code if there is one.

@@ -1,8 +1,8 @@
 //! Changes permission bits on behalf of build tools that run as the grader's own user.
 //!
-//! Linkers make their output executable by name, but Landlock does not restrict permission bits, so an unrestricted
-//! build step could change the bits of the grader's own files. The call is therefore announced. The supervisor carries
-//! it out below the working folder and denies it elsewhere. Links are not followed.
+//! Linkers make their output executable, and name the file by its path. Landlock does not restrict permission bits, so
+//! a build step could change those of the grader's own files. Therefore the call is announced. If the file is below the
+//! working folder, the supervisor makes the change; otherwise it denies the call. Links are not followed.
 
 use std::{
     ffi::CString,
@@ -18,7 +18,7 @@ use std::{
 use super::calls;
 use crate::sys::{self, OFlags, PendingCall};
 
-/// The allowed permission bits, without set-user and set-group.
+/// The permission bits that may be set. The bits for set-user and set-group are excluded.
 const MODE_BITS: u64 = 0o1777;
 
 /// Returns whether the call changes permission bits.
@@ -26,11 +26,11 @@ pub(super) fn is_mode_call(call: i64) -> bool {
     calls::MODE_CALLS.iter().any(|(_, number)| *number == call)
 }
 
-/// Carries out the call if its file is below `folder`, whose path is `root`.
+/// Makes the change if the file is below `folder`, whose path is `root`.
 ///
 /// # Errors
 ///
-/// Fails with the error number for the caller.
+/// Fails with the error number that the caller gets.
 pub(super) fn change_mode(announced: &PendingCall, folder: BorrowedFd<'_>, root: &Path) -> Result<(), i32> {
     let [first, second, third, ..] = announced.arguments;
     let thread = announced.thread;
@@ -40,10 +40,10 @@ pub(super) fn change_mode(announced: &PendingCall, folder: BorrowedFd<'_>, root:
             let start = if first as i32 == libc::AT_FDCWD { Start::Current } else { Start::Held(first) };
             (change_named(thread, &start, second, folder, root)?, third)
         }
-        // The remaining call is `chmod`.
+        // The only other call is `chmod`.
         _ => (change_named(thread, &Start::Current, first, folder, root)?, second),
     };
-    // The current name of the open file is checked, and the same open file is changed.
+    // The current name of the open file is checked, and then the mode of this open file is changed.
     let entry = format!("/proc/self/fd/{}", file.as_raw_fd());
     let place = std::fs::read_link(&entry).map_err(|_| libc::EPERM)?;
     if place == root || !place.starts_with(root) {
@@ -53,19 +53,19 @@ pub(super) fn change_mode(announced: &PendingCall, folder: BorrowedFd<'_>, root:
         .map_err(|error| error.raw_os_error().unwrap_or(libc::EPERM))
 }
 
-/// The folder from which a relative path starts.
+/// The folder at which a relative path starts.
 enum Start {
     Current,
     Held(u64),
 }
 
-/// Returns the file that the thread has open under a descriptor number, reopened by its current name.
+/// Returns the file that the thread has open under this number. It is opened again by its current name.
 fn reopen_held(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
     let target = std::fs::read_link(format!("/proc/{thread}/fd/{}", number as i32)).map_err(|_| libc::EBADF)?;
     open_beneath(&target, folder, root).map_err(|_| libc::EPERM)
 }
 
-/// Returns the file with the name at `address`, without following links.
+/// Returns the file whose name is at `address` in the thread's memory. Links are not followed.
 fn change_named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
     let path = text_at(thread, address).ok_or(libc::EFAULT)?;
     let from = match start {
@@ -79,19 +79,19 @@ fn change_named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>
     })
 }
 
-/// Returns the file at the path, if it is below the working folder, opened only as a reference (`O_PATH`). Links on the
-/// path are not followed.
+/// Returns the file at a path, if it is below the working folder. It is opened only as a reference (`O_PATH`). Links on
+/// the path are not followed.
 fn open_beneath(path: &Path, folder: BorrowedFd<'_>, root: &Path) -> io::Result<OwnedFd> {
     let inside = path.strip_prefix(root).map_err(io::Error::other)?;
     sys::open_beneath(folder, &CString::new(inside.as_os_str().as_bytes())?, OFlags::PATH)
 }
 
-/// Returns the zero-terminated text at `address` in the thread's memory.
+/// Returns the zero-terminated text at `address` in the memory of the thread.
 fn text_at(thread: u32, address: u64) -> Option<PathBuf> {
     let mut memory = File::open(format!("/proc/{thread}/mem")).ok()?;
     memory.seek(SeekFrom::Start(address)).ok()?;
     let mut text = Vec::new();
-    // The text may end shortly before the memory does, so a read can fail after enough was read.
+    // The text may end shortly before the memory does. A read can then fail after enough bytes were read.
     let _ = memory.take(libc::PATH_MAX as u64).read_to_end(&mut text);
     let end = text.iter().position(|&byte| byte == 0)?;
     text.truncate(end);

@@ -1,12 +1,12 @@
-//! Namespaces for one run: processes, network, messages and mounts.
+//! Creates the namespaces of a run, for processes, network, messages and mounts.
 //!
 //! The supervisor itself moves into them. It forks once into a new process namespace, where it is process 1, so the
-//! kernel ends all its descendants when it dies for any reason. The process outside, the *guardian*, only waits. Root
+//! kernel ends all its descendants when it ends for any reason. The process outside, the *guardian*, only waits. Root
 //! needs no user namespace. An ordinary user gets a user namespace in which it keeps its identity and has rights only
 //! over the new namespaces. The rights end when the program is executed.
 //!
-//! A supervisor that serves many runs ([`keeper`](super::keeper)) moves in once, and creates a process namespace,
-//! mounts and messages for each run inside.
+//! A supervisor that serves many runs ([`keeper`](super::keeper)) moves into namespaces once. For each run it creates
+//! new ones inside, for processes, mounts and messages.
 
 use super::view;
 use crate::{
@@ -15,11 +15,11 @@ use crate::{
     wire::{Failure, RunOrder, failure_at},
 };
 
-/// The process in which [`enter`] returns.
+/// The process in which [`enter`] returns: inside or outside of the namespaces.
 pub(super) enum Side {
-    /// The process inside the namespaces, which continues.
+    /// The process inside the namespaces. It continues with the run.
     Inside,
-    /// The process outside, after the process inside has ended with this code.
+    /// The process outside. The process inside has ended with this exit code.
     Outside(u8),
 }
 
@@ -27,7 +27,7 @@ pub(super) enum Side {
 ///
 /// # Errors
 ///
-/// Fails with the name of the step that failed. The process is then between the namespaces and must end.
+/// Fails with the name of the step that failed. The process has then moved only partly, and must end.
 pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
     match fork_into_namespaces()? {
         Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(failure_at("wait"))?)),
@@ -40,8 +40,8 @@ pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
     }
 }
 
-/// Forks into a new process namespace, for an ordinary user within a new user namespace. The child dies with the
-/// guardian.
+/// Forks into a new process namespace. An ordinary user also gets a new user namespace. The child ends when the
+/// guardian ends.
 ///
 /// # Errors
 ///
@@ -52,7 +52,7 @@ pub(super) fn fork_into_namespaces() -> Result<Fork, Failure> {
         mounts::unshare(libc::CLONE_NEWPID).map_err(failure_at("make a process namespace"))?;
     } else {
         mounts::unshare(libc::CLONE_NEWUSER | libc::CLONE_NEWPID).map_err(failure_at("make a user namespace"))?;
-        // The kernel requires an ordinary user to give up supplementary groups before it sets a group.
+        // Before an ordinary user sets a group, the kernel requires that it gives up its supplementary groups.
         for (file, text) in [
             ("/proc/self/setgroups", "deny".to_string()),
             ("/proc/self/uid_map", format!("{user} {user} 1")),

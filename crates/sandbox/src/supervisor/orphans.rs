@@ -1,4 +1,4 @@
-//! Ends the processes that a lost supervisor may have left.
+//! Ends the processes that a supervisor may have left behind when it was lost.
 
 use std::time::Duration;
 
@@ -7,11 +7,12 @@ use super::{
     slot,
 };
 
-/// Ends the processes that a lost supervisor may have left: those of its child's session and those of the child's own
-/// user. A process namespace ends all of its processes by itself, and its session numbers are not valid here.
+/// Ends the processes that a lost supervisor may have left behind. These are the processes in its child's session, and
+/// those of the child's own user. If there was a process namespace, it has ended all of its processes by itself, and
+/// its session numbers are not valid here.
 pub(crate) fn end_orphans(session: Option<i32>, user: Option<u32>) {
     const MAX_ATTEMPTS: u32 = 1000;
-    // The lock of the user ended with the supervisor, so another run may already have the user.
+    // The lock on the user ended with the supervisor, so another run may already have this user.
     let slot = user.and_then(slot::retake);
     let user = slot.as_ref().map(|slot| slot.user);
     for _ in 0..MAX_ATTEMPTS {

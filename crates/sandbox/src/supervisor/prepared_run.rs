@@ -1,4 +1,4 @@
-//! The exclusive resources of a run, and the preparations before it begins.
+//! Takes the exclusive resources of a run, and makes the preparations before it begins.
 
 use std::{io, os::fd::BorrowedFd, rc::Rc};
 
@@ -11,16 +11,16 @@ use crate::{
     wire::{Failure, RunOrder, failure_at},
 };
 
-/// The exclusive resources of a run on this machine, held until this is dropped.
+/// The exclusive resources of a run on this machine. They are held until the value is dropped.
 pub(super) struct HeldResources {
-    /// The run's own user.
+    /// The run's own user, if it has one.
     pub(super) slot: Option<slot::Slot>,
-    /// The run's control group.
+    /// The run's control group, if it has one.
     pub(super) group: Option<Group>,
 }
 
 impl HeldResources {
-    /// Takes the resources that the order requires.
+    /// Takes the exclusive resources that the order requires.
     pub(super) fn take(order: &RunOrder) -> Result<Self, Failure> {
         let taken = |error: io::Error| Failure::new(format!("take a separate user ({error})"), &error);
         let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;
@@ -29,19 +29,19 @@ impl HeldResources {
     }
 }
 
-/// The preparations that need no program, shared by all runs that differ only in scene and folder.
+/// Preparations that do not depend on the program. All runs that differ only in the scene and the folder share them.
 #[derive(Default)]
 pub(super) struct PreparedRun {
     places: Option<walls::Places>,
     pub(super) filters: Option<child::Filters>,
     ignored: Option<Rc<[i32]>>,
-    /// The proof that the supervisor has one thread.
+    /// The proof that the supervisor has only one thread.
     alone: Option<SingleThread>,
 }
 
 impl PreparedRun {
-    /// Prepares for orders like `order`, whose programs have the process number `number`, in a process that has one
-    /// thread.
+    /// Makes the preparations for orders like `order`. Their programs have the process number `number`. The process
+    /// must have only one thread.
     pub(super) fn for_order(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
         let open = || walls::Places::for_order(order).with_high_numbers();
         let purpose = child::purpose(order, order.walls.own_user, None, number);
@@ -51,23 +51,23 @@ impl PreparedRun {
         Ok(Self { places, filters, ignored: Some(sys::ignored_signals().into()), alone: Some(alone) })
     }
 
-    /// Returns the signals that are ignored.
+    /// Returns the signals that the supervisor ignores.
     pub(super) fn ignored_signals(&self) -> Rc<[i32]> {
         self.ignored.clone().unwrap_or_else(|| sys::ignored_signals().into())
     }
 
-    /// Forks into new namespaces.
+    /// Forks into new namespaces, given by the flags.
     pub(super) fn fork_into(&self, namespaces: i32) -> io::Result<Fork> {
         let alone = self.alone.as_ref().ok_or_else(|| io::Error::other("nothing is prepared"))?;
         mounts::fork_into(alone, namespaces)
     }
 
-    /// Forks.
+    /// Forks into the same namespaces.
     pub(super) fn fork(&self) -> io::Result<Fork> {
         self.alone.as_ref().map_or_else(sys::fork, sys::fork_alone)
     }
 
-    /// Returns the file rules of an order, if it has any.
+    /// Returns the file rules of an order, if it has file rules.
     pub(super) fn rules(&self, order: &RunOrder, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
         match &self.places {
             _ if !order.walls.landlock => Ok(None),

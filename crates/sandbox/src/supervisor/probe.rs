@@ -1,4 +1,4 @@
-//! Tests every layer once, in a child that then ends, and reports the kernel's answers.
+//! Tests each layer once, in a child process that then ends, and reports what the kernel answered.
 
 use std::{
     fs::{File, Permissions},
@@ -26,12 +26,12 @@ use crate::{
 /// The first Landlock version that restricts signals and abstract sockets.
 const SIGNAL_SCOPE_ABI: i32 = 6;
 
-/// Writes a [`Probe`] to standard output.
+/// Tests the layers, and writes a [`Probe`] to standard output.
 pub(super) fn main() -> ExitCode {
     match probe().and_then(|probe| wire::send(io::stdout(), &probe)) {
         Ok(()) => ExitCode::SUCCESS,
         Err(error) => {
-            // The grader shows this message. Writing fails without a reader, which does not matter.
+            // The grader shows this message. If nobody reads it, writing fails, which does not matter.
             let _ = writeln!(io::stderr(), "{error}");
             ExitCode::from(1)
         }
@@ -62,8 +62,8 @@ fn probe() -> io::Result<Probe> {
         Fork::Child => {
             drop(parent);
             let tried = try_walls(probe, user);
-            // Written as a file, because the filter allows no socket calls. Sending fails if the parent has ended,
-            // which does not matter.
+            // The result is written as to a file, because the filter allows no socket calls. This fails if the parent
+            // has ended, which does not matter.
             let _ = wire::send(std::fs::File::from(OwnedFd::from(child)), &tried);
             sys::exit_now(0)
         }
@@ -79,17 +79,17 @@ fn probe() -> io::Result<Probe> {
 }
 
 /// Tries to execute an empty file in the temporary folder. If execution is allowed there, the kernel answers that the
-/// file is not a program. Otherwise tries the same in memory. Returns the reason if neither works, and whether memory
-/// is needed.
+/// file is not a program. If it is not allowed, the same is tried in memory. Returns the reason if neither works, and
+/// whether programs must be executed in memory.
 fn try_execution() -> (Option<String>, bool) {
     let executable = |error: io::Error| match error.raw_os_error() {
         Some(libc::ENOEXEC) => Ok(()),
         _ => Err(error),
     };
-    // Neither file has a name, so a killed prober leaves nothing behind.
+    // These files have no names, so a killed prober leaves nothing behind.
     let try_file = |file: File| -> io::Result<()> {
         file.set_permissions(Permissions::from_mode(0o555))?;
-        // A file that is open for writing is busy.
+        // A file that is open for writing cannot be executed.
         let again = File::open(format!("/proc/self/fd/{}", file.as_raw_fd()))?;
         drop(file);
         executable(sys::execute_open(again.as_fd(), &[], &[]))
@@ -105,12 +105,12 @@ fn try_execution() -> (Option<String>, bool) {
             });
             (why, true)
         }
-        // A grading will report the folder's problem.
+        // A grading would report this problem of the folder itself.
         Err(error) => (Some(format!("{}: {error}", folder.display())), false),
     }
 }
 
-/// Ends a child by its control group. Returns the limits of the group, and whether it could end the child.
+/// Tests whether a control group can end a child. Returns the limits of the group, and whether it can.
 fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let group = Group::make(&RunOrder::default())?;
     let mut entrances = group.entrances()?;
@@ -118,8 +118,8 @@ fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     let Fork::Parent(child) = sys::fork()? else {
         let word = entrances.iter_mut().try_for_each(|entrance| entrance.write_all(b"0"));
         let word = word.map_err(|error| error.to_string());
-        // If the prober has ended, sending fails, which does not matter. If the prober never kills this process, it
-        // dies with the prober, its parent.
+        // If the prober has ended, sending fails, which does not matter. If the prober does not kill this process, the
+        // process ends together with its parent, which is the prober.
         let _ = sys::die_with_parent().and_then(|()| wire::send(entered, &word.err()));
         loop {
             std::thread::sleep(Duration::from_secs(1));
@@ -139,7 +139,7 @@ fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
     killed.map(|()| (group.controls(), group.can_kill()))
 }
 
-/// Moves into namespaces in a child that then ends, with a visible folder that every Linux has.
+/// Tests in a child process whether namespaces can be created. The child makes a folder visible that every Linux has.
 fn try_namespaces() -> Option<String> {
     let order = RunOrder {
         program: wire::to_raw_bytes(Path::new("/bin/sh")),
@@ -157,20 +157,20 @@ fn try_namespaces() -> Option<String> {
         drop(answer);
         let word = match namespaces::enter(&order) {
             Ok(Side::Inside) => Some(None),
-            // The child has reported the reason, or has ended without a report.
+            // The child has reported the reason itself, or has ended without a report.
             Ok(Side::Outside(_)) => None,
             Err(Failure { stage, errno }) => {
                 Some(Some(format!("could not {stage}: {}", io::Error::from_raw_os_error(errno))))
             }
         };
-        // Sending fails if the prober has ended, which does not matter.
+        // This fails if the prober has ended, which does not matter.
         let _ = word.map(|word: Option<String>| wire::send(&mut told, &word));
         sys::exit_now(0)
     };
     tried().unwrap_or_else(|error| Some(error.to_string()))
 }
 
-/// Sets up one layer after the other.
+/// Sets up one layer after the other, and notes which of them work.
 fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
     probe.limits =
         failure_reason(sys::set_limit(Resource::Core, 0).and_then(|()| sys::set_limit(Resource::Fsize, 1 << 30)));
@@ -193,7 +193,7 @@ fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
         })
     };
     let install = || -> io::Result<()> {
-        // The announcing filter is the first, as in a real run; the next probe below only adds to it.
+        // The filter that announces is the first, as in a real run. The test below only adds to it.
         for program in filters(false)? {
             sys::install_filter(&program, false)?;
         }

@@ -1,4 +1,4 @@
-//! The processes below this one, as reported by `/proc`, and ways to end them.
+//! Finds the processes below this one in `/proc`, and ends them.
 
 use std::{
     collections::BTreeSet,
@@ -8,7 +8,7 @@ use std::{
 
 use crate::{machine, sys};
 
-/// The relevant fields of one line of `/proc/PID/stat`.
+/// The fields of a line in `/proc/PID/stat` that are used here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 struct Stat {
     pid: i32,
@@ -28,8 +28,8 @@ impl Stat {
         self.threads > 1 || !matches!(self.state, b'Z' | b'X')
     }
 
-    /// Returns the resident memory in pages. A main thread that has ended has none; its other threads share the same
-    /// memory.
+    /// Returns the resident memory in pages. A main thread that has ended has no memory, but other threads share the
+    /// same memory.
     fn resident_pages(&self) -> u64 {
         if self.state != b'Z' || !self.is_alive() {
             return self.resident_pages;
@@ -39,19 +39,19 @@ impl Stat {
     }
 }
 
-/// The resource usage of a group of processes together.
+/// The resources that a group of processes uses together.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct Usage {
-    /// The processor time of living processes and their reaped children.
+    /// The processor time of processes that are alive, and of their reaped children.
     pub(super) cpu: Duration,
-    /// The resident memory in bytes, including swapped memory.
+    /// The resident memory in bytes, including memory that was swapped out.
     pub(super) memory: u64,
     /// The number of threads.
     pub(super) threads: u64,
 }
 
-/// Returns the usage of the process `pid`; with `tree`, also of all other descendants of this process. `/proc` counts
-/// time in hundredths of a second on every Linux.
+/// Returns what the process `pid` uses. With `tree`, what all other descendants of this process use is included. On
+/// every Linux, `/proc` counts time in hundredths of a second.
 pub(super) fn measure_usage(pid: i32, tree: bool) -> Usage {
     let mut usage = Usage::default();
     let page = sys::page_size();
@@ -69,7 +69,7 @@ pub(super) fn measure_usage(pid: i32, tree: bool) -> Usage {
     usage
 }
 
-/// Returns the number of swapped bytes of a process. If the main thread has ended, another thread reports it.
+/// Returns how many bytes of a process were swapped out. If the main thread has ended, another thread reports it.
 fn read_swapped(pid: i32) -> u64 {
     let of = |thread: i32| {
         machine::bytes_of(&std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?, "VmSwap:")
@@ -77,9 +77,9 @@ fn read_swapped(pid: i32) -> u64 {
     of(pid).or_else(|| list_threads(pid).find_map(of)).unwrap_or(0)
 }
 
-/// Returns the process and, with `tree`, all other living descendants of this process, each with its threads. One
-/// thread is enough if all threads of a process share their descriptors and memory; a main thread that has ended shares
-/// nothing any more.
+/// Returns the process `pid`, and with `tree` all other descendants of this process that are alive. Each is paired with
+/// its threads. If all threads of a process share their descriptors and memory, one thread is enough. A main thread
+/// that has ended no longer shares anything.
 pub(super) fn group_members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
     let stats = if tree { list_descendants() } else { read(pid).into_iter().collect() };
     let living = |stat: &Stat| {
@@ -93,44 +93,44 @@ pub(super) fn group_members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
     stats.iter().filter_map(living).collect()
 }
 
-/// Returns the threads of a process.
+/// Returns the numbers of a process's threads.
 pub(crate) fn list_threads(pid: i32) -> impl Iterator<Item = i32> {
     numbers_in(format!("/proc/{pid}/task"))
 }
 
-/// Returns the processes of a user, from the owners of `/proc` entries.
+/// Returns the processes of a user. They are recognized by the owners of entries in `/proc`.
 pub(super) fn find_by_user(user: u32) -> Vec<i32> {
     use std::os::unix::fs::MetadataExt;
     let owned = |pid: &i32| std::fs::metadata(format!("/proc/{pid}")).is_ok_and(|metadata| metadata.uid() == user);
     list_all().filter(owned).collect()
 }
 
-/// Returns the number of threads of a user, as counted by the kernel for its limit.
+/// Returns the number of threads of a user, as the kernel counts them for its limit.
 pub(super) fn threads_of_user(user: u32) -> u64 {
     find_by_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
 }
 
-/// The processes that did not end.
+/// The processes that did not end, although they were killed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
 pub(super) struct LeftProcesses {
-    /// The number of processes.
+    /// The number of these processes.
     pub(super) count: u32,
-    /// Whether the kernel itself blocks all of them (state D), which no program can cause.
+    /// Whether the kernel itself blocks all of them (state D). A program cannot cause this.
     pub(super) held: bool,
 }
 
-/// Ends every descendant and every process of `user`, and reaps them. With `alone`, this process is the first of a
-/// process namespace that contains only the run's processes.
+/// Ends all descendants of this process and all processes of `user`, and reaps them. With `alone`, this process is the
+/// first one in a process namespace that contains only processes of the run.
 ///
-/// All processes are stopped before any is killed, because a fork bomb would otherwise use each place that becomes
-/// free. `reaped` is called for every process that was reaped.
+/// All processes are stopped before any is killed, because a fork bomb would otherwise start a new process for each
+/// that has ended. `reaped` is called for every process that was reaped.
 pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys::ReapedProcess)) -> LeftProcesses {
-    // Only a process that the kernel itself blocks (state D) lasts this long.
+    // Only a process that the kernel itself blocks (state D) takes longer than this to end.
     const MAX_WAIT: Duration = Duration::from_secs(20);
     let start = Instant::now();
     loop {
         if alone {
-            // One command ends all processes in any state. If no child is left, there are no other processes.
+            // A single command ends all processes in any state. If no child is left, there are no other processes.
             if sys::kill_namespace() && reap_all(&mut reaped) {
                 return LeftProcesses::default();
             }
@@ -140,7 +140,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
             victims.extend(user.into_iter().flat_map(find_by_user));
             victims
         });
-        // No child is left, not even a zombie.
+        // No child is left, not even one that has ended and was not reaped.
         if reap_all(&mut reaped) && user.is_none_or(|user| find_by_user(user).is_empty()) {
             return LeftProcesses::default();
         }
@@ -163,13 +163,13 @@ fn reap_all(reaped: &mut impl FnMut(sys::ReapedProcess)) -> bool {
     }
 }
 
-/// Returns the living processes of a session.
+/// Returns the processes of a session that are alive.
 pub(super) fn find_of_session(session: i32) -> Vec<i32> {
     let members = list_all().filter_map(read).filter(|stat| stat.session == session && stat.is_alive());
     members.map(|stat| stat.pid).collect()
 }
 
-/// Stops the victims until no new one appears, then kills and returns all of them.
+/// Stops the processes that `victims` finds, until it finds no new ones. Then kills all of them and returns them.
 pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
     const MAX_ATTEMPTS: u32 = 100;
     let mut stopped = BTreeSet::new();
@@ -179,25 +179,25 @@ pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
             break;
         }
         for pid in fresh {
-            // The process may have ended by itself; the next round shows that.
+            // This fails if the process has ended, which the next round shows.
             let _ = sys::kill(pid, libc::SIGSTOP);
             stopped.insert(pid);
         }
     }
     for &pid in &stopped {
-        // The process may have ended by itself.
+        // This fails if the process has ended, which does not matter.
         let _ = sys::kill(pid, libc::SIGKILL);
     }
     stopped.into_iter().collect()
 }
 
-/// Returns all living descendants of this process. As their reaper it is an ancestor even of processes whose parents
-/// have died.
+/// Returns all descendants of this process that are alive. This process is their reaper, so it is an ancestor even of
+/// processes whose parents have ended.
 fn list_descendants() -> Vec<Stat> {
     let mut stats: Vec<Stat> = list_all().filter_map(read).collect();
     let mut family = vec![std::process::id() as i32];
     let mut found = Vec::new();
-    // Parents may have larger numbers than their children, so this repeats until no process is added.
+    // Parents may have larger numbers than their children, so this is repeated until no process is added.
     loop {
         let (mut mine, rest): (Vec<Stat>, Vec<Stat>) = stats.iter().partition(|stat| family.contains(&stat.parent));
         if mine.is_empty() {
@@ -211,7 +211,7 @@ fn list_descendants() -> Vec<Stat> {
     found
 }
 
-/// Returns all process ids.
+/// Returns the numbers of all processes.
 pub(crate) fn list_all() -> impl Iterator<Item = i32> {
     numbers_in("/proc")
 }

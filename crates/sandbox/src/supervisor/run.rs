@@ -1,4 +1,4 @@
-//! Supervises one run: start, watch, kill, report.
+//! Supervises a single run: starts it, watches it, ends it, and reports.
 
 use std::{
     ffi::CString,
@@ -34,10 +34,10 @@ use crate::{
 
 /// The time between two checks of clocks and counters. A check takes about ten microseconds.
 const TICK_INTERVAL: Duration = Duration::from_millis(10);
-/// The divisor that limits checks of the folder to a share of the total time.
+/// The checks of the folder may take the total time divided by this number.
 const FOLDER_SHARE: u32 = 20;
 
-/// Runs the order from standard input, and answers on standard output.
+/// Reads an order from standard input, supervises its run, and answers on standard output.
 pub(super) fn main() -> ExitCode {
     let streams = || -> io::Result<(File, File)> {
         Ok((io::stdin().as_fd().try_clone_to_owned()?.into(), io::stdout().as_fd().try_clone_to_owned()?.into()))
@@ -48,13 +48,14 @@ pub(super) fn main() -> ExitCode {
         .and_then(|order| prepare_run(order, control));
     ExitCode::from(match settled {
         Ok(SettledRun::Here(run)) => report_end(run.finish(&mut answers), &mut answers),
-        // The process inside has reported everything.
+        // The process inside the namespaces has already reported everything.
         Ok(SettledRun::Elsewhere(code)) => code,
         Err(failure) => report_end(Err(failure), &mut answers),
     })
 }
 
-/// Reports how the run ended. Returns the supervisor's exit code: 0 if the grader has received the report.
+/// Reports how the run ended. Returns the exit code of the supervisor, which is 0 if the grader has received the
+/// report.
 pub(super) fn report_end(finished: Result<Option<FinishedRun>, Failure>, answers: &mut File) -> u8 {
     let sent = match finished {
         Ok(Some((report, stdout, stderr))) => wire::send(&mut *answers, &Event::Done(report))
@@ -66,16 +67,16 @@ pub(super) fn report_end(finished: Result<Option<FinishedRun>, Failure>, answers
     u8::from(sent.is_err())
 }
 
-/// A run that has begun, or the result of a run in another process.
+/// A run that this process supervises, or the end of a run that another process supervised.
 enum SettledRun {
     Here(Box<Run>),
-    /// Another process has supervised the run and ended with this code.
+    /// Another process has supervised the run, and has ended with this exit code.
     Elsewhere(u8),
 }
 
-/// Finds a user and sets up namespaces for the run, and starts it there.
+/// Takes a user and sets up the namespaces for a run, and starts the run there.
 fn prepare_run(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
-    // In a separate session, the supervisor does not receive the terminal's Ctrl-C; the grader sends it the stop.
+    // In a session of its own, the supervisor does not receive Ctrl-C from the terminal. The grader tells it to stop.
     sys::new_session().map_err(failure_at("start the supervisor's session"))?;
     let held = HeldResources::take(&order)?;
     if order.walls.namespaces
@@ -86,19 +87,19 @@ fn prepare_run(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
     Run::start(order, control, held, &PreparedRun::default()).map(|run| SettledRun::Here(Box::new(run)))
 }
 
-/// The report, the standard output and the standard error.
+/// The report on a run, with its standard output and its standard error.
 pub(super) type FinishedRun = (Report, Vec<u8>, Vec<u8>);
 
-/// A running program, as seen by its supervisor.
+/// A running program, as its supervisor controls it.
 pub(super) struct Run {
     order: Rc<RunOrder>,
     control: File,
     folder: OwnedFd,
-    /// The name of the trace in the folder.
+    /// The name of the trace in the working folder.
     trace: Option<CString>,
-    /// The program's own user, if it has one, and the previous owner of the folder.
+    /// The program's own user, if it has one, and the user and group that owned the folder before.
     slot: Option<(slot::Slot, (u32, u32))>,
-    /// The control group, if there is one.
+    /// The run's control group, if it has one.
     group: Option<Group>,
     child: i32,
     process: Option<OwnedFd>,
@@ -112,13 +113,13 @@ pub(super) struct Run {
     main_status: Option<i32>,
     cause: Option<RunEnd>,
     peak_memory: u64,
-    /// The memory that is resident for no process, at the last check of mappings.
+    /// The number of bytes of memory that are not resident for any process, at the last check of mappings.
     unseen_memory: u64,
     orphaned: bool,
 }
 
 impl Run {
-    /// Prepares everything and forks.
+    /// Prepares the run, forks, and starts the program in the child.
     pub(super) fn start(
         order: RunOrder,
         control: File,
@@ -167,7 +168,8 @@ impl Run {
             Fork::Child => child::become_program(plan),
             Fork::Parent(pid) => pid,
         };
-        // The child's descriptors are closed here, so that the ends of pipes and sockets can be detected.
+        // The descriptors of the child are closed here, so that the supervisor notices when the child closes its ends
+        // of pipes and sockets.
         drop(plan);
         Ok(Self {
             stdout: CapturedStream::new(stdout, order.limits.output_bytes)
@@ -195,21 +197,22 @@ impl Run {
         })
     }
 
-    /// Watches until the program has ended or must end, ends everything, and reports. `None` if the grader has ended.
+    /// Watches the run until the program has ended or must end, ends all processes, and reports. Returns `None` if the
+    /// grader has ended.
     pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<FinishedRun>, Failure> {
         let user = self.user();
-        // The end of the control pipe also shows the end of a grader.
+        // The end of this pipe also shows that the grader has ended.
         let walls = self.order.walls;
         let session = (!walls.namespaces).then_some(self.child);
         let _ = wire::send(answers, &Event::Ready { session, user });
         let watched = self.watch();
         let (child, mut main_status) = (self.child, self.main_status);
         if let Some(group) = &self.group {
-            // Remaining processes, if any, are ended one by one.
+            // If processes remain, they are ended one by one.
             let _ = group.kill();
         }
         if main_status.is_none() {
-            // The process number stays valid until the process is reaped.
+            // The process number is valid until the process is reaped.
             let _ = sys::kill(child, libc::SIGKILL);
         }
         let left = processes::end_all(user, walls.namespaces, |process| {
@@ -221,7 +224,7 @@ impl Run {
         self.stderr.read_rest();
         self.read_messages();
         let mut after = measure_folder(&self.order, self.folder.as_fd());
-        // Most programs create no folders.
+        // Most programs do not create folders.
         let shallow = match after.over || after.folders > 0 {
             true => {
                 let shallow = folder::open_up(self.folder.as_fd());
@@ -230,18 +233,18 @@ impl Run {
             }
             false => true,
         };
-        // Only root reads files that a submission leaves in memory.
+        // Only root reads the files that a submission leaves in memory, so the owner of such files is not changed.
         if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
             folder::change_owner(self.folder.as_fd(), *owner, *group)
                 .map_err(failure_at("restore the folder's owner"))?;
         }
-        // Cleaning up counts for the run.
+        // The time for cleaning up counts for the run.
         let wall = self.began.elapsed();
         watched.map_err(failure_at("watch the program"))?;
         if self.orphaned {
             return Ok(None);
         }
-        // Most programs print nothing, and searching for a message is expensive, because it queries the processor
+        // Most programs print nothing. Searching for a message is slow, because it asks the processor for its features
         // several times.
         let told = Some(&self.told[..]).filter(|told| !told.is_empty());
         let failure: Option<Failure> = told.and_then(|told| serde_json::from_slice(told).ok());
@@ -250,8 +253,8 @@ impl Run {
             Some(failure) => return Err(failure),
             None => None,
         };
-        // If the kernel itself blocks a process, the host is at fault; any other process that did not end is the
-        // program's fault.
+        // If the kernel itself blocks a process, the host is at fault. Otherwise the program is at fault for a process
+        // that did not end.
         self.record_cause(
             left.count > 0 && !left.held,
             RunEnd::Violation { call: "none, but it left processes that did not end".into() },
@@ -277,7 +280,7 @@ impl Run {
         Ok(Some((report, self.stdout.bytes, self.stderr.bytes)))
     }
 
-    /// Watches until the main process has ended or there is a reason to end it.
+    /// Watches the run until the main process has ended, or there is a reason to end it.
     fn watch(&mut self) -> io::Result<()> {
         let (mut next_look, mut next_folder) = (Instant::now() + TICK_INTERVAL, Instant::now() + TICK_INTERVAL);
         while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
@@ -311,8 +314,8 @@ impl Run {
             match found[4] {
                 Readiness::Idle => {}
                 Readiness::Ready => self.decide_announcement()?,
-                // No process is left under the filter. The kernel would report that repeatedly until the process is
-                // reaped.
+                // No process is left to which the filter applies. The kernel would report this again and again, until
+                // the process is reaped.
                 Readiness::HungUp => self.listener = None,
             }
             let now = Instant::now();
@@ -337,14 +340,14 @@ impl Run {
         self.slot.as_ref().map(|(slot, _)| slot.user)
     }
 
-    /// Records the cause if it is the first.
+    /// Records why the run must end, if the condition holds and nothing was recorded before.
     fn record_cause(&mut self, condition: bool, cause: RunEnd) {
         if condition && self.cause.is_none() {
             self.cause = Some(cause);
         }
     }
 
-    /// Executes commands of the grader. The end of its pipe means that the grader has ended.
+    /// Carries out the grader's commands. If the pipe has ended, the grader has ended.
     fn run_commands(&mut self) {
         let mut command = [0];
         match self.control.read(&mut command) {
@@ -353,7 +356,7 @@ impl Run {
         }
     }
 
-    /// Reads the child's messages. The end of the socket means that the program has started.
+    /// Reads the child's messages. If the socket has ended, the program has started.
     fn read_messages(&mut self) {
         let mut buffer = [0; 4096];
         while let Some(status) = &self.status {
@@ -366,7 +369,7 @@ impl Run {
         }
     }
 
-    /// Decides about a waiting forbidden call: it either starts the program, or ends the run.
+    /// Decides about a forbidden call that waits: either it starts the program itself, or the run ends.
     fn decide_announcement(&mut self) -> io::Result<()> {
         let Some(listener) = self.listener.as_ref().map(|listener| listener.try_clone()).transpose()? else {
             return Ok(());
@@ -375,12 +378,12 @@ impl Run {
             Ok(Some(announced)) => announced,
             Ok(None) => return Ok(()),
             Err(_) => {
-                // No process is left under the filter.
+                // No process is left to which the filter applies.
                 self.listener = None;
                 return Ok(());
             }
         };
-        // The socket closes when the program starts, before its first instruction.
+        // The socket closes when the program starts, before it executes its first instruction.
         self.read_messages();
         let executes = announced.call == libc::SYS_execve || announced.call == libc::SYS_execveat;
         let (user, root) = (self.user(), wire::path(&self.order.folder));
@@ -403,7 +406,7 @@ impl Run {
             _ => None,
         };
         if let Some(answer) = answer {
-            // Answering fails if the caller has been killed, which does not matter.
+            // This fails if the caller was killed, which does not matter.
             let _ = sys::answer(listener.as_fd(), announced.id, answer);
             return Ok(());
         }
@@ -434,7 +437,7 @@ impl Run {
         }
     }
 
-    /// Checks clocks and counters.
+    /// Checks the clocks and the counters, and ends the run if a limit is exceeded.
     fn check_limits(&mut self) {
         if self.main_status.is_some() {
             return;
@@ -443,7 +446,7 @@ impl Run {
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
         let memory = usage.memory + self.unseen_memory;
         self.peak_memory = self.peak_memory.max(memory);
-        // A fork bomb exceeds both limits.
+        // A fork bomb exceeds both of these limits.
         self.record_cause(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
         self.record_cause(memory > self.order.limits.memory, RunEnd::MemoryLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
@@ -452,20 +455,20 @@ impl Run {
         self.record_cause(self.began.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
     }
 
-    /// Returns whether the file with the trace's name is longer than a trace may be.
+    /// Returns whether the trace's file is longer than a trace may be.
     fn is_trace_over(&self) -> bool {
         let opened = self.trace.as_ref().map(|name| sys::open_beneath(self.folder.as_fd(), name, OFlags::PATH));
         let metadata = opened.and_then(|opened| File::from(opened.ok()?).metadata().ok());
         metadata.is_some_and(|metadata| metadata.is_file() && metadata.len() > self.order.limits.trace_bytes)
     }
 
-    /// Returns the group's processor time, if there may be unreaped processes. The count of a single process is
-    /// complete, and its group may have served earlier runs.
+    /// Returns the processor time of the control group, if some processes may not have been reaped. If there was only
+    /// one process, its own count is complete, and the group may contain the time of earlier runs.
     fn uncounted_cpu(&self) -> Duration {
         self.group.as_ref().filter(|_| self.has_children()).map_or(Duration::ZERO, Group::cpu)
     }
 
-    /// Checks the working folder, removed files that are still in use, and memory that is resident for no process.
+    /// Checks the working folder, removed files that are still in use, and memory that is not resident for any process.
     fn check_folder(&mut self) {
         let mut contents =
             folder::measure(self.folder.as_fd(), self.order.folder_bytes(), self.order.limits.folder_files);
@@ -490,13 +493,14 @@ impl Run {
         self.record_cause(over, RunEnd::FolderLimit);
     }
 
-    /// Returns whether there may be memory that is resident for no process: files outside the folder that no rules
-    /// deny.
+    /// Returns whether the program may have memory that is not resident for any process. This requires files outside of
+    /// the folder that no rules deny.
     fn can_hide_memory(&self) -> bool {
         self.order.tools || self.order.sanitizers || !self.order.walls.landlock || !self.order.walls.seccomp
     }
 
-    /// Returns whether there may be processes other than the main one. Without the filter every program can start some.
+    /// Returns whether there may be other processes than the main one. Without the filter, every program can start
+    /// processes.
     fn has_children(&self) -> bool {
         self.order.tools || !self.order.walls.seccomp
     }
@@ -506,20 +510,20 @@ impl Run {
     }
 }
 
-/// Returns the contents of the order's folder.
+/// Measures the working folder of an order.
 fn measure_folder(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
     let contents = folder::measure(folder, u64::MAX, u64::MAX);
     if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
 }
 
-/// Changes the owner of the working folder to the run's own user, and returns the previous owner.
+/// Makes the run's own user the owner of the working folder. Returns the previous owner and group.
 fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
     let owner = File::from(folder.try_clone_to_owned()?).metadata()?;
     folder::change_owner(folder, user, user)?;
     Ok((owner.uid(), owner.gid()))
 }
 
-/// Returns the descriptor number from which alone the program can be executed, if only the filter decides that.
+/// Returns the descriptor number from which alone the program can be executed, if only the filter restricts executions.
 fn open_entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
     if !order.walls.seccomp || order.walls.notify || order.tools {
         return Ok(None);
@@ -530,7 +534,7 @@ fn open_entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd
     entrance.map(Some).map_err(failure_at("open the program once more"))
 }
 
-/// Sends the folder to the grader.
+/// Sends the descriptor of a working folder in memory to the grader.
 fn send_folder(control: &File, folder: BorrowedFd<'_>) -> io::Result<()> {
     let socket = UnixStream::from(control.as_fd().try_clone_to_owned()?);
     sys::send_descriptors(&socket, wire::FOLDER_BYTE, [folder])

@@ -1,7 +1,7 @@
 //! Gives each running program its own user id, so that simultaneous programs cannot signal or read each other.
 //!
-//! Only root can become another user. The ids start at 61000, a range that no distribution uses. Each id is held by a
-//! lock on a file that only root can open, as long as the supervisor lives.
+//! Only root can become another user. The ids start at 61000, a range that no distribution uses. As long as the
+//! supervisor is alive, it holds the id by a lock on a file that only root can open.
 
 use std::{
     fs::{DirBuilder, File, OpenOptions},
@@ -14,20 +14,20 @@ use std::{
 
 use super::processes;
 
-/// The first id (systemd uses ids from 61184 on).
+/// The first user id. The ids that systemd uses begin at 61184.
 const FIRST_USER: u32 = 61_000;
 const USER_COUNT: u32 = 184;
 
-/// A user id that is reserved until this is dropped.
+/// A user id that is reserved until the value is dropped.
 pub(super) struct Slot {
     pub(super) user: u32,
     _lock: File,
 }
 
-/// The maximum wait for an id. No run within its limits lasts this long.
+/// The maximum time to wait for an id. No run within its limits takes this long.
 const MAX_WAIT: Duration = Duration::from_secs(3600);
 
-/// Takes the first id that no run holds and that has no processes. If all are taken, waits for one.
+/// Takes the first id that no run holds and that has no processes. If there is none, waits for one.
 ///
 /// # Errors
 ///
@@ -36,8 +36,8 @@ pub(super) fn take() -> io::Result<Slot> {
     take_of(&folder()?, FIRST_USER..FIRST_USER + USER_COUNT, MAX_WAIT)
 }
 
-/// Returns the id of a run that has lost its supervisor. `None` if another run has taken the id, which then had no
-/// processes.
+/// Returns the id of a run whose supervisor was lost; `None` if another run has taken it. In that case, it had no
+/// processes any more.
 pub(super) fn retake(user: u32) -> Option<Slot> {
     retake_in(&folder().ok()?, user)
 }
@@ -47,7 +47,7 @@ fn retake_in(folder: &Path, user: u32) -> Option<Slot> {
     lock.try_lock().is_ok().then_some(Slot { user, _lock: lock })
 }
 
-/// Takes an id from the range `users`, with locks in `folder`.
+/// Takes an id in the range `users`. The locks are in `folder`.
 fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<Slot> {
     const PAUSE: Duration = Duration::from_millis(20);
     let (start, grader) = (Instant::now(), std::os::unix::process::parent_id());
@@ -66,7 +66,8 @@ fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<S
     }
 }
 
-/// Returns the folder of the locks, created on first use in the first usual place that is writable.
+/// Returns the folder of the locks. It is created when it is first needed, in the first usual place that can be
+/// written.
 fn folder() -> io::Result<PathBuf> {
     let mut problem = io::Error::other("neither /run nor /tmp exists");
     for base in ["/run", "/var/tmp", "/tmp"] {
@@ -88,7 +89,7 @@ fn folder_in(base: &Path) -> io::Result<PathBuf> {
     if !metadata.is_dir() || metadata.uid() != 0 || metadata.mode() & 0o077 != 0 {
         return Err(io::Error::other(format!("{} must be a folder that only root can enter", folder.display())));
     }
-    // An earlier container may have created it in a place that is no longer writable.
+    // An earlier container may have created the folder in a place that can no longer be written.
     OpenOptions::new().create(true).truncate(false).write(true).mode(0o600).open(folder.join("lock"))?;
     Ok(folder)
 }

@@ -1,4 +1,4 @@
-//! Captures the program's standard streams, up to a limit.
+//! Captures the standard streams of a program, up to a limit.
 
 use std::{
     io::{self, PipeReader, Read},
@@ -7,10 +7,10 @@ use std::{
 
 use crate::sys;
 
-/// The maximum number of bytes that are read in one call, because a flood must not block the supervisor.
+/// The maximum number of bytes that are read at a time, because a flood of output must not block the supervisor.
 const BYTES_PER_COPY: usize = 1 << 20;
 
-/// A captured stream.
+/// A stream of which the first bytes are kept.
 pub(super) struct CapturedStream {
     pipe: Option<PipeReader>,
     limit: u64,
@@ -19,22 +19,22 @@ pub(super) struct CapturedStream {
 }
 
 impl CapturedStream {
-    /// Captures at most `limit` bytes from the pipe.
+    /// Creates a stream that keeps at most `limit` bytes from a pipe.
     pub(super) fn new(pipe: PipeReader, limit: u64) -> io::Result<Self> {
         sys::set_blocking(pipe.as_fd(), false)?;
         Ok(Self { pipe: Some(pipe), limit, bytes: Vec::new(), truncated: false })
     }
 
-    /// Returns the pipe while it is open.
+    /// Returns the pipe, as long as it is open.
     pub(super) fn descriptor(&self) -> Option<BorrowedFd<'_>> {
         self.pipe.as_ref().map(AsFd::as_fd)
     }
 
-    /// Reads the bytes that have arrived. Bytes beyond the limit are dropped, and the stream is marked as truncated.
-    /// Returns whether any bytes had arrived.
+    /// Reads the bytes that have arrived, and returns whether there were any. Bytes beyond the limit are dropped, and
+    /// the stream is then marked as truncated.
     pub(super) fn take(&mut self) -> bool {
         let Some(pipe) = &mut self.pipe else { return false };
-        // Touching memory for the first time costs more than another call, and most programs print little.
+        // Touching memory for the first time takes longer than another call, and most programs print little.
         let (mut small, mut large) = ([0; 1 << 12], Vec::new());
         let buffer = if self.truncated {
             large.resize(BYTES_PER_COPY / 16, 0);
@@ -62,7 +62,7 @@ impl CapturedStream {
         taken > 0
     }
 
-    /// Reads the rest of the stream. Must be called only when no process is alive that could continue to write.
+    /// Reads the rest of the stream. This must be called only when no process is alive that could still write.
     pub(super) fn read_rest(&mut self) {
         while self.pipe.is_some() && self.take() {}
     }

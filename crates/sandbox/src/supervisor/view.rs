@@ -1,8 +1,9 @@
-//! The files that a run can see: a new root folder with the files of the order, under the usual paths.
+//! Builds what a run can see of the file system: a new root folder, which contains the files of the order under their
+//! usual paths.
 //!
-//! The places that Landlock allows (see `walls.rs`) are visible, read-only except for the working folder; the host's
-//! other files are not visible, not even their names. No folder in memory is writable (`/tmp`, `/dev/shm`), because
-//! files there would count for no process.
+//! The places that Landlock allows (see `walls.rs`) are visible. Except for the working folder, they are read-only. Of
+//! the host's other files, not even the names are visible. Folders in memory such as `/tmp` and `/dev/shm` cannot be
+//! written, because files there would not count for any process.
 
 use std::{
     collections::VecDeque,
@@ -23,19 +24,19 @@ use crate::{
     wire::{self, Failure, RawBytes, RunOrder, failure_at},
 };
 
-/// The folder in which the new root is built, which every Linux has. It becomes visible again after the roots have
-/// changed.
+/// The folder in which the new root is built. Every Linux has it. It becomes visible again after the root was replaced.
 const BUILD_ROOT: &str = "/proc";
-/// The old root's temporary name below the new root.
+/// The temporary name of the old root below the new root.
 const OLD_ROOT_NAME: &str = "/.host";
-/// The place at which an ordinary user's prepared root shows processes, so that its copies may show them.
+/// The folder in which the prepared root of an ordinary user shows processes. Without it, copies of this root may not
+/// show processes.
 const PROC_PLACEHOLDER: &str = "/.processes";
-/// The maximum number of links on a path, the same as the kernel's.
+/// The maximum number of links on a path. The kernel has the same limit.
 const MAX_LINKS: u32 = 40;
-/// Mount options with room for the folders, links and empty files under mounts.
+/// Mount options that allow enough space for the folders, the links, and the empty files below mounts.
 const ROOT_OPTIONS: &str = "mode=755,size=4m,nr_inodes=20k";
 
-/// The access to a place.
+/// The access that a run has to a place.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 enum Access {
     Read,
@@ -64,7 +65,7 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
     close_root()
 }
 
-/// Builds the view without the run's working folder and processes; [`complete`] adds them to a copy.
+/// Builds the root without the run's working folder and processes. [`complete`] adds them to a copy.
 ///
 /// # Errors
 ///
@@ -73,7 +74,7 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
     begin(order)?;
     hide_own(order, Path::new("/"))?;
     if sys::user_id() != 0 {
-        // The kernel lets an ordinary user show processes only if others are visible.
+        // The kernel allows an ordinary user to show processes only if processes are already visible elsewhere.
         std::fs::create_dir(PROC_PLACEHOLDER).map_err(failure_at("make /proc"))?;
         mounts::mount(c"proc", &text(Path::new(PROC_PLACEHOLDER))?, c"", false).map_err(failure_at("mount /proc"))?;
     }
@@ -81,7 +82,7 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
 }
 
 /// Adds the run's parts to a copy of a prepared root: a working folder with the contents of `folder` and `files`, and
-/// the run's processes. The place of the folder must exist.
+/// the run's processes. The mount point of the folder must exist.
 ///
 /// # Errors
 ///
@@ -100,7 +101,8 @@ pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBy
     close_root()
 }
 
-/// Returns a new root with all visible files outside the working folder, and with that folder unless it is in memory.
+/// Returns a new root with all visible files outside of the working folder. It also contains the working folder, unless
+/// that is in memory.
 fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     sys::set_file_mask(0o022);
     mounts::make_mounts_private().map_err(failure_at("keep mounts to itself"))?;
@@ -123,7 +125,8 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     }
     let folders = walls::LIBRARY_FOLDERS.map(PathBuf::from);
     for path in folders.into_iter().chain(order.named.iter().map(wire::path)) {
-        // Only the links on the path are created; their targets are among the executable files, or were replaced.
+        // Only the links on the path are created. The targets of links are among the executable files, or were
+        // replaced.
         view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
     for (name, number) in [("/dev/fd", ""), ("/dev/stdin", "/0"), ("/dev/stdout", "/1"), ("/dev/stderr", "/2")] {
@@ -133,13 +136,13 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     Ok(view)
 }
 
-/// Covers the grader's own files and folders below `beneath` with empty ones, if they are visible.
+/// Covers those of the grader's own files and folders that are visible below `beneath` with empty ones.
 fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     let own: Vec<PathBuf> = order.own.iter().map(wire::path).filter(|path| path.starts_with(beneath)).collect();
     if own.is_empty() {
         return Ok(());
     }
-    // The sample may be graded at its own path, as a demonstration.
+    // The sample program may be graded at its own path, to demonstrate grading.
     let program = wire::path(&order.program).canonicalize().map_err(failure_at("look at the program"))?;
     for path in own.iter().filter(|path| **path != program) {
         hide(path).map_err(failure_at("hide the grader's own files"))?;
@@ -147,7 +150,7 @@ fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
     Ok(())
 }
 
-/// Covers a visible file or folder with an empty one.
+/// Covers a visible file or folder by an empty one.
 fn hide(path: &Path) -> io::Result<()> {
     let Ok(metadata) = path.symlink_metadata() else { return Ok(()) };
     if metadata.is_dir() {
@@ -158,15 +161,15 @@ fn hide(path: &Path) -> io::Result<()> {
     mounts::attach(nothing.as_fd(), &c_string(path)?)
 }
 
-/// Makes the run's processes visible.
+/// Makes the processes of the run visible.
 fn add_processes(order: &RunOrder) -> Result<(), Failure> {
     let shown = if order.tools { c"" } else { c"subset=pid" };
     mounts::mount(c"proc", c"/proc", shown, false).map_err(failure_at("mount /proc"))
 }
 
-/// Hides `/proc` from this process except its own entry, in a plain folder, because the link count of `/proc` reveals
-/// the number of processes. If no file rules protect the entry, only some of its files are visible, because the kernel
-/// would take `/proc/self/exe`, the grader, for the program's loader.
+/// Hides `/proc` from this process, except for the process's own entry. The entry is in an ordinary folder, because the
+/// link count of the real `/proc` reveals the number of processes. If no file rules protect the entry, only some of its
+/// files are visible. Otherwise the program could name `/proc/self/exe`, which is the grader at first, as its loader.
 pub(super) fn leave_processes(order: &RunOrder) -> Result<(), Failure> {
     let own = std::process::id().to_string();
     let place = Path::new("/proc").join(&own);
@@ -202,7 +205,7 @@ fn close_root() -> Result<(), Failure> {
     mounts::restrict_at(c"/", READ_ONLY).map_err(failure_at("close the root folder"))
 }
 
-/// Mounts a file system in memory at the path, with a copy of another folder's contents.
+/// Mounts a file system in memory at the path `folder`, and copies the contents of another folder into it.
 fn mount_copy(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
     let options = CString::new(memory_folder::options(order)).map_err(io::Error::other)?;
@@ -218,21 +221,21 @@ fn c_string(path: &Path) -> io::Result<CString> {
     CString::new(path.as_os_str().as_bytes()).map_err(io::Error::other)
 }
 
-/// Returns the path at which a file of the host is reached while the view is built.
+/// Returns the path by which a file of the host is reached while the new root is built.
 fn on_host(path: &Path) -> PathBuf {
     let mut host = OsString::from(OLD_ROOT_NAME);
     host.push(path);
     host.into()
 }
 
-/// The new root while it is built.
+/// The new root, while it is built.
 struct FileView {
     placed: Vec<(PathBuf, Access)>,
 }
 
 impl FileView {
-    /// Makes the file or folder at the path visible under the same path. Paths that the host lacks, and its processes,
-    /// are left out: `/proc` is created separately.
+    /// Makes the file or folder at the path visible under the same path. If the host has no such path, nothing is done.
+    /// `/proc` is also left out, because it is created separately.
     fn mount_place(&mut self, path: &Path, access: Access) -> io::Result<()> {
         let Some(real) = self.resolve(path)? else { return Ok(()) };
         if real == Path::new("/") {
@@ -246,7 +249,7 @@ impl FileView {
             std::fs::create_dir_all(&real)?;
         } else {
             std::fs::create_dir_all(real.parent().unwrap_or(Path::new("/")))?;
-            // The file is already visible below a visible folder.
+            // The file is already visible, because a folder above it is.
             if !real.exists() {
                 File::create(&real)?;
             }
@@ -263,13 +266,13 @@ impl FileView {
         Ok(())
     }
 
-    /// Returns whether the path is already visible, with the same access.
+    /// Returns whether the path is already visible, and with the same access.
     fn is_visible(&self, path: &Path, access: Access) -> bool {
         self.placed.iter().any(|(shown, granted)| path.starts_with(shown) && *granted == access)
     }
 
-    /// Returns the path without links. Each link on the path is also created in the new root. `None` if the host has no
-    /// accessible file there.
+    /// Returns the path without links. Each link on the path is also created in the new root. Returns `None` if the
+    /// host has no accessible file at the path.
     fn resolve(&self, path: &Path) -> io::Result<Option<PathBuf>> {
         let mut real = PathBuf::from("/");
         let mut left: VecDeque<OsString> = names(path);
@@ -305,7 +308,7 @@ impl FileView {
     }
 }
 
-/// Returns the components of a path, without empty ones and `.`.
+/// Returns the components of a path. Empty components and `.` are left out.
 fn names(path: &Path) -> VecDeque<OsString> {
     path.components()
         .filter_map(|part| match part {

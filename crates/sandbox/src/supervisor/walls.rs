@@ -1,6 +1,7 @@
-//! The Landlock rules name the files that the program may access, and forbid signals to processes outside.
+//! The Landlock rules. They name the files that the program may access, and forbid signals to processes outside of the
+//! run.
 //!
-//! Rules refer to open descriptors. They are therefore created before the user changes, and enforced in the child after
+//! Rules refer to open descriptors. Therefore they are created before the user changes, and enforced in the child after
 //! it has become another user.
 
 use std::{
@@ -26,14 +27,15 @@ use crate::{
     wire::{self, RunOrder},
 };
 
-/// The newest supported and tested rules. Older kernels enforce a part of them, which [`LayerReport`] names.
+/// The newest version of the rules that is supported and tested. Older kernels enforce a part of it, which
+/// [`LayerReport`] names.
 ///
 /// [`LayerReport`]: crate::LayerReport
 const NEWEST_ABI: ABI = ABI::V6;
 
-/// The folders of shared libraries, loaders and the libraries of interpreters.
+/// The folders of shared libraries, of loaders, and of the libraries of interpreters.
 pub(super) const LIBRARY_FOLDERS: [&str; 5] = ["/lib", "/lib64", "/usr/lib", "/usr/lib64", "/usr/local/lib"];
-/// Files from which loaders and runtimes read about the machine: its libraries, its processors and its time zone.
+/// The files from which loaders and runtimes read about the machine: its libraries, its processors, and its time zone.
 const MACHINE_FILES: [&str; 6] = [
     "/etc/ld.so.cache",
     "/etc/ld.so.preload",
@@ -42,22 +44,22 @@ const MACHINE_FILES: [&str; 6] = [
     "/sys/devices/system/cpu/possible",
     "/sys/devices/system/cpu/present",
 ];
-/// Files from which runtimes read about their own process.
+/// The files from which runtimes read about their own process.
 const OWN_FILES: [&CStr; 9] =
     [c"auxv", c"cmdline", c"comm", c"environ", c"limits", c"maps", c"stat", c"statm", c"status"];
-/// Folders of the process's own entry that it may list: its threads' numbers, which some runtimes count, and its
-/// descriptors.
+/// The folders in a process's own entry of `/proc` that it may list: the numbers of its threads, which some runtimes
+/// count, and its descriptors.
 const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];
-/// Returns the parts of a process's own entry that are visible if no file rules protect it.
+/// Returns the parts of a process's own entry in `/proc` that are visible if no file rules protect the entry.
 pub(super) fn unguarded_entry() -> impl Iterator<Item = &'static str> {
     OWN_FILES.into_iter().chain([c"fd"]).filter_map(|name| name.to_str().ok())
 }
 
-/// Devices without side effects.
+/// The device files that have no side effects.
 pub(super) const DEVICE_FILES: [&str; 5] = ["/dev/null", "/dev/zero", "/dev/full", "/dev/random", "/dev/urandom"];
-/// The system's programs, for compilers and build tools.
+/// The folders of the system's programs, for compilers and build tools.
 const TOOL_FOLDERS: [&str; 4] = ["/usr", "/bin", "/lib", "/lib64"];
-/// Settings that compilers and build tools read.
+/// The files with settings that compilers and build tools read.
 const SETTINGS_FILES: [&str; 8] = [
     "/proc/cpuinfo",
     "/etc/alternatives",
@@ -69,7 +71,8 @@ const SETTINGS_FILES: [&str; 8] = [
     "/etc/os-release",
 ];
 
-/// Returns every path outside the working folder that must be visible to the order's program, except devices.
+/// Returns every path outside of the working folder that must be visible to the program of an order, except for
+/// devices.
 pub(super) fn visible_paths(order: &RunOrder) -> Vec<PathBuf> {
     let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
     let tools = if order.tools { [&TOOL_FOLDERS[..], &SETTINGS_FILES[..]] } else { [&[][..], &[]] };
@@ -77,11 +80,12 @@ pub(super) fn visible_paths(order: &RunOrder) -> Vec<PathBuf> {
     fixed.chain(named).collect()
 }
 
-/// The places outside the working folder that the program may access, opened, with its rights.
+/// The places outside of the working folder that the program may access. Each is open, and has the program's rights
+/// there.
 pub(super) struct Places(Vec<(OwnedFd, BitFlags<AccessFs>)>);
 
 impl Places {
-    /// Opens the places of an order. Missing paths are left out.
+    /// Opens the places for an order. Paths that do not exist are left out.
     pub(super) fn for_order(order: &RunOrder) -> Self {
         let read = AccessFs::ReadFile | AccessFs::ReadDir;
         let execute = read | AccessFs::Execute;
@@ -98,7 +102,7 @@ impl Places {
             places.add_around(folder, execute, own);
         }
         for path in DEVICE_FILES {
-            // Bytes written to shared mappings of /dev/zero would be memory that no counter shows.
+            // If /dev/zero is mapped and shared, bytes that are written to it would be memory that no counter shows.
             let access = if path == "/dev/zero" { BitFlags::EMPTY } else { AccessFs::WriteFile.into() };
             places.add(Path::new(path), access | AccessFs::ReadFile);
         }
@@ -119,8 +123,8 @@ impl Places {
         places
     }
 
-    /// Moves the files to descriptor numbers that no program may have, so that they do not count for the limit of a
-    /// child. `None` if this process itself may not have as many.
+    /// Moves the files to descriptor numbers that no program may use, so that they do not count for the limit of a
+    /// child. Returns `None` if this process may not use that many numbers.
     pub(super) fn with_high_numbers(self) -> Option<Self> {
         const FIRST_DESCRIPTOR: u32 = 800;
         let moved = self
@@ -130,7 +134,7 @@ impl Places {
         moved.collect::<Option<_>>().map(Self)
     }
 
-    /// Adds the place with the applicable part of the access.
+    /// Adds a place, with the part of the access that applies to it.
     fn add(&mut self, path: &Path, access: BitFlags<AccessFs>) {
         let Ok(opened) = at_place(path) else { return };
         let is_folder = opened.metadata().is_ok_and(|metadata| metadata.is_dir());
@@ -138,7 +142,7 @@ impl Places {
         self.0.push((opened.into(), access));
     }
 
-    /// Adds a place like [`Places::add`], but without the grader's own files below the path.
+    /// Adds a place as [`Places::add`] does, but leaves out the grader's own files below the path.
     fn add_around(&mut self, path: &Path, access: BitFlags<AccessFs>, own: &[PathBuf]) {
         for allowed in own_files::allow_all_except(path, own) {
             match allowed {
@@ -149,12 +153,12 @@ impl Places {
     }
 }
 
-/// Returns the file at the path, opened only as a reference (`O_PATH`).
+/// Opens the file at a path only as a reference (`O_PATH`).
 fn at_place(path: &Path) -> io::Result<File> {
     File::options().read(true).custom_flags(libc::O_PATH).open(path)
 }
 
-/// Prepares the rules for an order whose working folder is open as `folder`.
+/// Prepares the rules for an order. Its working folder is open as `folder`.
 pub(super) fn build_ruleset(order: &RunOrder, places: &Places, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
     let version = to_abi(order.walls.landlock_version);
     let mut ruleset = begin_ruleset(order.walls.scopes, version)?;
@@ -165,8 +169,9 @@ pub(super) fn build_ruleset(order: &RunOrder, places: &Places, folder: BorrowedF
     ruleset.add_rule(PathBeneath::new(folder, inside)).map_err(from_ruleset_error)
 }
 
-/// Adds the files of its own entry in `/proc` that the process may read, one by one, because the entry also shows
-/// sockets, mounts and groups of the host, and which pages of a file are in memory. Only the child itself can do this.
+/// Adds the files in the process's own entry in `/proc` that it may read. They are added one by one, because the entry
+/// also shows sockets, mounts and groups of the host, and which pages of a file are in memory. Only the child itself
+/// can do this.
 pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCreated> {
     let Ok(own) = at_place(Path::new("/proc/self")) else { return Ok(ruleset) };
     let files = OWN_FILES.map(|name| (name, AccessFs::ReadFile));
@@ -182,7 +187,7 @@ pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCr
 ///
 /// # Errors
 ///
-/// Fails if the kernel rejects the rules, or accepts them without enforcing any.
+/// Fails if the kernel rejects the rules, or if it accepts them but enforces none of them.
 pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
     let status = ruleset.restrict_self().map_err(from_ruleset_error)?;
     if status.ruleset == RulesetStatus::NotEnforced {
@@ -191,17 +196,17 @@ pub(super) fn enforce(ruleset: RulesetCreated) -> io::Result<()> {
     Ok(())
 }
 
-/// Returns a ruleset that allows nothing, for the probe.
+/// Returns rules that allow nothing, for the probe.
 pub(super) fn deny_all_ruleset(scopes: bool) -> io::Result<RulesetCreated> {
     begin_ruleset(scopes, NEWEST_ABI)
 }
 
-/// Returns the rules of an older kernel, to test them; 0 means the newest.
+/// Returns the version of the rules for a kernel with this version of Landlock, for tests; 0 means the newest one.
 fn to_abi(number: u8) -> ABI {
     [NEWEST_ABI, ABI::V1, ABI::V2, ABI::V3, ABI::V4, ABI::V5].get(usize::from(number)).copied().unwrap_or(NEWEST_ABI)
 }
 
-/// Returns a ruleset that denies everything that the running kernel can deny, unless a rule allows it.
+/// Returns rules that deny everything that the running kernel can deny, as long as nothing is allowed.
 fn begin_ruleset(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     let mut ruleset = Ruleset::default()
         .set_compatibility(CompatLevel::BestEffort)
@@ -217,8 +222,8 @@ fn begin_ruleset(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
     ruleset.create().map_err(from_ruleset_error)
 }
 
-/// Returns the rights in the program's folder, which include creating, changing and removing files and folders. Only
-/// build tools may link to other places, create special files and execute.
+/// Returns the rights in the program's working folder. They include creating, changing and removing files and folders.
+/// Only build tools may also link to other places, create special files, and execute files.
 fn in_folder(tools: bool) -> BitFlags<AccessFs> {
     let submission = AccessFs::ReadFile
         | AccessFs::ReadDir
