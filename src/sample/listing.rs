@@ -22,7 +22,7 @@ struct Entry {
 
 impl From<&Row> for Entry {
     fn from(row: &Row) -> Self {
-        Self { id: row.id, kind: row.kind.name(), area: row.area, explanation: row.what, term: row.term }
+        Self { id: row.id, kind: row.kind.name(), area: row.area, explanation: row.summary, term: row.term }
     }
 }
 
@@ -51,7 +51,7 @@ fn render_table() -> String {
         let rows: Vec<&Row> = all_rows().filter(|row| row.kind == kind).collect();
         text += &format!("{title} ({})\n\n", rows.len());
         for row in rows {
-            text += &format!("  {:36} {}\n", row.id, row.what);
+            text += &format!("  {:36} {}\n", row.id, row.summary);
         }
         text.push('\n');
     }

@@ -19,7 +19,7 @@ fn attacked(backend: &Backend, families: &[&str]) -> Option<PromiseTable> {
     let folder = folder();
     std::fs::create_dir_all(&folder).unwrap();
     let chosen = |name: &str| families.is_empty() || families.iter().any(|family| name.starts_with(family));
-    let table = selftest::run_some(backend, cc, &folder, chosen, |promise| match &promise.state {
+    let table = selftest::run_chosen(backend, cc, &folder, chosen, |promise| match &promise.state {
         PromiseState::Held => {}
         state => eprintln!("{}: {state:?}", promise.attack),
     });
@@ -78,7 +78,7 @@ fn every_promise_of_the_sandbox_holds() {
 #[test]
 fn older_kernels_without_announcements_hold_the_promises_too() {
     let Some(backend) = backend() else { return };
-    let backend = match backend.without(Layer::NamedCalls) {
+    let backend = match backend.without_layer(Layer::NamedCalls) {
         Ok(backend) => backend,
         Err(error) => return skip(Need::Walls, error),
     };
@@ -89,11 +89,11 @@ fn older_kernels_without_announcements_hold_the_promises_too() {
 #[test]
 fn namespaces_hold_the_promises_where_there_is_no_landlock() {
     let Some(backend) = backend() else { return };
-    let Ok(backend) = backend.without(Layer::FileRules) else {
+    let Ok(backend) = backend.without_layer(Layer::FileRules) else {
         skip(Need::Walls, "only root with namespaces may do without file rules");
         return;
     };
-    let bare = backend.without(Layer::Namespaces);
+    let bare = backend.without_layer(Layer::Namespaces);
     assert!(bare.unwrap_err().to_string().contains("file rules"), "nothing would hide the grader's own file");
     let Some(table) = attacked(&backend, &FILES) else { return };
     assert_all_held(&table, 40);
@@ -102,7 +102,7 @@ fn namespaces_hold_the_promises_where_there_is_no_landlock() {
 #[test]
 fn older_kernels_with_the_first_landlock_hold_the_promises_too() {
     let Some(backend) = backend() else { return };
-    let backend = backend.without(Layer::Namespaces).and_then(|backend| backend.with_landlock(1));
+    let backend = backend.without_layer(Layer::Namespaces).and_then(|backend| backend.with_landlock(1));
     let backend = match backend {
         Ok(backend) => backend,
         Err(error) => return skip(Need::Walls, error),
@@ -114,7 +114,8 @@ fn older_kernels_with_the_first_landlock_hold_the_promises_too() {
 #[test]
 fn hosts_without_namespaces_and_control_groups_hold_the_promises_too() {
     let Some(backend) = backend() else { return };
-    let backend = backend.without(Layer::Namespaces).and_then(|backend| backend.without(Layer::ControlGroup));
+    let backend =
+        backend.without_layer(Layer::Namespaces).and_then(|backend| backend.without_layer(Layer::ControlGroup));
     let backend = match backend {
         Ok(backend) => backend,
         Err(error) => return skip(Need::Walls, error),

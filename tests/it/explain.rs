@@ -6,7 +6,7 @@ use super::{
     workspace::Workspace,
 };
 use fosssim_oracle::{
-    diagnose::{ExamplePlace, Explanation, explain, explain_together, find_known, formula_in},
+    diagnose::{ExamplePlace, Explanation, explain, explain_together, find_formula, find_known},
     judge::{fair::FairVerdict, replay},
     scene::{Scene, original},
     sim::PairKind,
@@ -191,7 +191,7 @@ fn a_dropped_term_is_named_with_an_example() {
     assert!(told.starts_with("Particle-edge: A product is missing"), "{text}");
     let told = told.lines().next().unwrap_or_default();
     let sentence = told.split(" (reproduces ").next().unwrap_or_default();
-    assert_eq!(formula_in(sentence), None, "no formula: {text}");
+    assert_eq!(find_formula(sentence), None, "no formula: {text}");
     assert!(!text.contains("expected") && !text.contains("t^2"), "no value: {text}");
 }
 

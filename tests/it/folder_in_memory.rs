@@ -1,7 +1,7 @@
 //! A working folder that lies in memory: what the kernel limits there, and what the grader gets of it.
 use crate::sandbox::{backend, small};
 use fosssim_oracle::sandbox::{
-    Backend, Job, Layer, LeftFolder, Limits, Policy, RunEnd, RunOutcome, collect::OpenFolder,
+    Backend, Job, Layer, Limits, Policy, RemainingFolder, RunEnd, RunOutcome, collect::OpenFolder,
 };
 use fosssim_testing::{Need, skip};
 use std::io::Read;
@@ -23,7 +23,7 @@ pub fn with_namespaces() -> Option<&'static Backend> {
     active.then_some(backend)
 }
 
-fn run(backend: &Backend, job: &Job) -> (RunOutcome, LeftFolder) {
+fn run(backend: &Backend, job: &Job) -> (RunOutcome, RemainingFolder) {
     backend.start(job).unwrap().wait_with_folder().unwrap()
 }
 
@@ -121,7 +121,7 @@ fn without_namespaces_or_room_the_folder_is_used_as_it_lies() {
     let Some(backend) = backend() else { return };
     let folder = tempfile::tempdir().unwrap();
     let job = job(folder.path(), "cp input made");
-    let bare = match backend.without(Layer::Namespaces) {
+    let bare = match backend.without_layer(Layer::Namespaces) {
         Ok(backend) => backend,
         Err(error) => return skip(Need::Walls, error),
     };

@@ -235,7 +235,7 @@ fn a_run_in_namespaces_sees_a_world_of_its_own() {
     let outcome = bench.run(bench.script("#!/bin/sh\necho $$\n"), &[]);
     assert_eq!(text(&outcome.stdout.bytes), "2\n", "{outcome:?}");
     // Without Landlock, which refuses to list the root folder, only the view itself keeps the host out of sight.
-    let Ok(backend) = bench.backend.without(Layer::FileRules) else { return };
+    let Ok(backend) = bench.backend.without_layer(Layer::FileRules) else { return };
     let seen = |folder: &str| {
         let outcome = backend.start(&bench.job("/bin/ls", &["-A", folder])).unwrap().wait().unwrap();
         text(&outcome.stdout.bytes).lines().map(str::to_string).collect::<Vec<_>>()
@@ -357,8 +357,8 @@ fn a_loader_that_is_not_the_systems_is_the_programs_fault() {
         let Some(program) = compiled(folder.path(), "int main(void) { return 0; }", &[&option]) else { return };
         for backend in [
             Ok(bench.backend.clone()),
-            bench.backend.without(Layer::FileRules),
-            bench.backend.without(Layer::Namespaces),
+            bench.backend.without_layer(Layer::FileRules),
+            bench.backend.without_layer(Layer::Namespaces),
         ] {
             let Ok(backend) = backend else { continue };
             let job = bench.job(&program, &["--version"]).folder_in_memory();
@@ -475,7 +475,7 @@ fn a_script_is_read_by_its_interpreter_and_executes_nothing_else() {
     let Some(loader) = loader else { return };
     // By the loader a script could run any file that it can read.
     let script = bench.script(&format!("#!/bin/sh\nexec {loader} /bin/echo run\n"));
-    for backend in [bench.backend.clone(), bench.backend.without(Layer::NamedCalls).unwrap()] {
+    for backend in [bench.backend.clone(), bench.backend.without_layer(Layer::NamedCalls).unwrap()] {
         let outcome = backend.start(&bench.job(&script, &[])).unwrap().wait().unwrap();
         assert!(matches!(outcome.ended, RunEnd::Violation { .. }), "{:?}", outcome.ended);
         let plain = bench.folder.path().join("plain");
@@ -495,7 +495,7 @@ fn a_script_in_a_folder_that_is_closed_to_others_runs_all_the_same() {
     for (mode, inner) in [(0o700, 0o755), (0o755, 0o700), (0o700, 0o700)] {
         std::fs::set_permissions(closed.path(), std::fs::Permissions::from_mode(mode)).unwrap();
         std::fs::set_permissions(&script, std::fs::Permissions::from_mode(inner)).unwrap();
-        for backend in [bench.backend.clone(), bench.backend.without(Layer::Namespaces).unwrap()] {
+        for backend in [bench.backend.clone(), bench.backend.without_layer(Layer::Namespaces).unwrap()] {
             let outcome = backend.start(&bench.job(&script, &[])).unwrap().wait().unwrap();
             assert_eq!(text(&outcome.stdout.bytes), "here\n", "{mode:o} {inner:o} {outcome:?}");
         }

@@ -65,28 +65,32 @@ impl Observer for ZonesMoved {
 /// Runs the fake program that has the name of the job's program.
 fn run_fake(job: &Job) -> FakeRun {
     match job.program.file_name().and_then(|name| name.to_str()) {
-        Some("right") => FakeRun::wrote(right_trace(job)),
+        Some("right") => FakeRun::with_trace(right_trace(job)),
         Some("wrong") => {
             let mut trace = right_trace(job);
             // The first particle starts at a different position, so only the first step is wrong.
             let x = f64::from_le_bytes(trace[..8].try_into().expect("eight bytes"));
             trace[..8].copy_from_slice(&(x + 1.0).to_le_bytes());
-            FakeRun::wrote(trace)
+            FakeRun::with_trace(trace)
         }
-        Some("trailing") => FakeRun::wrote([&right_trace(job)[..], b"more"].concat()),
-        Some("crash-after-right-trace") => FakeRun { ended: RunEnd::Signalled(11), ..FakeRun::wrote(right_trace(job)) },
-        Some("exit-1-after-right-trace") => FakeRun { ended: RunEnd::Exited(1), ..FakeRun::wrote(right_trace(job)) },
-        Some("nothing") => FakeRun::wrote([]),
+        Some("trailing") => FakeRun::with_trace([&right_trace(job)[..], b"more"].concat()),
+        Some("crash-after-right-trace") => {
+            FakeRun { ended: RunEnd::Signalled(11), ..FakeRun::with_trace(right_trace(job)) }
+        }
+        Some("exit-1-after-right-trace") => {
+            FakeRun { ended: RunEnd::Exited(1), ..FakeRun::with_trace(right_trace(job)) }
+        }
+        Some("nothing") => FakeRun::with_trace([]),
         Some("unwritten") => {
             let (scene, trace) = (scene(job), right_trace(job));
             let layout = Layout::for_scene(&scene);
             // In the first record, the lists are empty.
             let record = &trace[..layout.state_bytes() + 8];
-            FakeRun::wrote(record.repeat(usize::try_from(layout.records()).expect("small")))
+            FakeRun::with_trace(record.repeat(usize::try_from(layout.records()).expect("small")))
         }
         Some("half") => {
             let trace = right_trace(job);
-            FakeRun::wrote(&trace[..trace.len() / 2])
+            FakeRun::with_trace(&trace[..trace.len() / 2])
         }
         Some("crashes-in-the-failsafe") => {
             let scene = scene(job);
@@ -97,13 +101,13 @@ fn run_fake(job: &Job) -> FakeRun {
                 moved.0
             });
             match step {
-                Some(step) => FakeRun { ended: RunEnd::Signalled(11), ..FakeRun::wrote(trace(&scene, step - 1)) },
-                None => FakeRun::wrote(right_trace(job)),
+                Some(step) => FakeRun { ended: RunEnd::Signalled(11), ..FakeRun::with_trace(trace(&scene, step - 1)) },
+                None => FakeRun::with_trace(right_trace(job)),
             }
         }
-        Some("slow") => FakeRun { ended: RunEnd::WallLimit, ..FakeRun::wrote([]) },
-        Some("lengthy") => FakeRun { cpu: Duration::from_secs(10), ..FakeRun::wrote(right_trace(job)) },
-        Some("fault-while-judging" | "fault-while-explaining") => FakeRun::wrote(right_trace(job)),
+        Some("slow") => FakeRun { ended: RunEnd::WallLimit, ..FakeRun::with_trace([]) },
+        Some("lengthy") => FakeRun { cpu: Duration::from_secs(10), ..FakeRun::with_trace(right_trace(job)) },
+        Some("fault-while-judging" | "fault-while-explaining") => FakeRun::with_trace(right_trace(job)),
         Some(name) if name.starts_with("right-then-") => {
             let more = if name.contains("flood") { 2 * SMALL_TRACE } else { usize::from(name.contains("byte")) };
             let ended = match name.rsplit('-').next() {
@@ -115,9 +119,9 @@ fn run_fake(job: &Job) -> FakeRun {
                 Some("sleeps") => RunEnd::WallLimit,
                 other => panic!("no end {other:?}"),
             };
-            FakeRun { ended, ..FakeRun::wrote([&right_trace(job)[..], &vec![b'x'; more]].concat()) }
+            FakeRun { ended, ..FakeRun::with_trace([&right_trace(job)[..], &vec![b'x'; more]].concat()) }
         }
-        Some("flood-of-nonsense") => FakeRun::wrote(vec![0xff; 2 * SMALL_TRACE]),
+        Some("flood-of-nonsense") => FakeRun::with_trace(vec![0xff; 2 * SMALL_TRACE]),
         Some("hostile") => FakeRun::with_end(RunEnd::Violation { call: "ptrace".to_owned() }),
         name => panic!("no part for {name:?}"),
     }

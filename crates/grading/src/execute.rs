@@ -22,7 +22,8 @@ use fosssim_judge::{
     replay::{self, ObserverPair, Options, Progress, Remark},
 };
 use fosssim_sandbox::{
-    self as sandbox, Backend, Job, LeftFolder, Limits, Policy, ProgramIdentity, RunningProgram, collect::CollectError,
+    self as sandbox, Backend, Job, Limits, Policy, ProgramIdentity, RemainingFolder, RunningProgram,
+    collect::CollectError,
 };
 use std::{
     io::{self, Read},
@@ -190,7 +191,7 @@ impl Runner<'_> {
 
     /// Opens the trace that a program wrote, and returns its length. The trace must be a regular file and is read up to
     /// the limit. Anything else counts as no trace.
-    fn open_trace(&self, left: &LeftFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
+    fn open_trace(&self, left: &RemainingFolder) -> Result<(Box<dyn Read + Send>, u64), String> {
         match left.regular_file(TRACE_FILE, u64::MAX) {
             Ok((file, length)) => Ok((Box::new(file.take(self.limits.trace)), length.min(self.limits.trace))),
             Err(CollectError::System { source, .. }) if source.kind() != io::ErrorKind::PermissionDenied => {

@@ -18,7 +18,7 @@ use fosssim_intake::FileKind;
 use fosssim_sandbox::{
     Backend, Job, Limits, Policy, ProgramIdentity, RunEnd, StartProblem,
     collect::{self, CollectError, FolderEntry, OpenFolder},
-    is_own,
+    is_own_file,
 };
 use std::{
     ffi::OsStr,
@@ -151,7 +151,8 @@ pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result
     let is_oracle = name.as_encoded_bytes().starts_with(b"FOSSSimOracle");
     let why = match copy_as(name, file, path, &mut { MAX_FOLDER_BYTES }) {
         Ok(staged) => {
-            let is_own = is_own(&staged.program, (metadata.dev(), metadata.ino())).map_err(describe_error_at(path))?;
+            let is_own =
+                is_own_file(&staged.program, (metadata.dev(), metadata.ino())).map_err(describe_error_at(path))?;
             let own = (is_oracle || is_own).then_some(StartProblem::GradersOwn);
             match own.or_else(|| backend.start_problem(&staged.program)) {
                 None => return Ok(staged),

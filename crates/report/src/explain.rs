@@ -196,7 +196,7 @@ pub(crate) mod tests {
     use super::*;
     use fosssim_findings::Hints;
     use fosssim_judge::Role;
-    use fosssim_mistakes::diagnose::{Detail, OfPolynomials, PolynomialDetail, Weight, explain, formula_in};
+    use fosssim_mistakes::diagnose::{Detail, OfPolynomials, PolynomialDetail, Weight, explain, find_formula};
     use fosssim_mistakes::together::disclosure::limit_explanations;
     use fosssim_model::{
         scene::original,
@@ -326,7 +326,7 @@ pub(crate) mod tests {
             for one in limit_explanations(Hints::What, explain(&scene, &trace)) {
                 let others = one.same_as.iter().map(|key| find(key).expect("a known mistake").sentence());
                 for sentence in others.chain([describe(&one)]) {
-                    assert_eq!(formula_in(&sentence), None, "{}: {one:?}", row.id);
+                    assert_eq!(find_formula(&sentence), None, "{}: {one:?}", row.id);
                 }
                 assert!(one.details.is_empty() && one.example.is_none(), "{one:?}");
                 told += 1;

@@ -16,18 +16,18 @@ use std::{
 use super::{
     collect::OpenFolder,
     fake::FakeRun,
-    fault::{SandboxError, from_setup_failure},
     job::{Job, Policy, ProgramIdentity},
     job_files::{folder_fault, plain_name, write_files},
-    keepers::{Host, Keeper, KeeperPool, Kind as Keeping},
+    keepers::{Keeper, KeeperPool, RunKind as Keeping, RunSupervisor},
     layers::{self, Layer, LayerReport},
     memory_budget,
     outcome::{RunEnd, StartProblem},
     own_files, program,
     running_program::{RunningProgram, SupervisedRun},
+    sandbox_error::{SandboxError, from_setup_failure},
     supervisor::{MODE_KEEP, MODE_PROBE, MODE_RUN},
     sys,
-    wire::{self, Event, Probe, RunOrder, SUPERVISOR_ARGUMENT, Walls},
+    wire::{self, ActiveLayers, Event, Probe, RunOrder, SUPERVISOR_ARGUMENT},
 };
 
 /// The program that is started as the supervisor. Its `main` must call [`supervisor_main`](super::supervisor_main).
@@ -69,9 +69,9 @@ impl Supervisor {
         let begin = || -> io::Result<_> {
             let (mut child, control) = spawn_connected(self.command(MODE_RUN))?;
             let answers = child.stdout.take().ok_or(io::ErrorKind::BrokenPipe)?;
-            Ok(SpawnedSupervisor { host: Host::Own(child), control, answers: OwnedFd::from(answers).into() })
+            Ok(SpawnedSupervisor { host: RunSupervisor::Own(child), control, answers: OwnedFd::from(answers).into() })
         };
-        let asked = begin().map_err(|source| self.not_started(source))?;
+        let asked = begin().map_err(|source| self.start_error(source))?;
         // If the supervisor does not read the order, its answer or the way in which it ends shows the reason.
         let _ = wire::send(&asked.control, order);
         Ok(asked)
@@ -79,18 +79,18 @@ impl Supervisor {
 
     /// Sends a request to a keeper of runs of this kind. If there is none, a keeper is started. Also returns whether
     /// the keeper existed before.
-    fn ask_keeper(
+    fn request_from_keeper(
         &self,
         order: &RunOrder,
         files: &[(String, Vec<u8>)],
         kind: Keeping,
         pool: &Arc<KeeperPool>,
     ) -> Result<(SpawnedSupervisor, bool), SandboxError> {
-        if let Some(keeper) = pool.take(&kind)
+        if let Some(keeper) = pool.take_keeper(&kind)
             && let Ok((control, answers)) = keeper.request_run(order, files)
         {
             return Ok((
-                SpawnedSupervisor { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers },
+                SpawnedSupervisor { host: RunSupervisor::Shared(Box::new(keeper), pool.clone()), control, answers },
                 true,
             ));
         }
@@ -100,18 +100,21 @@ impl Supervisor {
             let (child, socket) = spawn_connected(command)?;
             let keeper = Keeper::new(kind, child, socket);
             let (control, answers) = keeper.request_run(order, files)?;
-            Ok((SpawnedSupervisor { host: Host::Kept(Box::new(keeper), pool.clone()), control, answers }, false))
+            Ok((
+                SpawnedSupervisor { host: RunSupervisor::Shared(Box::new(keeper), pool.clone()), control, answers },
+                false,
+            ))
         };
-        begin().map_err(|source| self.not_started(source))
+        begin().map_err(|source| self.start_error(source))
     }
 
-    fn not_started(&self, source: io::Error) -> SandboxError {
+    fn start_error(&self, source: io::Error) -> SandboxError {
         SandboxError::Supervisor { program: self.program.display().to_string(), source }
     }
 
     /// Tests each layer once on this host.
     pub(super) fn probe(&self) -> Result<Probe, SandboxError> {
-        let child = self.command(MODE_PROBE).spawn().map_err(|source| self.not_started(source))?;
+        let child = self.command(MODE_PROBE).spawn().map_err(|source| self.start_error(source))?;
         let output = child.wait_with_output();
         let lost = |how: String| SandboxError::Lost { how };
         let output = output.map_err(|error| lost(error.to_string()))?;
@@ -130,7 +133,7 @@ fn spawn_connected(mut command: Command) -> io::Result<(Child, UnixStream)> {
 
 /// A supervisor that was started and has received its order.
 struct SpawnedSupervisor {
-    host: Host,
+    host: RunSupervisor,
     control: UnixStream,
     answers: File,
 }
@@ -150,27 +153,27 @@ impl SpawnedSupervisor {
 /// A way to run programs, with certain layers. Clones are cheap, and runs in several threads are independent.
 #[derive(Clone)]
 pub struct Backend {
-    kind: Kind,
+    kind: BackendKind,
     layers: Arc<[LayerReport]>,
 }
 
 #[derive(Clone)]
-enum Kind {
-    Launcher { supervisor: Supervisor, walls: Walls, keepers: Arc<KeeperPool> },
+enum BackendKind {
+    Launcher { supervisor: Supervisor, layers: ActiveLayers, keepers: Arc<KeeperPool> },
     Fake(Arc<dyn Fn(&Job) -> FakeRun + Send + Sync>),
 }
 
-impl Kind {
-    fn launcher(supervisor: Supervisor, walls: Walls) -> Self {
-        Self::Launcher { supervisor, walls, keepers: Arc::default() }
+impl BackendKind {
+    fn launcher(supervisor: Supervisor, walls: ActiveLayers) -> Self {
+        Self::Launcher { supervisor, layers: walls, keepers: Arc::default() }
     }
 }
 
 impl std::fmt::Debug for Backend {
     fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         let kind = match &self.kind {
-            Kind::Launcher { walls, .. } => format!("{walls:?}"),
-            Kind::Fake(_) => "Fake".into(),
+            BackendKind::Launcher { layers: walls, .. } => format!("{walls:?}"),
+            BackendKind::Fake(_) => "Fake".into(),
         };
         formatter.debug_struct("Backend").field("kind", &kind).finish_non_exhaustive()
     }
@@ -187,18 +190,18 @@ impl Backend {
     pub fn with_all_layers(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::select_layers(&reports).map_err(missing_layers)?;
-        Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
+        Ok(Self { kind: BackendKind::launcher(supervisor, walls), layers: reports.into() })
     }
 
     /// Returns this backend with the layers in `reports`, and with the file rules of a kernel that has this Landlock
     /// version.
     fn with_layers(&self, reports: Vec<LayerReport>, landlock_version: u8) -> Result<Self, SandboxError> {
         let kind = match &self.kind {
-            Kind::Launcher { supervisor, .. } => {
+            BackendKind::Launcher { supervisor, .. } => {
                 let walls = layers::select_layers(&reports).map_err(missing_layers)?;
-                Kind::launcher(supervisor.clone(), Walls { landlock_version, ..walls })
+                BackendKind::launcher(supervisor.clone(), ActiveLayers { landlock_version, ..walls })
             }
-            Kind::Fake(script) => Kind::Fake(script.clone()),
+            BackendKind::Fake(script) => BackendKind::Fake(script.clone()),
         };
         Ok(Self { kind, layers: reports.into() })
     }
@@ -207,9 +210,9 @@ impl Backend {
     ///
     /// # Errors
     ///
-    /// Fails with [`SandboxError::Missing`] if the layer is required on this host.
-    pub fn without(&self, layer: Layer) -> Result<Self, SandboxError> {
-        self.with_layers(layers::without(&self.layers, layer), 0)
+    /// Fails with [`SandboxError::MissingLayers`] if the layer is required on this host.
+    pub fn without_layer(&self, layer: Layer) -> Result<Self, SandboxError> {
+        self.with_layers(layers::without_layer(&self.layers, layer), 0)
     }
 
     /// Returns the backend with the file rules of an older kernel, to test that these work as well. `version` is the
@@ -217,7 +220,7 @@ impl Backend {
     ///
     /// # Errors
     ///
-    /// Fails like [`Backend::without`].
+    /// Fails like [`Backend::without_layer`].
     pub fn with_landlock(&self, version: u8) -> Result<Self, SandboxError> {
         self.with_layers(layers::with_landlock(&self.layers, version), version)
     }
@@ -232,7 +235,7 @@ impl Backend {
     pub fn without_sandbox(supervisor: Supervisor) -> Result<Self, SandboxError> {
         let reports = layers::reports(&supervisor.probe()?);
         let walls = layers::available_layers(&reports).map_err(missing_layers)?;
-        Ok(Self { kind: Kind::launcher(supervisor, walls), layers: reports.into() })
+        Ok(Self { kind: BackendKind::launcher(supervisor, walls), layers: reports.into() })
     }
 
     /// Returns whether all layers that are required on this host work.
@@ -244,13 +247,13 @@ impl Backend {
     /// Returns one line for each required layer that does not work. There are no lines if the sandbox is complete.
     #[must_use]
     pub fn weaknesses(&self) -> Vec<String> {
-        layers::missing(&self.layers)
+        layers::describe_missing(&self.layers)
     }
 
     /// Returns a backend that runs nothing. Its results come from a script, for tests of code that uses the sandbox.
     #[must_use]
     pub fn fake(script: impl Fn(&Job) -> FakeRun + Send + Sync + 'static) -> Self {
-        Self { kind: Kind::Fake(Arc::new(script)), layers: layers::none() }
+        Self { kind: BackendKind::Fake(Arc::new(script)), layers: layers::no_layers() }
     }
 
     /// Returns reports on all layers, active or not.
@@ -264,8 +267,8 @@ impl Backend {
     #[must_use]
     pub fn start_problem(&self, program: &Path) -> Option<StartProblem> {
         match &self.kind {
-            Kind::Launcher { supervisor, .. } => program::examine(program, &supervisor.own_files()).err(),
-            Kind::Fake(_) => None,
+            BackendKind::Launcher { supervisor, .. } => program::examine(program, &supervisor.own_files()).err(),
+            BackendKind::Fake(_) => None,
         }
     }
 
@@ -277,23 +280,23 @@ impl Backend {
     /// Fails if the grader or the host fails.
     pub fn start(&self, job: &Job) -> Result<RunningProgram, SandboxError> {
         let (supervisor, walls, keepers) = match &self.kind {
-            Kind::Launcher { supervisor, walls, keepers } => (supervisor, *walls, keepers),
-            Kind::Fake(script) => {
+            BackendKind::Launcher { supervisor, layers: walls, keepers } => (supervisor, *walls, keepers),
+            BackendKind::Fake(script) => {
                 write_files(job)?;
                 return script(job).into_running(job, self.layers.clone());
             }
         };
-        if let Some(staged) = &job.staged
+        if let Some(staged) = &job.identity
             && ProgramIdentity::from_path(&job.program).as_ref() != Some(staged)
         {
-            return Err(SandboxError::Changed { program: job.program.display().to_string() });
+            return Err(SandboxError::ChangedProgram { program: job.program.display().to_string() });
         }
         let examined = match program::examine(&job.program, &supervisor.own_files()) {
             Ok(examined) => examined,
-            Err(problem) => return FakeRun::could_not_start(problem).into_running(job, self.layers.clone()),
+            Err(problem) => return FakeRun::with_start_problem(problem).into_running(job, self.layers.clone()),
         };
         let mut order = build_order(job, walls, examined, &supervisor.program)?;
-        if Keeping::exists_for(&order) {
+        if Keeping::is_possible_for(&order) {
             order.files =
                 job.files.iter().map(|(name, bytes)| (name.clone().into_bytes(), bytes.len() as u64)).collect();
         } else {
@@ -301,7 +304,7 @@ impl Backend {
         }
         let (mut asked, first) = loop {
             let (mut asked, kept) = match Keeping::from_order(&order) {
-                Some(kind) => supervisor.ask_keeper(&order, &job.files, kind, keepers)?,
+                Some(kind) => supervisor.request_from_keeper(&order, &job.files, kind, keepers)?,
                 None => (supervisor.spawn_for(&order)?, false),
             };
             match asked.receive_first() {
@@ -312,7 +315,7 @@ impl Backend {
         };
         match first {
             Ok(Event::Ready { session, user }) => {
-                let folder = match order.volatile.then(|| receive_folder(&asked.control)).transpose() {
+                let folder = match order.is_in_memory.then(|| receive_folder(&asked.control)).transpose() {
                     Ok(folder) => folder.map(OpenFolder::from),
                     Err(_) => return Err(asked.loss_error()),
                 };
@@ -321,7 +324,7 @@ impl Backend {
                 Ok(RunningProgram::new(supervised, control, folder))
             }
             Ok(Event::Failed(failure)) => {
-                asked.host.rest(None);
+                asked.host.keep_for_reuse(None);
                 match failure.errno {
                     // The program's file itself is larger than the memory limit.
                     libc::ENOMEM if failure.stage == wire::EXECUTE_STEP => {
@@ -340,7 +343,7 @@ impl Backend {
 
 /// Returns the error for layers that are missing on this host.
 const fn missing_layers(missing: String) -> SandboxError {
-    SandboxError::Missing { missing }
+    SandboxError::MissingLayers { missing }
 }
 
 /// Receives the descriptor of a working folder in memory.
@@ -356,8 +359,8 @@ fn receive_folder(control: &UnixStream) -> io::Result<OwnedFd> {
 /// Returns the order for a job, which a supervisor of the current program receives. All paths in it are absolute.
 fn build_order(
     job: &Job,
-    walls: Walls,
-    examined: program::Program,
+    walls: ActiveLayers,
+    examined: program::ProgramFacts,
     supervisor: &Path,
 ) -> Result<RunOrder, SandboxError> {
     let folder = job.folder.canonicalize().and_then(|folder| match folder.is_dir() {
@@ -369,7 +372,7 @@ fn build_order(
     let mut readable = Vec::new();
     for path in &job.readable {
         let found = std::path::absolute(path).and_then(|path| path.metadata().map(|_| path));
-        let path = found.map_err(|source| SandboxError::Readable { path: path.display().to_string(), source })?;
+        let path = found.map_err(|source| SandboxError::ReadablePath { path: path.display().to_string(), source })?;
         readable.push(wire::to_raw_bytes(&path));
     }
     let bytes = |text: &OsString| text.as_bytes().to_vec();
@@ -385,18 +388,24 @@ fn build_order(
         environment,
         readable,
         executable: examined.executable.iter().map(|path| wire::to_raw_bytes(path)).collect(),
-        named: examined.named.iter().map(|path| wire::to_raw_bytes(path)).collect(),
-        own: own_files::known_files(supervisor).iter().map(|path| wire::to_raw_bytes(path)).collect(),
+        named_paths: examined.named_paths.iter().map(|path| wire::to_raw_bytes(path)).collect(),
+        own_files: own_files::known_files(supervisor).iter().map(|path| wire::to_raw_bytes(path)).collect(),
         trace: trace.map(wire::to_raw_bytes),
         files: Vec::new(),
-        volatile: false,
-        tools: job.policy == Policy::Tools,
+        is_in_memory: false,
+        allows_tools: job.policy == Policy::Tools,
         interpreter: examined.script.as_ref().map(|script| wire::to_raw_bytes(&script.interpreter)),
-        words: examined.script.iter().flat_map(|script| &script.words).map(|word| word.as_bytes().to_vec()).collect(),
+        interpreter_arguments: examined
+            .script
+            .iter()
+            .flat_map(|script| &script.interpreter_arguments)
+            .map(|word| word.as_bytes().to_vec())
+            .collect(),
         sanitizers: job.sanitizers,
-        walls,
+        layers: walls,
         limits: job.limits.clone(),
     };
-    order.volatile = job.in_memory && walls.namespaces && memory_budget::is_enough_for(order.folder_bytes());
+    order.is_in_memory =
+        job.has_folder_in_memory && walls.namespaces && memory_budget::has_memory_for(order.folder_bytes());
     Ok(order)
 }

@@ -14,7 +14,7 @@ use std::{
 
 pub use fosssim_files::{FileError as CollectError, Folder as OpenFolder, FolderEntry, open_file};
 
-use super::supervisor::open_up;
+use super::supervisor::open_closed_folders;
 
 /// Removes a folder with everything that a program left in it, including folders that their owner cannot enter, and
 /// folders that are nested too deeply for the available descriptors. This must be called only when no process of the
@@ -29,7 +29,9 @@ pub fn remove_folder(path: &Path) -> io::Result<()> {
         return Ok(());
     }
     // If others may write into the folder, the path could have become a link in the meantime.
-    open_up(File::options().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NOFOLLOW).open(path)?.as_fd());
+    open_closed_folders(
+        File::options().read(true).custom_flags(libc::O_DIRECTORY | libc::O_NOFOLLOW).open(path)?.as_fd(),
+    );
     std::fs::remove_dir_all(path).or_else(gone)
 }
 

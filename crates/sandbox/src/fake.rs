@@ -3,12 +3,12 @@
 use std::{sync::Arc, time::Duration};
 
 use super::{
-    fault::SandboxError,
     job::Job,
     job_files,
     layers::LayerReport,
     outcome::{CapturedOutput, RunEnd, RunOutcome, StartProblem},
     running_program::RunningProgram,
+    sandbox_error::SandboxError,
 };
 
 /// The result of a simulated run.
@@ -37,12 +37,12 @@ impl FakeRun {
 
     /// Returns a run that exited with code 0 after writing `trace`.
     #[must_use]
-    pub fn wrote(trace: impl Into<Vec<u8>>) -> Self {
+    pub fn with_trace(trace: impl Into<Vec<u8>>) -> Self {
         Self { trace: trace.into(), ..Self::with_end(RunEnd::Exited(0)) }
     }
 
     /// Returns a run whose program could not be started.
-    pub(super) fn could_not_start(problem: StartProblem) -> Self {
+    pub(super) fn with_start_problem(problem: StartProblem) -> Self {
         Self::with_end(RunEnd::CouldNotStart(problem))
     }
 
@@ -74,7 +74,7 @@ mod tests {
     #[test]
     fn a_fake_answers_as_scripted_for_each_job() {
         let backend = Backend::fake(|job| match job.trace {
-            Some(_) => FakeRun::wrote(*b"frames"),
+            Some(_) => FakeRun::with_trace(*b"frames"),
             None => FakeRun::with_end(RunEnd::WallLimit),
         });
         let folder = tempfile::tempdir().unwrap();
@@ -95,7 +95,7 @@ mod tests {
             (RunEnd::Cancelled, RunEnd::Cancelled),
         ] {
             let ending = ended.clone();
-            let backend = Backend::fake(move |_| FakeRun { ended: ending.clone(), ..FakeRun::wrote(*b"frames") });
+            let backend = Backend::fake(move |_| FakeRun { ended: ending.clone(), ..FakeRun::with_trace(*b"frames") });
             let end = |trace_bytes| {
                 let limits = Limits { trace_bytes, ..Limits::default() };
                 backend.start(&Job::new("program", folder.path()).trace("t").limits(limits)).unwrap().wait().unwrap()

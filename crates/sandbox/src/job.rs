@@ -90,8 +90,8 @@ pub struct Job {
     pub(crate) policy: Policy,
     pub(crate) environment: Vec<(OsString, OsString)>,
     pub(crate) sanitizers: bool,
-    pub(crate) staged: Option<ProgramIdentity>,
-    pub(crate) in_memory: bool,
+    pub(crate) identity: Option<ProgramIdentity>,
+    pub(crate) has_folder_in_memory: bool,
     pub(crate) files: Vec<(String, Vec<u8>)>,
     pub(crate) limits: Limits,
 }
@@ -111,8 +111,8 @@ impl Job {
             policy: Policy::Submission,
             environment: Vec::new(),
             sanitizers: false,
-            staged: None,
-            in_memory: false,
+            identity: None,
+            has_folder_in_memory: false,
             files: Vec::new(),
             limits: Limits::default(),
         }
@@ -147,7 +147,7 @@ impl Job {
     /// the [`LeftFolder`](crate::LeftFolder).
     #[must_use]
     pub fn folder_in_memory(mut self) -> Self {
-        self.in_memory = true;
+        self.has_folder_in_memory = true;
         self
     }
 
@@ -190,7 +190,7 @@ impl Job {
     /// different at the start, the grader is at fault, and not the program.
     #[must_use]
     pub fn with_identity(mut self, identity: Option<ProgramIdentity>) -> Self {
-        self.staged = identity;
+        self.identity = identity;
         self
     }
 

@@ -1,5 +1,5 @@
 //! Writes a job's files into its working folder on disk.
-use super::{fault::SandboxError, job::Job, wire};
+use super::{job::Job, sandbox_error::SandboxError, wire};
 use std::{io, path::Path};
 
 /// Writes all files of the job into its working folder on disk.
@@ -17,7 +17,7 @@ pub(super) fn write_file(job: &Job, name: &str, content: &[u8]) -> Result<(), Sa
 
 /// Returns `name` as a path, after checking that it does not leave the folder.
 pub(super) fn plain_name<'a>(job: &Job, name: &'a str) -> Result<&'a Path, SandboxError> {
-    wire::plain_name(name.as_bytes()).ok_or_else(|| folder_fault(job, io::ErrorKind::InvalidInput.into()))
+    wire::entry_name(name.as_bytes()).ok_or_else(|| folder_fault(job, io::ErrorKind::InvalidInput.into()))
 }
 
 pub(super) fn folder_fault(job: &Job, source: io::Error) -> SandboxError {

@@ -17,8 +17,8 @@ use std::{
 };
 
 use super::{
-    fault::{SandboxError, loss_error},
     job::ProgramIdentity,
+    sandbox_error::{SandboxError, loss_error},
     sys,
     wire::{self, Report, RunOrder},
 };
@@ -26,22 +26,22 @@ use super::{
 /// The properties that all runs of a keeper share: the order except for the arguments, the environment, and the working
 /// folder with its contents; and the identities of the files that the order names.
 #[derive(Debug, PartialEq, Eq)]
-pub(super) struct Kind {
+pub(super) struct RunKind {
     order: RunOrder,
     program: Option<ProgramIdentity>,
     files: Vec<Option<(u64, u64)>>,
 }
 
-impl Kind {
+impl RunKind {
     /// Returns whether a keeper may serve the order. It may not if processes are not counted, or if the run has no
     /// namespaces that end with it.
-    pub(super) fn exists_for(order: &RunOrder) -> bool {
-        order.volatile && !order.tools && order.walls.namespaces && order.walls.seccomp
+    pub(super) fn is_possible_for(order: &RunOrder) -> bool {
+        order.is_in_memory && !order.allows_tools && order.layers.namespaces && order.layers.seccomp
     }
 
     /// Returns the kind of an order; `None` if no keeper may serve it.
     pub(super) fn from_order(order: &RunOrder) -> Option<Self> {
-        if !Self::exists_for(order) {
+        if !Self::is_possible_for(order) {
             return None;
         }
         let common = RunOrder {
@@ -51,30 +51,30 @@ impl Kind {
             files: Vec::new(),
             ..order.clone()
         };
-        let named = order.readable.iter().chain(&order.executable).chain(&order.named);
+        let named = order.readable.iter().chain(&order.executable).chain(&order.named_paths);
         let identity = |path: &Path| path.metadata().ok().map(|metadata| (metadata.dev(), metadata.ino()));
-        let files = named.map(|path| identity(&wire::path(path))).collect();
-        Some(Self { order: common, program: ProgramIdentity::from_path(&wire::path(&order.program)), files })
+        let files = named.map(|path| identity(&wire::to_path(path))).collect();
+        Some(Self { order: common, program: ProgramIdentity::from_path(&wire::to_path(&order.program)), files })
     }
 }
 
 /// A keeper process. When the value is dropped, the process is ended and waited for.
 #[derive(Debug)]
 pub(super) struct Keeper {
-    kind: Kind,
+    kind: RunKind,
     child: Option<Child>,
     socket: UnixStream,
 }
 
 impl Keeper {
-    pub(super) fn new(kind: Kind, child: Child, socket: UnixStream) -> Self {
+    pub(super) fn new(kind: RunKind, child: Child, socket: UnixStream) -> Self {
         Self { kind, child: Some(child), socket }
     }
 
     /// Requests a run. `files` are the contents of the files that the order names. Returns the connection to the run's
     /// supervisor, and the file from which its answers are read.
     pub(super) fn request_run(&self, order: &RunOrder, files: &[(String, Vec<u8>)]) -> io::Result<(UnixStream, File)> {
-        let folder = File::open(wire::path(&order.folder))?;
+        let folder = File::open(wire::to_path(&order.folder))?;
         let (control, theirs) = UnixStream::pair()?;
         let (answers, told) = io::pipe()?;
         let mut packet = wire::encode_packet(order)?;
@@ -84,7 +84,7 @@ impl Keeper {
         Ok((control, OwnedFd::from(answers).into()))
     }
 
-    fn dismiss(&self) {
+    fn end_process(&self) {
         // This fails if the keeper has ended, which does not matter.
         let _ = self.socket.shutdown(Shutdown::Both);
     }
@@ -92,7 +92,7 @@ impl Keeper {
 
 impl Drop for Keeper {
     fn drop(&mut self) {
-        self.dismiss();
+        self.end_process();
         if let Some(child) = &mut self.child {
             // The exit status of the keeper no longer matters.
             let _ = child.wait();
@@ -109,7 +109,7 @@ pub(super) struct KeeperPool {
 impl KeeperPool {
     /// Takes an idle keeper for runs of this kind. If there is none, an idle keeper of another kind is ended to make
     /// room.
-    pub(super) fn take(&self, kind: &Kind) -> Option<Keeper> {
+    pub(super) fn take_keeper(&self, kind: &RunKind) -> Option<Keeper> {
         let mut idle = self.idle.lock().unwrap_or_else(PoisonError::into_inner);
         let fits = idle.iter().rposition(|keeper| keeper.kind == *kind);
         let taken = match fits {
@@ -128,20 +128,20 @@ impl KeeperPool {
 
 /// The process that supervises a run.
 #[derive(Debug)]
-pub(super) enum Host {
+pub(super) enum RunSupervisor {
     /// A supervisor process for this run only.
     Own(Child),
     /// A keeper, and the pool to which it returns after the run.
-    Kept(Box<Keeper>, Arc<KeeperPool>),
+    Shared(Box<Keeper>, Arc<KeeperPool>),
 }
 
-impl Host {
+impl RunSupervisor {
     /// Returns the error for a supervisor that ended without a report. The caller must have closed its channel.
     pub(super) fn loss_error(self) -> SandboxError {
         match self {
             Self::Own(child) => loss_error(child),
-            Self::Kept(mut keeper, _) => {
-                keeper.dismiss();
+            Self::Shared(mut keeper, _) => {
+                keeper.end_process();
                 keeper.child.take().map_or_else(
                     || SandboxError::Lost { how: "its exit status was already collected".into() },
                     loss_error,
@@ -154,24 +154,24 @@ impl Host {
     pub(super) fn kill(&mut self) {
         let child = match self {
             Self::Own(child) => Some(child),
-            Self::Kept(keeper, _) => keeper.child.as_mut(),
+            Self::Shared(keeper, _) => keeper.child.as_mut(),
         };
         // This fails if the keeper has ended, which does not matter.
         let _ = child.map(Child::kill);
     }
 
     /// Keeps the keeper for another run, if the report shows that this run ended normally.
-    pub(super) fn rest(self, report: Option<&Report>) -> Option<RestingKeeper> {
+    pub(super) fn keep_for_reuse(self, report: Option<&Report>) -> Option<IdleKeeper> {
         match self {
             Self::Own(mut child) => {
                 // After its report, the supervisor ends by itself. Its exit status no longer matters.
                 let _ = child.wait();
                 None
             }
-            Self::Kept(keeper, pool) if report.is_some_and(has_simply_ended) => {
-                Some(RestingKeeper { keeper: Some(keeper), pool })
+            Self::Shared(keeper, pool) if report.is_some_and(has_ended_normally) => {
+                Some(IdleKeeper { keeper: Some(keeper), pool })
             }
-            Self::Kept(..) => None,
+            Self::Shared(..) => None,
         }
     }
 }
@@ -179,12 +179,12 @@ impl Host {
 /// A keeper between two runs. When the value is dropped, others can use the keeper. The folder of the last run must be
 /// removed before that, because the pages of the folder count for the keeper's group.
 #[derive(Debug)]
-pub(super) struct RestingKeeper {
+pub(super) struct IdleKeeper {
     keeper: Option<Box<Keeper>>,
     pool: Arc<KeeperPool>,
 }
 
-impl Drop for RestingKeeper {
+impl Drop for IdleKeeper {
     fn drop(&mut self) {
         if let Some(keeper) = self.keeper.take() {
             self.pool.return_keeper(*keeper);
@@ -193,37 +193,38 @@ impl Drop for RestingKeeper {
 }
 
 /// Returns whether the program exited by itself, within its limits.
-fn has_simply_ended(report: &Report) -> bool {
-    let calm = report.cause.is_none() && report.exec_errno.is_none() && report.survivors == 0 && !report.folder_over;
+fn has_ended_normally(report: &Report) -> bool {
+    let calm =
+        report.cause.is_none() && report.exec_errno.is_none() && report.survivors == 0 && !report.exceeds_folder_limit;
     calm && libc::WIFEXITED(report.status)
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{job::Limits, outcome::RunEnd, wire::Walls};
+    use crate::{job::Limits, outcome::RunEnd, wire::ActiveLayers};
 
     fn order() -> RunOrder {
-        let walls = Walls { namespaces: true, seccomp: true, ..Walls::default() };
-        RunOrder { program: b"/bin/sh".to_vec(), volatile: true, walls, ..RunOrder::default() }
+        let walls = ActiveLayers { namespaces: true, seccomp: true, ..ActiveLayers::default() };
+        RunOrder { program: b"/bin/sh".to_vec(), is_in_memory: true, layers: walls, ..RunOrder::default() }
     }
 
     #[test]
     fn runs_of_one_submission_are_of_one_kind() {
-        let kind = Kind::from_order(&order()).unwrap();
+        let kind = RunKind::from_order(&order()).unwrap();
         let same = RunOrder {
             folder: b"/x".to_vec(),
             arguments: vec![b"-s".to_vec()],
             files: vec![(b"a".to_vec(), 9)],
             ..order()
         };
-        assert_eq!(Kind::from_order(&same).unwrap(), kind);
+        assert_eq!(RunKind::from_order(&same).unwrap(), kind);
         for other in [
             RunOrder { program: b"/bin/ls".to_vec(), ..order() },
             RunOrder { limits: Limits { memory: 7, ..Limits::default() }, ..order() },
             RunOrder { readable: vec![b"/etc/hostname".to_vec()], ..order() },
         ] {
-            assert_ne!(Kind::from_order(&other).unwrap(), kind);
+            assert_ne!(RunKind::from_order(&other).unwrap(), kind);
         }
     }
 
@@ -231,7 +232,7 @@ mod tests {
     fn a_program_that_was_exchanged_is_of_another_kind() {
         let folder = tempfile::tempdir().unwrap();
         let program = folder.path().join("program");
-        let kind = || Kind::from_order(&RunOrder { program: wire::to_raw_bytes(&program), ..order() }).unwrap();
+        let kind = || RunKind::from_order(&RunOrder { program: wire::to_raw_bytes(&program), ..order() }).unwrap();
         std::fs::write(&program, "one").unwrap();
         let before = kind();
         assert_eq!(kind(), before);
@@ -242,23 +243,23 @@ mod tests {
 
     #[test]
     fn tools_and_runs_without_namespaces_have_supervisors_of_their_own() {
-        assert!(Kind::from_order(&RunOrder { tools: true, ..order() }).is_none());
-        assert!(Kind::from_order(&RunOrder { volatile: false, ..order() }).is_none());
-        assert!(Kind::from_order(&RunOrder { walls: Walls::default(), ..order() }).is_none());
+        assert!(RunKind::from_order(&RunOrder { allows_tools: true, ..order() }).is_none());
+        assert!(RunKind::from_order(&RunOrder { is_in_memory: false, ..order() }).is_none());
+        assert!(RunKind::from_order(&RunOrder { layers: ActiveLayers::default(), ..order() }).is_none());
     }
 
     #[test]
     fn only_a_run_that_simply_ended_leaves_its_keeper_to_others() {
         let exited = Report { status: 7 << 8, ..Report::default() };
-        assert!(has_simply_ended(&exited));
+        assert!(has_ended_normally(&exited));
         for report in [
             Report { cause: Some(RunEnd::WallLimit), ..exited.clone() },
             Report { status: libc::SIGKILL, ..exited.clone() },
             Report { survivors: 1, ..exited.clone() },
-            Report { folder_over: true, ..exited.clone() },
+            Report { exceeds_folder_limit: true, ..exited.clone() },
             Report { exec_errno: Some(libc::ENOEXEC), ..exited },
         ] {
-            assert!(!has_simply_ended(&report), "{report:?}");
+            assert!(!has_ended_normally(&report), "{report:?}");
         }
     }
 }

@@ -5,7 +5,7 @@
 
 use std::sync::Arc;
 
-use super::wire::{Probe, Walls};
+use super::wire::{ActiveLayers, Probe};
 
 /// Declares the layers. Each row has a layer, and the layer's name in reports.
 macro_rules! layers {
@@ -81,7 +81,7 @@ pub(super) fn reports(probe: &Probe) -> Vec<LayerReport> {
 
 /// Returns the report on a layer. If there is no problem, it contains what the layer does; otherwise the problem and
 /// its remedy.
-fn report(layer: Layer, problem: Option<String>, held: &str, required: bool, remedy: &'static str) -> LayerReport {
+fn new_report(layer: Layer, problem: Option<String>, held: &str, required: bool, remedy: &'static str) -> LayerReport {
     LayerReport {
         layer,
         active: problem.is_none(),
@@ -99,28 +99,28 @@ fn has_own_user(probe: &Probe) -> bool {
 /// Returns the reports on the layers that a process sets up around itself, and on the execution of copies.
 fn process_layers(probe: &Probe) -> [LayerReport; 4] {
     [
-        report(
+        new_report(
             Layer::NoNewPrivileges,
             probe.no_new_privileges.clone(),
             "executing a program gives no privileges",
             true,
             "use Linux 3.5 or newer",
         ),
-        report(
+        new_report(
             Layer::Limits,
             probe.limits.clone(),
             "processor and clock time, memory, output, folder, processes",
             true,
             "allow setrlimit in the container's profile",
         ),
-        report(
+        new_report(
             Layer::Reaper,
             probe.reaper.clone(),
             "no process outlives a run",
             true,
             "allow prctl in the container's profile",
         ),
-        report(
+        new_report(
             Layer::Execution,
             probe.execution.clone(),
             if probe.from_memory {
@@ -143,7 +143,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
         (Some(_), _) => Some("this host has no Landlock".into()),
     };
     [
-        report(
+        new_report(
             Layer::CallFilter,
             probe.seccomp.clone(),
             "an allow list; all other calls are denied",
@@ -151,7 +151,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
             "use a kernel with CONFIG_SECCOMP_FILTER on x86_64 or aarch64, and allow seccomp in the container's \
             profile",
         ),
-        report(
+        new_report(
             Layer::NamedCalls,
             probe.notify.clone(),
             "a violation is reported with the call's name",
@@ -160,7 +160,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
                 files, \
              and an ordinary user's cannot set permission bits",
         ),
-        report(
+        new_report(
             Layer::FileRules,
             probe.landlock.clone(),
             &format!("version {}", probe.landlock_abi),
@@ -175,7 +175,7 @@ fn call_and_file_layers(probe: &Probe) -> [LayerReport; 4] {
                 "use Linux 5.13 or newer with landlock among the kernel's lsm=, or grade as root"
             },
         ),
-        report(
+        new_report(
             Layer::Scopes,
             scopes,
             "programs can signal only themselves",
@@ -206,7 +206,7 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
                 _ => None,
             },
         },
-        report(
+        new_report(
             Layer::Namespaces,
             probe.namespaces.clone(),
             "a run sees only its own processes and files, and no network",
@@ -214,7 +214,7 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
             "use Linux 5.12 or newer and let the grader make namespaces: in a container by its profile, for an \
              ordinary user by the kernel's settings (kernel.apparmor_restrict_unprivileged_userns=0 on Ubuntu)",
         ),
-        report(
+        new_report(
             Layer::ControlGroup,
             probe.group.clone(),
             &match (&probe.group_controls[..], probe.group_ends) {
@@ -230,7 +230,7 @@ fn surrounding_layers(probe: &Probe) -> [LayerReport; 3] {
 }
 
 /// Returns the reports for the case that `layer` is missing, and all layers that depend on it.
-pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport> {
+pub(super) fn without_layer(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport> {
     let mut reports = reports.to_vec();
     for report in &mut reports {
         if report.layer == layer || (layer == Layer::FileRules && report.layer == Layer::Scopes) {
@@ -251,7 +251,7 @@ pub(super) fn without(reports: &[LayerReport], layer: Layer) -> Vec<LayerReport>
 
 /// Returns the reports for the case that the kernel has this older version of Landlock.
 pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerReport> {
-    let mut reports = if version < SIGNAL_SCOPE_ABI { without(reports, Layer::Scopes) } else { reports.to_vec() };
+    let mut reports = if version < SIGNAL_SCOPE_ABI { without_layer(reports, Layer::Scopes) } else { reports.to_vec() };
     for report in reports.iter_mut().filter(|report| report.layer == Layer::FileRules && report.active) {
         report.detail = format!("version {version} on request");
     }
@@ -260,26 +260,26 @@ pub(super) fn with_landlock(reports: &[LayerReport], version: u8) -> Vec<LayerRe
 
 /// Returns the layers that the supervisor must set up, according to the reports. If required layers are missing, the
 /// error names them.
-pub(super) fn select_layers(reports: &[LayerReport]) -> Result<Walls, String> {
-    let missing = missing(reports);
-    if missing.is_empty() { Ok(active(reports)) } else { Err(missing.join("\n")) }
+pub(super) fn select_layers(reports: &[LayerReport]) -> Result<ActiveLayers, String> {
+    let missing = describe_missing(reports);
+    if missing.is_empty() { Ok(active_layers(reports)) } else { Err(missing.join("\n")) }
 }
 
 /// Returns the layers that work, even if required ones are missing. If root would have to run programs as root, the
 /// error names the missing layers.
-pub(super) fn available_layers(reports: &[LayerReport]) -> Result<Walls, String> {
+pub(super) fn available_layers(reports: &[LayerReport]) -> Result<ActiveLayers, String> {
     match reports.iter().find(|report| report.layer == Layer::OwnUser && report.required && !report.active) {
-        Some(report) => Err(line(report)),
-        None => Ok(active(reports)),
+        Some(report) => Err(format_report(report)),
+        None => Ok(active_layers(reports)),
     }
 }
 
 /// Returns one line for each required layer that does not work.
-pub(super) fn missing(reports: &[LayerReport]) -> Vec<String> {
-    reports.iter().filter(|report| report.required && !report.active).map(line).collect()
+pub(super) fn describe_missing(reports: &[LayerReport]) -> Vec<String> {
+    reports.iter().filter(|report| report.required && !report.active).map(format_report).collect()
 }
 
-fn line(report: &LayerReport) -> String {
+fn format_report(report: &LayerReport) -> String {
     let remedy = report.remedy.map(|remedy| format!("; {remedy}")).unwrap_or_default();
     format!("{}: {}{remedy}", report.layer.name(), report.detail)
 }
@@ -289,9 +289,9 @@ pub(super) fn is_active(reports: &[LayerReport], layer: Layer) -> bool {
     reports.iter().any(|report| report.layer == layer && report.active)
 }
 
-fn active(reports: &[LayerReport]) -> Walls {
+fn active_layers(reports: &[LayerReport]) -> ActiveLayers {
     let active = |layer| is_active(reports, layer);
-    Walls {
+    ActiveLayers {
         landlock: active(Layer::FileRules),
         landlock_version: 0,
         scopes: active(Layer::Scopes),
@@ -305,7 +305,7 @@ fn active(reports: &[LayerReport]) -> Walls {
 }
 
 /// Returns reports for a run that was never started. All layers are inactive in them.
-pub(super) fn none() -> Arc<[LayerReport]> {
+pub(super) fn no_layers() -> Arc<[LayerReport]> {
     let off = |layer| LayerReport {
         layer,
         active: matches!(layer, Layer::Limits | Layer::Reaper),
@@ -330,7 +330,7 @@ mod tests {
 
     #[test]
     fn a_healthy_host_has_every_wall_that_it_can_have() {
-        let all = Walls {
+        let all = ActiveLayers {
             landlock: true,
             landlock_version: 0,
             scopes: true,
@@ -341,7 +341,7 @@ mod tests {
             group: true,
         };
         assert_eq!(select_layers(&reports(&healthy(true))), Ok(all));
-        assert_eq!(select_layers(&reports(&healthy(false))), Ok(Walls { own_user: false, ..all }));
+        assert_eq!(select_layers(&reports(&healthy(false))), Ok(ActiveLayers { own_user: false, ..all }));
         assert_eq!(reports(&healthy(true)).iter().map(|report| report.layer).collect::<Vec<_>>(), Layer::ALL);
     }
 
@@ -352,7 +352,7 @@ mod tests {
         let bare = Probe { namespaces: Some("not permitted".into()), ..missing_layers(true) };
         let missing = select_layers(&reports(&bare)).unwrap_err();
         assert!(missing.contains("file rules") && missing.contains("this grader included"), "{missing}");
-        let bare = without(&without(&reports(&healthy(true)), Layer::Namespaces), Layer::FileRules);
+        let bare = without_layer(&without_layer(&reports(&healthy(true)), Layer::Namespaces), Layer::FileRules);
         assert!(select_layers(&bare).is_err());
         let missing = select_layers(&reports(&missing_layers(false))).unwrap_err();
         assert!(missing.contains("file rules") && missing.contains("5.13"), "{missing}");
@@ -369,7 +369,7 @@ mod tests {
         let missing_layers = Probe { landlock_abi: 0, landlock: Some("none".into()), ..healthy(false) };
         let walls = available_layers(&reports(&missing_layers)).unwrap();
         assert!(!walls.landlock && walls.seccomp && walls.notify);
-        assert_eq!(missing(&reports(&missing_layers)).len(), 1);
+        assert_eq!(describe_missing(&reports(&missing_layers)).len(), 1);
         assert_eq!(available_layers(&reports(&healthy(true))), super::select_layers(&reports(&healthy(true))));
         let filterless = Probe { seccomp: Some("none".into()), ..healthy(true) };
         let walls = available_layers(&reports(&filterless)).unwrap();
@@ -385,9 +385,9 @@ mod tests {
     #[test]
     fn a_required_wall_cannot_be_taken_away() {
         let healthy = |root| reports(&healthy(root));
-        assert!(select_layers(&without(&healthy(true), Layer::CallFilter)).is_err());
-        assert!(select_layers(&without(&healthy(false), Layer::FileRules)).is_err());
-        let walls = select_layers(&without(&healthy(true), Layer::FileRules)).unwrap();
+        assert!(select_layers(&without_layer(&healthy(true), Layer::CallFilter)).is_err());
+        assert!(select_layers(&without_layer(&healthy(false), Layer::FileRules)).is_err());
+        let walls = select_layers(&without_layer(&healthy(true), Layer::FileRules)).unwrap();
         assert!(!walls.landlock && !walls.scopes && walls.seccomp);
     }
 

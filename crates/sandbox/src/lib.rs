@@ -30,10 +30,8 @@
 
 mod backend;
 pub mod collect;
-mod decide;
-mod doctor;
 mod fake;
-mod fault;
+mod host_check;
 mod job;
 mod job_files;
 mod keepers;
@@ -44,21 +42,23 @@ mod mounts;
 mod outcome;
 mod own_files;
 mod program;
+mod run_end;
 mod running_program;
+mod sandbox_error;
 pub mod selftest;
 mod supervisor;
 mod sys;
 mod wire;
 
 pub use backend::{Backend, Supervisor};
-pub use doctor::check_host;
 pub use fake::FakeRun;
-pub use fault::SandboxError;
+pub use host_check::check_host;
 pub use job::{Job, Limits, Policy, ProgramIdentity};
 pub use layers::{Layer, LayerReport};
 pub use outcome::{CapturedOutput, RunEnd, RunOutcome, StartProblem};
-pub use own_files::{MARK_BACKWARDS, is_own};
-pub use running_program::{Canceller, LeftFolder, RunningProgram};
+pub use own_files::{MARK_BACKWARDS, is_own_file};
+pub use running_program::{Canceller, RemainingFolder, RunningProgram};
+pub use sandbox_error::SandboxError;
 pub use supervisor::supervisor_main;
 #[doc(hidden)]
 pub use wire::read_messages;

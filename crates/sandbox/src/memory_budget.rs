@@ -10,7 +10,7 @@ use super::machine;
 
 /// Returns whether a folder of `bytes` bytes may be in memory. The machine and the grader's control groups must have
 /// space for one folder per simultaneous run, and as much again for the programs.
-pub(super) fn is_enough_for(bytes: u64) -> bool {
+pub(super) fn has_memory_for(bytes: u64) -> bool {
     static SIMULTANEOUS_RUNS: OnceLock<u64> = OnceLock::new();
     let runs =
         SIMULTANEOUS_RUNS.get_or_init(|| std::thread::available_parallelism().map_or(1, |count| count.get() as u64));
@@ -28,14 +28,17 @@ fn memory_left() -> Option<u64> {
     {
         return left;
     }
-    let left = std::iter::once(available()).chain(groups().iter().map(LimitedGroup::memory_left)).flatten().min();
+    let left = std::iter::once(available_memory())
+        .chain(limited_groups().iter().map(LimitedGroup::memory_left))
+        .flatten()
+        .min();
     *last = Some((Instant::now(), left));
     left
 }
 
 /// Returns the memory that the kernel could give to programs.
-fn available() -> Option<u64> {
-    machine::bytes_of(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
+fn available_memory() -> Option<u64> {
+    machine::read_byte_count(&std::fs::read_to_string("/proc/meminfo").ok()?, "MemAvailable:")
 }
 
 /// A control group of this process that may limit memory.
@@ -54,7 +57,7 @@ impl LimitedGroup {
 }
 
 /// Returns the control groups of this process, in both versions of control groups.
-fn groups() -> &'static [LimitedGroup] {
+fn limited_groups() -> &'static [LimitedGroup] {
     static LIMITED_GROUPS: OnceLock<Vec<LimitedGroup>> = OnceLock::new();
     LIMITED_GROUPS.get_or_init(|| {
         let places = crate::supervisor::memory_groups();
@@ -73,9 +76,12 @@ mod tests {
 
     #[test]
     fn a_small_folder_fits_and_one_larger_than_the_machine_does_not() {
-        assert!(is_enough_for(1 << 20));
-        assert!(!is_enough_for(1 << 60));
-        assert_eq!(machine::bytes_of("MemTotal: 9 kB\nMemAvailable:    1024 kB\n", "MemAvailable:"), Some(1 << 20));
+        assert!(has_memory_for(1 << 20));
+        assert!(!has_memory_for(1 << 60));
+        assert_eq!(
+            machine::read_byte_count("MemTotal: 9 kB\nMemAvailable:    1024 kB\n", "MemAvailable:"),
+            Some(1 << 20)
+        );
     }
 
     #[test]

@@ -71,7 +71,7 @@ pub(super) fn mount(kind: &CStr, target: &CStr, options: &CStr, executable: bool
 
 /// Returns a copy of the mounts at and below `path`, which is not attached anywhere yet. If `path` ends with a link,
 /// the link is not followed.
-pub(super) fn copy_of(path: &CStr) -> io::Result<OwnedFd> {
+pub(super) fn copy_mounts(path: &CStr) -> io::Result<OwnedFd> {
     let kind = OpenTreeFlags::OPEN_TREE_CLONE | OpenTreeFlags::OPEN_TREE_CLOEXEC;
     Ok(open_tree(CWD, path, kind | OpenTreeFlags::AT_RECURSIVE | OpenTreeFlags::AT_SYMLINK_NOFOLLOW)?)
 }

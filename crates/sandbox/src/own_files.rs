@@ -35,11 +35,11 @@ const PYTHON_FOLDERS: [&str; 4] = ["/usr/lib", "/usr/lib64", "/usr/local/lib", "
 const MODULE_FOLDERS: [&str; 2] = ["dist-packages", "site-packages"];
 
 /// Returns whether a file is called like one of the grader's programs.
-pub(super) fn is_name(path: &Path) -> bool {
-    path.file_name().is_some_and(is_named)
+pub(super) fn is_program_name(path: &Path) -> bool {
+    path.file_name().is_some_and(has_program_name)
 }
 
-fn is_named(name: &OsStr) -> bool {
+fn has_program_name(name: &OsStr) -> bool {
     PROGRAM_PREFIXES.iter().any(|own| begins_with(name, own))
 }
 
@@ -82,7 +82,7 @@ fn list_files(programs: &[&Path]) -> Vec<PathBuf> {
     // Some of these files are large, and some are links to others.
     let folders: BTreeSet<PathBuf> = installed.filter_map(|folder| folder.canonicalize().ok()).collect();
     let entries = folders.iter().flat_map(|folder| list_entries(folder));
-    let named = entries.filter(|entry| is_named(&entry.file_name())).map(|entry| entry.path());
+    let named = entries.filter(|entry| has_program_name(&entry.file_name())).map(|entry| entry.path());
     let named = named.chain(list_modules(&PYTHON_FOLDERS.map(PathBuf::from)));
     let mut files: Vec<PathBuf> =
         named.filter_map(|path| path.canonicalize().ok()).chain(programs.iter().cloned()).collect();
@@ -97,7 +97,7 @@ fn list_files(programs: &[&Path]) -> Vec<PathBuf> {
 /// # Errors
 ///
 /// Fails if the file cannot be read.
-pub fn is_own(program: &Path, itself: (u64, u64)) -> io::Result<bool> {
+pub fn is_own_file(program: &Path, itself: (u64, u64)) -> io::Result<bool> {
     let is_shown = |path: &PathBuf| {
         path.file_name().is_some_and(|name| begins_with(name, SAMPLE_PREFIX))
             && path.metadata().is_ok_and(|metadata| (metadata.dev(), metadata.ino()) == itself)
@@ -217,7 +217,9 @@ mod tests {
     fn this_program_is_among_the_graders_files() {
         let this = std::fs::read_link("/proc/self/exe").unwrap().canonicalize().unwrap();
         assert!(list_files(&[Path::new(CURRENT_PROGRAM)]).contains(&this));
-        assert!(is_name(Path::new("/x/FOSSSimOracle2")) && is_name(Path::new("fosssim-sample.pp-no-two")));
-        assert!(!is_name(Path::new("/x/FOSSSim")) && !is_name(Path::new("python3")));
+        assert!(
+            is_program_name(Path::new("/x/FOSSSimOracle2")) && is_program_name(Path::new("fosssim-sample.pp-no-two"))
+        );
+        assert!(!is_program_name(Path::new("/x/FOSSSim")) && !is_program_name(Path::new("python3")));
     }
 }

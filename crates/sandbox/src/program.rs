@@ -17,7 +17,7 @@ use super::{outcome::StartProblem, own_files};
 const ELF_MAGIC: &[u8] = b"\x7fELF";
 /// The number of bytes from which the kind of a file is recognized. The kernel reads as many bytes for the first line
 /// of a script.
-const FIRST_BYTES: u64 = 256;
+const HEADER_BYTES: u64 = 256;
 /// The folders of the system's programs that a script may name. They are in the same order as in the sandbox's `PATH`.
 const PROGRAM_FOLDERS: [&str; 3] = ["/usr/local/bin", "/usr/bin", "/bin"];
 /// The folders of interpreters to which folders of programs may link.
@@ -25,11 +25,11 @@ const LIBRARY_FOLDERS: [&str; 4] = ["/lib", "/usr/lib", "/usr/lib64", "/usr/libe
 
 /// The facts about a program that the sandbox needs before starting it.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
-pub(super) struct Program {
+pub(super) struct ProgramFacts {
     /// The interpreters that the kernel executes to start the program.
     pub(super) executable: Vec<PathBuf>,
     /// The names by which these files are requested. They may be links.
-    pub(super) named: Vec<PathBuf>,
+    pub(super) named_paths: Vec<PathBuf>,
     /// The way to run the program, if it is a script.
     pub(super) script: Option<Script>,
 }
@@ -41,7 +41,7 @@ pub(super) struct Script {
     /// The path of the interpreter.
     pub(super) interpreter: PathBuf,
     /// The name of the interpreter, followed by those of its arguments that precede the script.
-    pub(super) words: Vec<String>,
+    pub(super) interpreter_arguments: Vec<String>,
     /// The environment variables that the script's first line sets.
     pub(super) environment: Vec<(String, String)>,
 }
@@ -52,7 +52,7 @@ pub(super) struct Script {
 /// # Errors
 ///
 /// Fails if the file cannot be started on this machine. The error is the reason.
-pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProblem> {
+pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<ProgramFacts, StartProblem> {
     let metadata = std::fs::metadata(path).map_err(|error| match error.kind() {
         std::io::ErrorKind::PermissionDenied => StartProblem::NotPermitted,
         _ => StartProblem::NotFound,
@@ -70,16 +70,16 @@ pub(super) fn examine(path: &Path, own: &[PathBuf]) -> Result<Program, StartProb
         return Err(StartProblem::NotExecutable);
     }
     // A program that may be executed but not read would also prevent the checks of the supervisor.
-    let start = first_bytes(path).ok_or(StartProblem::NotPermitted)?;
-    match (start.strip_prefix(b"#!"), other_system(&start)) {
+    let start = read_header(path).ok_or(StartProblem::NotPermitted)?;
+    match (start.strip_prefix(b"#!"), identify_other_system(&start)) {
         (Some(line), _) => find_interpreter(line, own, 0),
         (None, Some(system)) => Err(StartProblem::WrongSystem { system: system.into() }),
-        (None, None) => require_elf(&start).map(|()| Program::default()),
+        (None, None) => require_elf(&start).map(|()| ProgramFacts::default()),
     }
 }
 
 /// Returns the other operating system whose programs begin with these bytes; `None` if it is unknown.
-fn other_system(start: &[u8]) -> Option<&'static str> {
+fn identify_other_system(start: &[u8]) -> Option<&'static str> {
     match *start.first_chunk::<8>()? {
         [b'M', b'Z', ..] => Some("Windows"),
         [0xcf | 0xce, 0xfa, 0xed, 0xfe, ..] => Some("macOS"),
@@ -91,9 +91,9 @@ fn other_system(start: &[u8]) -> Option<&'static str> {
 }
 
 /// Returns the bytes from which the kind of a file is recognized; `None` if the file cannot be read.
-fn first_bytes(path: &Path) -> Option<Vec<u8>> {
+fn read_header(path: &Path) -> Option<Vec<u8>> {
     let mut start = Vec::new();
-    File::open(path).ok()?.take(FIRST_BYTES).read_to_end(&mut start).ok()?;
+    File::open(path).ok()?.take(HEADER_BYTES).read_to_end(&mut start).ok()?;
     Some(start)
 }
 
@@ -103,7 +103,7 @@ fn first_bytes(path: &Path) -> Option<Vec<u8>> {
 /// each must be one of the system's own programs. Otherwise a script could name the grader's program, and would be
 /// graded on the grader's answers. Nothing outside the system's folders is examined, because that would reveal which
 /// files exist there.
-fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program, StartProblem> {
+fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<ProgramFacts, StartProblem> {
     /// The maximum number of interpreters in a row that are scripts. The kernel has the same limit.
     const MAX_DEPTH: u32 = 4;
     let line = String::from_utf8_lossy(line.split(|&byte| byte == b'\n').next().unwrap_or_default()).into_owned();
@@ -125,14 +125,14 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
         return Err(StartProblem::NoInterpreter);
     }
     let place = |path: &Path| path.is_file().then(|| path.to_path_buf());
-    if !is_systems(Path::new(interpreter)) {
+    if !is_system_path(Path::new(interpreter)) {
         return Err(StartProblem::NotTheSystems { path: interpreter.escape_default().to_string() });
     }
     let mut found = place(Path::new(interpreter)).ok_or_else(|| missing(interpreter, hint))?;
     let mut resolved = require_system_file(&found, own)?;
-    let mut script = Script { words: vec![interpreter.to_owned()], ..Script::default() };
+    let mut script = Script { interpreter_arguments: vec![interpreter.to_owned()], ..Script::default() };
     if interpreter.ends_with("/env") {
-        let (name, arguments) = by_env(rest, &mut script.environment)?;
+        let (name, arguments) = find_env_command(rest, &mut script.environment)?;
         if name.contains('/') {
             return Err(StartProblem::NotTheSystems { path: name.escape_default().to_string() });
         }
@@ -142,34 +142,38 @@ fn find_interpreter(line: &[u8], own: &[PathBuf], depth: u32) -> Result<Program,
         let place = PROGRAM_FOLDERS.iter().find_map(|folder| place(&Path::new(folder).join(&name)));
         found = place.ok_or_else(|| missing(&name, hint))?;
         resolved = require_system_file(&found, own)?;
-        script.words = [vec![name], arguments].concat();
+        script.interpreter_arguments = [vec![name], arguments].concat();
     } else if !rest.is_empty() {
-        script.words.push(rest.to_owned());
+        script.interpreter_arguments.push(rest.to_owned());
     }
-    let start = first_bytes(&resolved).ok_or(StartProblem::NotPermitted)?;
+    let start = read_header(&resolved).ok_or(StartProblem::NotPermitted)?;
     let mut program = match start.strip_prefix(b"#!") {
         Some(line) if depth < MAX_DEPTH => {
             let outer = find_interpreter(line, own, depth + 1)?;
-            let inner = std::mem::take(&mut script.words);
+            let inner = std::mem::take(&mut script.interpreter_arguments);
             let by = outer.script.clone().unwrap_or_default();
-            script.words = [by.words, vec![found.to_string_lossy().into_owned()], inner[1..].to_vec()].concat();
+            script.interpreter_arguments =
+                [by.interpreter_arguments, vec![found.to_string_lossy().into_owned()], inner[1..].to_vec()].concat();
             script.environment.extend(by.environment);
             script.interpreter = by.interpreter;
             outer
         }
         _ => {
             script.interpreter.clone_from(&found);
-            Program::default()
+            ProgramFacts::default()
         }
     };
     program.executable.insert(0, resolved);
-    program.named.insert(0, found);
-    Ok(Program { script: Some(script), ..program })
+    program.named_paths.insert(0, found);
+    Ok(ProgramFacts { script: Some(script), ..program })
 }
 
 /// Returns the command that `env` would find, and its arguments. `rest` is the part of a script's first line after
 /// `env`.
-fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String, Vec<String>), StartProblem> {
+fn find_env_command(
+    rest: &str,
+    environment: &mut Vec<(String, String)>,
+) -> Result<(String, Vec<String>), StartProblem> {
     // Without -S, the kernel passes the rest of the line as a single word.
     let Some(split) = rest.strip_prefix("-S").or_else(|| rest.strip_prefix("--split-string=")) else {
         return match rest {
@@ -187,7 +191,7 @@ fn by_env(rest: &str, environment: &mut Vec<(String, String)>) -> Result<(String
 }
 
 /// Returns whether the text of the path begins with one of the system's folders.
-fn is_systems(path: &Path) -> bool {
+fn is_system_path(path: &Path) -> bool {
     let plain = path.components().all(|part| matches!(part, Component::RootDir | Component::Normal(_)));
     plain && PROGRAM_FOLDERS.iter().chain(&LIBRARY_FOLDERS).any(|folder| path.starts_with(folder))
 }
@@ -202,7 +206,7 @@ fn require_system_file(path: &Path, own: &[PathBuf]) -> Result<PathBuf, StartPro
     // noticed too late.
     const EXECUTE_BIT: u32 = 0o001;
     let open = |path: &Path| path.metadata().is_ok_and(|metadata| metadata.permissions().mode() & EXECUTE_BIT != 0);
-    let named = [path, &resolved].into_iter().any(own_files::is_name);
+    let named = [path, &resolved].into_iter().any(own_files::is_program_name);
     let beneath = PROGRAM_FOLDERS.iter().chain(&LIBRARY_FOLDERS).any(beneath);
     if !beneath || named || is_one_of(&resolved, own) || !resolved.ancestors().all(open) {
         return Err(refused());
@@ -227,7 +231,7 @@ fn require_elf(start: &[u8]) -> Result<(), StartProblem> {
     }
     let half =
         |offset: usize| start.get(offset..offset + 2).map_or(0, |bytes| u16::from_le_bytes([bytes[0], bytes[1]]));
-    let (machine, here) = (half(18), this_machine());
+    let (machine, here) = (half(18), machine_number());
     if start.get(5) != Some(&1) || machine != here {
         return Err(StartProblem::WrongMachine { machine: machine_name(machine), here: std::env::consts::ARCH.into() });
     }
@@ -239,7 +243,7 @@ fn require_elf(start: &[u8]) -> Result<(), StartProblem> {
     }
 }
 
-fn this_machine() -> u16 {
+fn machine_number() -> u16 {
     match std::env::consts::ARCH {
         "aarch64" => 183,
         "riscv64" => 243,
@@ -306,7 +310,7 @@ mod tests {
 
     #[test]
     fn foreign_and_unlinked_files_are_named() {
-        let here = this_machine() as u8;
+        let here = machine_number() as u8;
         let (_kept, path) = written("a", &header(1, 2, 3), 0o755);
         assert_eq!(examine(&path, &[]), Err(StartProblem::ThirtyTwoBit));
         let (_kept, path) = written("a", &header(2, 2, 21), 0o755);
@@ -314,7 +318,7 @@ mod tests {
         let (_kept, path) = written("a", &header(2, 1, here), 0o755);
         assert_eq!(examine(&path, &[]), Err(StartProblem::NotLinked { what: "an object file".into() }));
         let (_kept, path) = written("a", &header(2, 2, here), 0o755);
-        assert_eq!(examine(&path, &[]), Ok(Program::default()), "all else is the kernel's matter");
+        assert_eq!(examine(&path, &[]), Ok(ProgramFacts::default()), "all else is the kernel's matter");
     }
 
     #[test]
@@ -338,7 +342,7 @@ mod tests {
         assert!(program.executable[0] == Path::new("/bin/sh").canonicalize().unwrap());
         let script = program.script.unwrap();
         assert_eq!(
-            (script.interpreter.as_path(), script.words),
+            (script.interpreter.as_path(), script.interpreter_arguments),
             (Path::new("/bin/sh"), vec!["/bin/sh".into(), "-e".into()])
         );
     }
@@ -350,9 +354,11 @@ mod tests {
             examine(&path, &[]).map(|program| program.script.unwrap())
         };
         let found = script("#!/usr/bin/env sh\n").unwrap();
-        assert!(found.interpreter.ends_with("sh") && found.words == ["sh"] && found.environment.is_empty());
+        assert!(
+            found.interpreter.ends_with("sh") && found.interpreter_arguments == ["sh"] && found.environment.is_empty()
+        );
         let found = script("#! /usr/bin/env -S A=1 B= sh -e -u \n").unwrap();
-        assert_eq!(found.words, ["sh", "-e", "-u"]);
+        assert_eq!(found.interpreter_arguments, ["sh", "-e", "-u"]);
         assert_eq!(found.environment, [("A".into(), "1".into()), ("B".into(), String::new())]);
         assert!(matches!(script("#!/usr/bin/env -i sh\n"), Err(StartProblem::MissingInterpreter { .. })));
         assert!(matches!(script("#!/usr/bin/env sh -e\n"), Err(StartProblem::MissingInterpreter { .. })));

@@ -10,11 +10,11 @@ use std::{
 
 use super::{
     collect::{CollectError, OpenFolder},
-    decide,
-    fault::{SandboxError, from_setup_failure},
-    keepers::{Host, RestingKeeper},
+    keepers::{IdleKeeper, RunSupervisor},
     layers::LayerReport,
     outcome::{CapturedOutput, RunOutcome},
+    run_end,
+    sandbox_error::{SandboxError, from_setup_failure},
     supervisor::orphans,
     wire::{self, COMMAND_CANCEL, Event, RunOrder},
 };
@@ -25,13 +25,13 @@ type ControlSocket = Arc<Mutex<Option<UnixStream>>>;
 /// A running program. When the value is dropped, the program is stopped, and all its processes have ended.
 #[derive(Debug)]
 pub struct RunningProgram {
-    state: State,
-    folder: LeftFolder,
+    state: RunState,
+    folder: RemainingFolder,
     canceller: Canceller,
 }
 
 #[derive(Debug)]
-enum State {
+enum RunState {
     /// A supervisor controls the run.
     Supervised(Box<SupervisedRun>),
     /// The outcome is known, and was not returned to the caller yet.
@@ -42,7 +42,7 @@ enum State {
 
 #[derive(Debug)]
 pub(super) struct SupervisedRun {
-    pub(super) host: Host,
+    pub(super) host: RunSupervisor,
     /// The file from which the supervisor's answers are read.
     pub(super) answers: File,
     pub(super) session: Option<i32>,
@@ -54,16 +54,16 @@ pub(super) struct SupervisedRun {
 impl RunningProgram {
     /// Creates the value for a run whose supervisor has reported that it is ready.
     pub(super) fn new(supervised: SupervisedRun, control: UnixStream, in_memory: Option<OpenFolder>) -> Self {
-        let folder = LeftFolder { in_memory, path: wire::path(&supervised.order.folder), _keeper: None };
+        let folder = RemainingFolder { in_memory, path: wire::to_path(&supervised.order.folder), _keeper: None };
         let control = Arc::new(Mutex::new(Some(control)));
-        Self { state: State::Supervised(Box::new(supervised)), folder, canceller: Canceller { control } }
+        Self { state: RunState::Supervised(Box::new(supervised)), folder, canceller: Canceller { control } }
     }
 
     /// Creates the value for a run in the folder `path` whose outcome is already known.
     pub(super) fn from_outcome(outcome: RunOutcome, path: PathBuf) -> Self {
-        let folder = LeftFolder { in_memory: None, path, _keeper: None };
+        let folder = RemainingFolder { in_memory: None, path, _keeper: None };
         let canceller = Canceller { control: ControlSocket::default() };
-        Self { state: State::Known(Box::new(outcome)), folder, canceller }
+        Self { state: RunState::Known(Box::new(outcome)), folder, canceller }
     }
 
     /// Returns whether the program works in a copy of its working folder in memory. The folder on disk then does not
@@ -93,18 +93,18 @@ impl RunningProgram {
     /// # Errors
     ///
     /// Fails like [`RunningProgram::wait`].
-    pub fn wait_with_folder(mut self) -> Result<(RunOutcome, LeftFolder), SandboxError> {
-        let (outcome, keeper) = match std::mem::replace(&mut self.state, State::Taken) {
-            State::Supervised(supervised) => self.conclude(*supervised)?,
-            State::Known(outcome) => (*outcome, None),
-            State::Taken => unreachable!("`wait` takes the run by value"),
+    pub fn wait_with_folder(mut self) -> Result<(RunOutcome, RemainingFolder), SandboxError> {
+        let (outcome, keeper) = match std::mem::replace(&mut self.state, RunState::Taken) {
+            RunState::Supervised(supervised) => self.conclude(*supervised)?,
+            RunState::Known(outcome) => (*outcome, None),
+            RunState::Taken => unreachable!("`wait` takes the run by value"),
         };
-        let LeftFolder { in_memory, path, .. } = std::mem::take(&mut self.folder);
-        Ok((outcome, LeftFolder { in_memory, path, _keeper: keeper }))
+        let RemainingFolder { in_memory, path, .. } = std::mem::take(&mut self.folder);
+        Ok((outcome, RemainingFolder { in_memory, path, _keeper: keeper }))
     }
 
-    fn conclude(&self, mut supervised: SupervisedRun) -> Result<(RunOutcome, Option<RestingKeeper>), SandboxError> {
-        let answer = receive(&mut supervised.answers);
+    fn conclude(&self, mut supervised: SupervisedRun) -> Result<(RunOutcome, Option<IdleKeeper>), SandboxError> {
+        let answer = receive_end(&mut supervised.answers);
         // A supervisor that has reported needs no further commands.
         drop(self.canceller.control.lock().unwrap_or_else(PoisonError::into_inner).take());
         let (event, stdout, stderr) = match answer {
@@ -120,17 +120,17 @@ impl RunningProgram {
             Event::Failed(failure) => Err(from_setup_failure(failure)),
             Event::Ready { .. } => Err(SandboxError::Lost { how: "it sent an unexpected message".into() }),
         };
-        let keeper = supervised.host.rest(report.as_ref().ok());
+        let keeper = supervised.host.keep_for_reuse(report.as_ref().ok());
         let report = report?;
         if report.survivors > 0 {
             return Err(SandboxError::Survivors { count: report.survivors });
         }
-        let program = wire::path(&supervised.order.program);
+        let program = wire::to_path(&supervised.order.program);
         if report.exec_errno.is_some() && !program.is_file() {
-            return Err(SandboxError::Changed { program: program.display().to_string() });
+            return Err(SandboxError::ChangedProgram { program: program.display().to_string() });
         }
         let outcome = RunOutcome {
-            ended: decide::decide_end(&supervised.order, &report, &stderr),
+            ended: run_end::decide_end(&supervised.order, &report, &stderr),
             cpu: report.cpu,
             wall: report.wall,
             peak_memory: report.peak_memory,
@@ -145,14 +145,14 @@ impl RunningProgram {
 /// The working folder after the program has ended. All processes of the run have ended as well, so the folder no longer
 /// changes. When the value is dropped, other runs can use the supervisor.
 #[derive(Debug, Default)]
-pub struct LeftFolder {
+pub struct RemainingFolder {
     in_memory: Option<OpenFolder>,
     path: PathBuf,
     // The host is dropped last. Otherwise the pages of a folder in memory would count for the keeper's next run.
-    _keeper: Option<RestingKeeper>,
+    _keeper: Option<IdleKeeper>,
 }
 
-impl LeftFolder {
+impl RemainingFolder {
     /// Returns the folder, if the program worked in a copy in memory
     /// ([`Job::folder_in_memory`](super::Job::folder_in_memory)). Otherwise the files are in the job's folder on disk.
     #[must_use]
@@ -177,7 +177,7 @@ impl LeftFolder {
 
 impl Drop for RunningProgram {
     fn drop(&mut self) {
-        if let State::Supervised(supervised) = std::mem::replace(&mut self.state, State::Taken) {
+        if let RunState::Supervised(supervised) = std::mem::replace(&mut self.state, RunState::Taken) {
             self.canceller.cancel();
             // The caller no longer needs the program, so errors do not matter.
             let _ = self.conclude(*supervised);
@@ -186,7 +186,7 @@ impl Drop for RunningProgram {
 }
 
 /// Returns the supervisor's last message, and the captured bytes that follow it.
-fn receive(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
+fn receive_end(answers: &mut File) -> io::Result<(Event, Vec<u8>, Vec<u8>)> {
     let event = wire::receive(&mut *answers)?;
     let mut bytes = |length| wire::receive_bytes(&mut *answers, length);
     let (first, second) = match &event {

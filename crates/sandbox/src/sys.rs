@@ -69,11 +69,11 @@ pub(super) fn single_thread() -> io::Result<SingleThread> {
 
 /// Forks the process, which must have only one thread.
 pub(super) fn fork() -> io::Result<Fork> {
-    fork_alone(&single_thread()?)
+    fork_single_threaded(&single_thread()?)
 }
 
 /// Forks a process that was proved to have only one thread.
-pub(super) fn fork_alone(_: &SingleThread) -> io::Result<Fork> {
+pub(super) fn fork_single_threaded(_: &SingleThread) -> io::Result<Fork> {
     // SAFETY: the process has only one thread, so the child's copy of its memory is consistent.
     match check(i64::from(unsafe { libc::fork() }))? {
         0 => Ok(Fork::Child),
@@ -98,7 +98,7 @@ pub(super) fn group_id() -> u32 {
 }
 
 /// Starts a new session without a controlling terminal.
-pub(super) fn new_session() -> io::Result<()> {
+pub(super) fn start_session() -> io::Result<()> {
     Ok(rustix::process::setsid().map(drop)?)
 }
 
@@ -113,7 +113,7 @@ pub(super) fn die_with_parent() -> io::Result<()> {
 }
 
 /// Prevents for good that executing a program gives privileges.
-pub(super) fn no_new_privileges() -> io::Result<()> {
+pub(super) fn forbid_new_privileges() -> io::Result<()> {
     Ok(rustix::thread::set_no_new_privs(true)?)
 }
 
@@ -134,7 +134,7 @@ pub(super) fn switch_user(id: u32) -> io::Result<()> {
 /// Calls a function with another user's file permissions. In this way, root can read the user's entries in `/proc`
 /// without the capability to trace. Only the single thread of the supervisor does this, and it always restores its own
 /// user.
-pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) -> T {
+pub(super) fn with_file_permissions_of<T>(user: Option<u32>, action: impl FnOnce() -> T) -> T {
     let Some(user) = user else { return action() };
     // SAFETY: all arguments are integers. Both calls return the previous number, and change nothing if that is not
     // allowed.
@@ -149,7 +149,7 @@ pub(super) fn with_files_of<T>(user: Option<u32>, action: impl FnOnce() -> T) ->
 }
 
 /// Makes the three descriptors standard input, output and error. They stay open across `execve`.
-pub(super) fn connect(input: &OwnedFd, output: &OwnedFd, error: &OwnedFd) -> io::Result<()> {
+pub(super) fn connect_standard_streams(input: &OwnedFd, output: &OwnedFd, error: &OwnedFd) -> io::Result<()> {
     rustix::stdio::dup2_stdin(input)?;
     rustix::stdio::dup2_stdout(output)?;
     Ok(rustix::stdio::dup2_stderr(error)?)
@@ -389,12 +389,12 @@ pub(super) fn execute_open(file: BorrowedFd<'_>, arguments: &[CString], environm
 /// calls that the filter passes to user space.
 pub(super) fn install_filter(program: &[sock_filter], listener: bool) -> io::Result<Option<OwnedFd>> {
     #[repr(C)]
-    struct Program {
+    struct FilterProgram {
         length: libc::c_ushort,
         filter: *const sock_filter,
     }
     let length = u16::try_from(program.len()).map_err(io::Error::other)?;
-    let program = Program { length, filter: program.as_ptr() };
+    let program = FilterProgram { length, filter: program.as_ptr() };
     let flags = if listener { libc::SECCOMP_FILTER_FLAG_NEW_LISTENER } else { 0 };
     // SAFETY: the structure has the layout of the kernel's `sock_fprog`. It outlives the call, and so does its array.
     let answer = unsafe { libc::syscall(libc::SYS_seccomp, libc::SECCOMP_SET_MODE_FILTER, flags, &raw const program) };
@@ -446,7 +446,7 @@ pub(super) fn processor_time(of_thread: bool) -> Duration {
 }
 
 /// Returns the time of a clock: the time since 1970 if `calendar`, otherwise the time of the monotonic clock.
-pub(super) fn time_by(calendar: bool) -> Duration {
+pub(super) fn clock_time(calendar: bool) -> Duration {
     let time = rustix::time::clock_gettime(if calendar { ClockId::Realtime } else { ClockId::Monotonic });
     Duration::new(time.tv_sec.unsigned_abs(), time.tv_nsec.unsigned_abs() as u32)
 }
@@ -455,19 +455,19 @@ pub(super) fn time_by(calendar: bool) -> Duration {
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum CallAnswer {
     /// The kernel executes the call, as if it had not been announced.
-    GoOn,
+    Continue,
     /// The call has already been carried out, and succeeds.
     Done,
     /// The call fails with this error number.
-    Refused(i32),
+    Error(i32),
 }
 
 /// Answers an announced call.
 pub(super) fn answer(listener: BorrowedFd<'_>, id: u64, answer: CallAnswer) -> io::Result<()> {
     let (error, flags) = match answer {
-        CallAnswer::GoOn => (0, libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32),
+        CallAnswer::Continue => (0, libc::SECCOMP_USER_NOTIF_FLAG_CONTINUE as u32),
         CallAnswer::Done => (0, 0),
-        CallAnswer::Refused(errno) => (-errno, 0),
+        CallAnswer::Error(errno) => (-errno, 0),
     };
     let mut answer = libc::seccomp_notif_resp { id, val: 0, error, flags };
     // SAFETY: this request reads exactly this structure, and the structure outlives the call.

@@ -41,19 +41,19 @@ pub(super) fn to_raw_bytes(path: &Path) -> RawBytes {
 }
 
 /// Converts bytes into a path.
-pub(super) fn path(raw: &RawBytes) -> PathBuf {
+pub(super) fn to_path(raw: &RawBytes) -> PathBuf {
     PathBuf::from(std::ffi::OsString::from_vec(raw.clone()))
 }
 
 /// Returns the bytes as the name of an entry of a folder; `None` if the name would leave the folder.
-pub(super) fn plain_name(raw: &[u8]) -> Option<&Path> {
+pub(super) fn entry_name(raw: &[u8]) -> Option<&Path> {
     let leads_on = raw.is_empty() || raw == b"." || raw == b".." || raw.iter().any(|byte| matches!(byte, b'/' | 0));
     (!leads_on).then(|| Path::new(std::ffi::OsStr::from_bytes(raw)))
 }
 
 /// The layers that the supervisor must set up. If one of them fails, that is an error.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq, Serialize, Deserialize)]
-pub(super) struct Walls {
+pub(super) struct ActiveLayers {
     pub(super) landlock: bool,
     /// The version of Landlock whose rules are used; 0 for the newest.
     pub(super) landlock_version: u8,
@@ -76,24 +76,24 @@ pub(super) struct RunOrder {
     /// The interpreters that the kernel executes to start the program.
     pub(super) executable: Vec<RawBytes>,
     /// The names by which the program and the kernel request these files. They may be links.
-    pub(super) named: Vec<RawBytes>,
+    pub(super) named_paths: Vec<RawBytes>,
     /// The grader's own files, which no run may see. The grader finds them only once for all runs.
-    pub(super) own: Vec<RawBytes>,
+    pub(super) own_files: Vec<RawBytes>,
     /// The name of the trace in the working folder.
     pub(super) trace: Option<RawBytes>,
     /// The files that are written into the working folder. Each has its name and its length, and the bytes follow the
     /// order. They are used only if the folder is in memory.
     pub(super) files: Vec<(RawBytes, u64)>,
     /// Whether the working folder is in memory. The supervisor then sends its descriptor to the grader.
-    pub(super) volatile: bool,
-    pub(super) tools: bool,
+    pub(super) is_in_memory: bool,
+    pub(super) allows_tools: bool,
     /// The interpreter, if the program is a script. It is executed instead of the script.
     pub(super) interpreter: Option<RawBytes>,
     /// The name of the interpreter, followed by those of its arguments that precede the script.
-    pub(super) words: Vec<RawBytes>,
+    pub(super) interpreter_arguments: Vec<RawBytes>,
     /// Whether the program may have been built with a sanitizer, which reserves terabytes of address space.
     pub(super) sanitizers: bool,
-    pub(super) walls: Walls,
+    pub(super) layers: ActiveLayers,
     pub(super) limits: Limits,
 }
 
@@ -159,9 +159,9 @@ pub(super) struct Report {
     pub(super) wall: Duration,
     pub(super) peak_memory: u64,
     /// Whether the trace is longer than its limit.
-    pub(super) trace_over: bool,
+    pub(super) exceeds_trace_limit: bool,
     /// Whether the working folder exceeds a limit at the end of the run.
-    pub(super) folder_over: bool,
+    pub(super) exceeds_folder_limit: bool,
     pub(super) stdout_bytes: u64,
     pub(super) stderr_bytes: u64,
     pub(super) stdout_truncated: bool,

@@ -5,7 +5,7 @@ use fosssim_model::{
     assignments::Assignment,
     scene::{self, Scene},
 };
-use fosssim_student::{Student, assignments::probe_scenes, find, trace_within};
+use fosssim_student::{Student, assignments::probe_scenes, find, record_limited_trace};
 
 /// Returns the observation of a program that ended well.
 fn from_trace(trace: Vec<u8>) -> Observation {
@@ -14,7 +14,7 @@ fn from_trace(trace: Vec<u8>) -> Observation {
 
 /// Returns what the simulator with mistakes makes of a scene.
 fn run(scene: &Scene, student: Student) -> Observation {
-    from_trace(trace_within(scene, student, 10_000).unwrap_or_else(|(trace, _)| trace))
+    from_trace(record_limited_trace(scene, student, 10_000).unwrap_or_else(|(trace, _)| trace))
 }
 
 /// Returns the most significant digits that a number of the scene has: 1 for 0.05 and for 10, 2 for 1.5.

@@ -26,7 +26,7 @@ impl Student {
     pub fn with_mistake(mut self, mistake: Option<Mistake>) -> Self {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
             *free = mistake;
-            self.areas |= mistake.map_or(0, |mistake| bit(mistake.area()));
+            self.areas |= mistake.map_or(0, |mistake| area_bit(mistake.area()));
             self.has_slips |= matches!(mistake, Some(Mistake::Step(StepMistake::Edit(_))));
         }
         self
@@ -51,7 +51,7 @@ impl Student {
     /// Returns the mistake in one of `areas`, if many mistakes are distinguished in one place; the first area with a
     /// mistake counts.
     pub fn mistake_in(&self, areas: &[Area]) -> Option<Mistake> {
-        let mut here = areas.iter().filter(|area| self.areas & bit(**area) != 0);
+        let mut here = areas.iter().filter(|area| self.areas & area_bit(**area) != 0);
         here.find_map(|area| self.mistakes().find(|mistake| mistake.area() == *area))
     }
 
@@ -69,13 +69,13 @@ impl Student {
 
     /// Returns whether the student uses the mathematically right particle-edge approach instead of the supplied one.
     #[must_use]
-    pub fn approach_is_right(&self) -> bool {
+    pub fn has_right_approach(&self) -> bool {
         self.right_approach || self.makes(Mistake::QuinticRightRearranged)
     }
 }
 
 /// Returns the bit of an area.
-const fn bit(area: Area) -> u64 {
+const fn area_bit(area: Area) -> u64 {
     1 << area as u32
 }
 

@@ -11,7 +11,7 @@ use super::{
 pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
     let student = world.student;
     if student.makes(Mistake::ContinuousDetectAllFirst) {
-        return handle_all_at_once(world, q_start, state, log);
+        return handle_simultaneously(world, q_start, state, log);
     }
     let passes = if student.makes(Mistake::ContinuousTwoPasses) { 2 } else { 1 };
     for _ in 0..passes {
@@ -34,7 +34,12 @@ pub fn handle(world: &World, q_start: &[f64], state: &mut State, log: &mut StepL
     Ok(())
 }
 
-fn handle_all_at_once(world: &World, q_start: &[f64], state: &mut State, log: &mut StepLog) -> Result<(), StepFailure> {
+fn handle_simultaneously(
+    world: &World,
+    q_start: &[f64],
+    state: &mut State,
+    log: &mut StepLog,
+) -> Result<(), StepFailure> {
     let contacts = detection::detect_contacts(world, q_start, &state.x, log)?;
     let predicted = state.clone();
     for contact in contacts {

@@ -29,13 +29,13 @@ const STOP_MISTAKES: &[Mistake] = &[
 ];
 
 /// Returns the mistake in the motion of a zone.
-fn mistake_of_motion(student: Student) -> Option<Mistake> {
+fn motion_mistake(student: Student) -> Option<Mistake> {
     student.mistakes().find(|mistake| MODULE_AREAS.contains(&mistake.area()) && !STOP_MISTAKES.contains(mistake))
 }
 
 /// Replaces the end of the step for the zone's particles by that of a rigid body with their momentum.
-pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
-    let mistake = mistake_of_motion(world.student);
+pub fn move_zone(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
+    let mistake = motion_mistake(world.student);
     if mistake == Some(Mistake::FailsafeEmpty) {
         return;
     }
@@ -44,7 +44,7 @@ pub fn perform(world: &World, zone: &Zone, q_start: &[f64], state: &mut State) {
     } else {
         let rigid = RigidBody::new(world, zone, q_start, state);
         if mistake != Some(Mistake::FailsafeUnturnedUnmoved) || rigid.angle != 0.0 {
-            rigid.carry_out(zone, state);
+            rigid.move_particles(zone, state);
         }
     }
 }
@@ -119,7 +119,7 @@ impl<'a> RigidBody<'a> {
     }
 
     fn mistake(&self) -> Option<Mistake> {
-        mistake_of_motion(self.world.student)
+        motion_mistake(self.world.student)
     }
 
     /// Returns the mass of a particle; `number` is its number in the zone.
@@ -234,7 +234,7 @@ impl<'a> RigidBody<'a> {
     }
 
     /// Moves the zone's particles with the body.
-    fn carry_out(&self, zone: &Zone, state: &mut State) {
+    fn move_particles(&self, zone: &Zone, state: &mut State) {
         let (cosine, sine) = match self.mistake() {
             Some(Mistake::FailsafeSmallAngle) => (1.0, self.angle),
             Some(Mistake::FailsafeCosineSine) => (elementary::sin(self.angle), elementary::cos(self.angle)),

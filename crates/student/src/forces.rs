@@ -88,9 +88,9 @@ fn add_spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64])
 /// the squared quantity.
 fn apply_slips(student: Student, term: Term, value: f64, factor: f64) -> f64 {
     match () {
-        () if student.slips_by(term, Slip::Absolute) => value.abs(),
-        () if student.slips_by(term, Slip::Squared) => value * factor,
-        () if student.slips_by(term, Slip::SquaredHalf) => 0.5 * value * factor,
+        () if student.makes_slip(term, Slip::Absolute) => value.abs(),
+        () if student.makes_slip(term, Slip::Squared) => value * factor,
+        () if student.makes_slip(term, Slip::SquaredHalf) => 0.5 * value * factor,
         () => value,
     }
 }

@@ -19,7 +19,7 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
     } else {
         [Term::Implicit, Term::ImplicitMass, Term::ImplicitHx, Term::ImplicitHv]
     };
-    let makes = |slip: Slip| world.student.slips_by(whole, slip);
+    let makes = |slip: Slip| world.student.makes_slip(whole, slip);
     let sign = if makes(Slip::MatrixSign) { -1.0 } else { 1.0 };
     let mut matrix = HessianSum { world, size, entries: vec![0.0; size * size], is_of_velocities: false, weight: 1.0 };
     for (is_of_velocities, term) in [(false, of_x), (true, of_v)] {
@@ -30,7 +30,7 @@ pub fn system_matrix(world: &World, x: &[f64], v: &[f64]) -> Result<Vec<f64>, St
         matrix.entries.iter_mut().for_each(|entry| *entry *= h);
     }
     let mut a = matrix.entries;
-    let has_unit_mass = world.student.slips_by(mass, Slip::Mass(-1));
+    let has_unit_mass = world.student.makes_slip(mass, Slip::Mass(-1));
     let weight = if has_unit_mass { 1.0 } else { world.weight(mass, 1.0) };
     for k in 0..size {
         a[k * size + k] += weight * if has_unit_mass { 1.0 } else { world.masses[k] };
@@ -66,19 +66,19 @@ impl HessianSum<'_> {
                 let edge = world.scene.edges[edge];
                 let ends = (edge.first, edge.second);
                 let l = length(vector_at(x, edge.second) - vector_at(x, edge.first));
-                if self.takes(Term::JacobianSpring, false) {
+                if self.includes_derivative(Term::JacobianSpring, false) {
                     self.add_pair(Term::JacobianElastic, ends, &elastic_block(world, force, x), l);
                     self.add_pair(Term::JacobianDamping, ends, &damping_block(world, force, x, v), l);
                 }
-                if self.takes(Term::JacobianVelocity, true) {
+                if self.includes_derivative(Term::JacobianVelocity, true) {
                     self.add_pair(Term::JacobianVelocity, ends, &velocity_block(world, force, x), l);
                 }
             }
-            Force::Gravitation { first, second, .. } if self.takes(Term::JacobianGravitation, false) => {
+            Force::Gravitation { first, second, .. } if self.includes_derivative(Term::JacobianGravitation, false) => {
                 let r = length(vector_at(x, second) - vector_at(x, first));
                 self.add_pair(Term::JacobianGravitation, (first, second), &gravitation_block(world, force, x), r);
             }
-            Force::Drag { coefficient } if self.takes(Term::JacobianDrag, true) => {
+            Force::Drag { coefficient } if self.includes_derivative(Term::JacobianDrag, true) => {
                 for particle in 0..x.len() / 2 {
                     self.add_drag(particle, coefficient);
                 }
@@ -91,8 +91,8 @@ impl HessianSum<'_> {
     }
 
     /// Returns whether this student's program adds a derivative to the current matrix.
-    fn takes(&self, term: Term, is_of_velocities: bool) -> bool {
-        let is_other = self.world.student.slips_by(term, Slip::OtherMatrix);
+    fn includes_derivative(&self, term: Term, is_of_velocities: bool) -> bool {
+        let is_other = self.world.student.makes_slip(term, Slip::OtherMatrix);
         self.is_of_velocities == (is_of_velocities != is_other)
     }
 
@@ -112,11 +112,11 @@ impl HessianSum<'_> {
                 continue;
             }
             let is_beside = index > 1;
-            let is_other = has_slips && is_beside && student.slips_by(term, Slip::OffDiagonalSign);
+            let is_other = has_slips && is_beside && student.makes_slip(term, Slip::OffDiagonalSign);
             let sign = if is_beside != is_other { -1.0 } else { 1.0 };
             let slipped = if has_slips { self.world.whole_weight(term, row, length) } else { 1.0 };
             let weight = self.weight * sign * slipped;
-            let is_assigned = has_slips && student.slips_by(term, Slip::Assigned);
+            let is_assigned = has_slips && student.makes_slip(term, Slip::Assigned);
             for (r, entries) in block.iter().enumerate() {
                 for (c, entry) in entries.iter().enumerate() {
                     let place = &mut self.entries[(2 * column + c) * self.size + 2 * row + r];
@@ -143,12 +143,12 @@ impl HessianSum<'_> {
             }
             let value = self.weight * self.world.whole_weight(Term::JacobianDrag, particle, 1.0) * coefficient;
             let place = &mut self.entries[(2 * particle + axis) * (self.size + 1)];
-            *place = if student.slips_by(Term::JacobianDrag, Slip::Assigned) { value } else { *place + value };
+            *place = if student.makes_slip(Term::JacobianDrag, Slip::Assigned) { value } else { *place + value };
         }
     }
 }
 
-fn block(entry: impl Fn(usize, usize) -> f64) -> Matrix2 {
+fn build_block(entry: impl Fn(usize, usize) -> f64) -> Matrix2 {
     [[entry(0, 0), entry(0, 1)], [entry(1, 0), entry(1, 1)]]
 }
 
@@ -162,7 +162,7 @@ fn gravitation_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let three = if student.makes(StepMistake::JacobianGravitationNoThree) { 1.0 } else { 3.0 };
     let three = world.weight(Term::JacobianGravitationAlong, r) * three;
     let all = world.weight(Term::JacobianGravitationAll, r);
-    block(|row, column| (all * IDENTITY[row][column] - three * n[row] * n[column]) * scale)
+    build_block(|row, column| (all * IDENTITY[row][column] - three * n[row] * n[column]) * scale)
 }
 
 /// Returns the second derivatives of a spring's elastic part.
@@ -174,15 +174,17 @@ fn elastic_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let l = length(d);
     let is_long = makes(StepMistake::JacobianElasticDirection) || makes(StepMistake::SpringDirectionEverywhere);
     let n = if is_long { d } else { divide(d, l) };
-    let outer = block(|r, c| n[r] * n[c]);
+    let outer = build_block(|r, c| n[r] * n[c]);
     let stretch = if makes(StepMistake::JacobianElasticNoRestLength) { l } else { l - rest_length };
-    let is_positive = world.student.slips_by(Term::JacobianElasticAcross, Slip::Absolute);
+    let is_positive = world.student.makes_slip(Term::JacobianElasticAcross, Slip::Absolute);
     let stretch = if is_positive { stretch.abs() } else { stretch };
     let inverse = if makes(StepMistake::JacobianElasticStrain) { 1.0 / rest_length } else { 1.0 / l };
     let removed = if makes(StepMistake::JacobianElasticNoProjection) { Matrix2::default() } else { outer };
     let across = world.weight(Term::JacobianElasticAcross, l);
     let along = world.weight(Term::JacobianElasticAlong, l);
-    block(|r, c| (along * outer[r][c] + across * (stretch * (IDENTITY[r][c] - removed[r][c]) * inverse)) * stiffness)
+    build_block(|r, c| {
+        (along * outer[r][c] + across * (stretch * (IDENTITY[r][c] - removed[r][c]) * inverse)) * stiffness
+    })
 }
 
 /// Returns the derivatives of a spring's damping by positions.
@@ -195,16 +197,16 @@ fn damping_block(world: &World, force: &Force, x: &[f64], v: &[f64]) -> Matrix2 
     let l = length(d);
     let is_long = makes(StepMistake::JacobianDampingDirection) || makes(StepMistake::SpringDirectionEverywhere);
     let n = if is_long { d } else { divide(d, l) };
-    let outer = block(|r, c| n[r] * n[c]);
+    let outer = build_block(|r, c| n[r] * n[c]);
     let w = vector_at(v, b) - vector_at(v, a);
     let of_outer = world.weight(Term::JacobianDampingOuter, l);
-    let mut damped = block(|r, c| of_outer * (n[r] * w[c]));
+    let mut damped = build_block(|r, c| of_outer * (n[r] * w[c]));
     let scalar = world.weight(Term::JacobianDampingScalar, l) * n.dot(&w);
     damped[0][0] += scalar;
     damped[1][1] += scalar;
     let factor = -damping / l;
     let removed = if makes(StepMistake::JacobianDampingNoProjection) { Matrix2::default() } else { outer };
-    block(|r, c| -((damped[r][c] - (damped[r][0] * removed[0][c] + damped[r][1] * removed[1][c])) * factor))
+    build_block(|r, c| -((damped[r][c] - (damped[r][0] * removed[0][c] + damped[r][1] * removed[1][c])) * factor))
 }
 
 /// Returns the derivatives of a spring's damping by velocities.
@@ -214,7 +216,7 @@ fn velocity_block(world: &World, force: &Force, x: &[f64]) -> Matrix2 {
     let d = vector_at(x, edge.second) - vector_at(x, edge.first);
     let n = if world.student.makes(StepMistake::SpringDirectionEverywhere) { d } else { divide(d, length(d)) };
     if world.student.makes(StepMistake::JacobianVelocityIdentity) {
-        return block(|r, c| damping * IDENTITY[r][c]);
+        return build_block(|r, c| damping * IDENTITY[r][c]);
     }
-    block(|r, c| damping * n[r] * n[c])
+    build_block(|r, c| damping * n[r] * n[c])
 }

@@ -53,7 +53,7 @@ fn respond_geometrically(
     let prediction = state.clone();
     log.prediction = None;
     let contacts = detection::detect_contacts(world, q_start, &state.x, log)?;
-    let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::zone_of(world, contact)).collect());
+    let mut zones = zones::merge(student, contacts.iter().map(|contact| zones::contact_zone(world, contact)).collect());
     let mut round = 0;
     if zones.is_empty() && student.makes(Mistake::GeometricStopsWhenEmpty) {
         return Ok(());
@@ -78,7 +78,7 @@ fn respond_geometrically(
         let is_old = student.makes(Mistake::GeometricDetectsPrediction);
         let q_end = if is_old { &prediction.x } else { &state.x };
         let contacts = detection::detect_contacts(world, q_start, q_end, log)?;
-        let found = contacts.iter().map(|contact| zones::zone_of(world, contact));
+        let found = contacts.iter().map(|contact| zones::contact_zone(world, contact));
         let stops_when_clear = contacts.is_empty() && student.makes(Mistake::GeometricStopsWhenClear);
         if stops_when_clear || student.makes(Mistake::GeometricFindsInVain) {
             return Ok(());
@@ -87,7 +87,7 @@ fn respond_geometrically(
             if student.makes(Mistake::GeometricForgetsZones) { Vec::new() } else { zones.clone() };
         next.extend(found);
         let next = zones::merge(student, next);
-        let same = zones::are_equal(student, &zones, &next);
+        let same = zones::has_same_zones(student, &zones, &next);
         if same || round > MAX_ROUNDS {
             if student.makes(Mistake::GeometricExtraPass) {
                 detection::detect_contacts(world, q_start, &state.x, log)?;
@@ -96,7 +96,7 @@ fn respond_geometrically(
         }
         // Some mistakes enlarge the list in every round; a step with a guard does not wait for that.
         if log.guard.is_some() && next.len() > MAX_ZONES.max(world.scene.particles.len()) {
-            return Err(StepFailure::Refused);
+            return Err(StepFailure::Stopped);
         }
         zones = next;
         if student.makes(Mistake::GeometricTwoRounds) {
@@ -117,5 +117,5 @@ fn move_zones(world: &World, q_start: &[f64], zones: &[Zone], state: &mut State)
         Some(Mistake::GeometricLastZoneSkipped) => chosen.truncate(last),
         _ => {}
     }
-    chosen.into_iter().for_each(|zone| failsafe::perform(world, zone, q_start, state));
+    chosen.into_iter().for_each(|zone| failsafe::move_zone(world, zone, q_start, state));
 }

@@ -30,7 +30,7 @@ pub fn apply(
     }
     let is_once = max_iterations <= 0 && student.makes(Mistake::ImpulsesOnceWhenZero);
     let mut rounds = if is_once { max_iterations.saturating_sub(1) } else { 0 };
-    let limit = limit(world, max_iterations);
+    let limit = round_limit(world, max_iterations);
     let mut list: Vec<Contact> = Vec::new();
     while rounds < limit {
         let is_old = student.makes(Mistake::ImpulsesDetectPrediction);
@@ -63,7 +63,7 @@ pub fn apply(
         }
         let follows = student.makes(Mistake::ImpulsesStartFollows);
         let detected_to = follows.then(|| state.x.clone());
-        resolve(world, if follows { q_start } else { &start }, contacts, &prediction, state, log);
+        apply_impulses(world, if follows { q_start } else { &start }, contacts, &prediction, state, log);
         if student.makes(Mistake::ImpulsesStartAdvances) {
             start.clone_from(&state.x);
         }
@@ -127,7 +127,7 @@ fn end_before_rounds(
 }
 
 /// Returns the number of rounds that this program allows.
-fn limit(world: &World, max_iterations: i32) -> i32 {
+fn round_limit(world: &World, max_iterations: i32) -> i32 {
     match world.student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesOneFewer) => max_iterations.saturating_sub(1),
         Some(Mistake::ImpulsesOneMore) => max_iterations.saturating_add(1),
@@ -139,7 +139,7 @@ fn limit(world: &World, max_iterations: i32) -> i32 {
 }
 
 /// Applies one round's impulses, all computed from the positions at its beginning.
-fn resolve(
+fn apply_impulses(
     world: &World,
     start: &[f64],
     contacts: &[Contact],

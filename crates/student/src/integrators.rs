@@ -9,15 +9,15 @@ use super::{
 };
 
 /// The maximum number of iterations of Newton's method; the course's program would continue forever.
-const NEWTON_LIMIT: u32 = 100_000;
+const MAX_NEWTON_ITERATIONS: u32 = 100_000;
 
 /// The maximum number of iterations with a mistake, because such a program converges soon or hardly at all.
-const NEWTON_LIMIT_OF_MISTAKES: u32 = 60;
+const MAX_MISTAKEN_NEWTON_ITERATIONS: u32 = 60;
 
 /// Advances the state by one step, without collisions. `solves` counts the systems that are solved.
 pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
     let whole = whole_step_term(world.scene.integrator);
-    if whole.is_some_and(|whole| world.student.slips_by(whole, Slip::Missing)) {
+    if whole.is_some_and(|whole| world.student.makes_slip(whole, Slip::Missing)) {
         return Ok(());
     }
     let before = (!world.student.makes_none()).then(|| state.clone());
@@ -40,7 +40,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
         Integrator::ImplicitEuler => step_implicit(world, state, solves)?,
     }
     if let (Some(before), Some(whole)) = (before, whole) {
-        treat_fixed(world, whole, &before, state);
+        mishandle_fixed(world, whole, &before, state);
     }
     Ok(())
 }
@@ -59,8 +59,8 @@ const fn whole_step_term(integrator: Integrator) -> Option<Term> {
 }
 
 /// Applies mistakes with fixed particles, which are the same for all integrators.
-fn treat_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
-    let makes = |slip: Slip| world.student.slips_by(whole, slip);
+fn mishandle_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
+    let makes = |slip: Slip| world.student.makes_slip(whole, slip);
     for k in (0..state.x.len()).filter(|k| world.is_fixed(k / 2)) {
         if makes(Slip::FixedStopped) || makes(Slip::FixedHalted) {
             state.v[k] = 0.0;
@@ -75,8 +75,8 @@ fn treat_fixed(world: &World, whole: Term, before: &State, state: &mut State) {
 /// assignment's.
 fn change_rate(world: &World, term: Term, right: &[f64], other: &[f64]) -> Vec<f64> {
     match () {
-        () if world.student.slips_by(term, Slip::OtherVelocity) => other.to_vec(),
-        () if world.student.slips_by(term, Slip::MeanVelocity) => {
+        () if world.student.makes_slip(term, Slip::OtherVelocity) => other.to_vec(),
+        () if world.student.makes_slip(term, Slip::MeanVelocity) => {
             right.iter().zip(other).map(|(one, other)| (one + other) / 2.0).collect()
         }
         () => right.to_vec(),
@@ -89,10 +89,14 @@ fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_b
     let (student, h) = (world.student, world.scene.time_step);
     // The factor must stay a multiplication, because a change of sign would also change the sign of a NaN.
     let minus_one = black_box(-1.0);
-    let x = if student.slips_by(of_v, Slip::Behind) { &student.sum(&state.x, h, &state.v) } else { &state.x };
+    let x = if student.makes_slip(of_v, Slip::Behind) {
+        &student.add_scaled_lists(&state.x, h, &state.v)
+    } else {
+        &state.x
+    };
     let mut accelerations = forces::gradient(forces, x, &state.v);
     let forgets =
-        whole_step_term(world.scene.integrator).is_some_and(|whole| student.slips_by(whole, Slip::FixedForgotten));
+        whole_step_term(world.scene.integrator).is_some_and(|whole| student.makes_slip(whole, Slip::FixedForgotten));
     for (k, entry) in accelerations.iter_mut().enumerate() {
         *entry = if world.is_fixed(k / 2) && !forgets { 0.0 } else { minus_one * *entry };
         *entry /= world.masses[k];
@@ -105,7 +109,7 @@ fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_b
 
 /// Clears the entries of fixed particles in a right-hand side.
 fn clear_fixed(world: &World, whole: Term, vector: &mut [f64]) {
-    if [Slip::RightOfFixed, Slip::FixedForgotten].into_iter().any(|slip| world.student.slips_by(whole, slip)) {
+    if [Slip::RightOfFixed, Slip::FixedForgotten].into_iter().any(|slip| world.student.makes_slip(whole, slip)) {
         return;
     }
     for (k, entry) in vector.iter_mut().enumerate() {
@@ -118,7 +122,7 @@ fn clear_fixed(world: &World, whole: Term, vector: &mut [f64]) {
 fn step_linearized_implicit(world: &World, state: &mut State) -> Result<(), StepFailure> {
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let h = world.scene.time_step;
-    let predicted = world.student.sum(&state.x, h, &state.v);
+    let predicted = world.student.add_scaled_lists(&state.x, h, &state.v);
     let twice = makes(StepMistake::LinearVelocitiesTwice);
     let v: Vec<f64> = state.v.iter().map(|v| v + if twice { *v } else { 0.0 }).collect();
     let at_start = makes(StepMistake::LinearAllAtStart);
@@ -140,7 +144,7 @@ fn step_linearized_implicit(world: &World, state: &mut State) -> Result<(), Step
 fn step_implicit(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
     let makes = |mistake: StepMistake| world.student.makes(mistake);
     let h = world.scene.time_step;
-    let most = if world.student.makes_none() { NEWTON_LIMIT } else { NEWTON_LIMIT_OF_MISTAKES };
+    let most = if world.student.makes_none() { MAX_NEWTON_ITERATIONS } else { MAX_MISTAKEN_NEWTON_ITERATIONS };
     let (mut enough, mut iterations) = (1e-9, u32::MAX);
     for slip in world.student.slips(Term::Newton) {
         match slip {

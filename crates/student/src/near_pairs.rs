@@ -74,11 +74,14 @@ impl<'a> NearPairSearch<'a> {
         match kind {
             PairKind::ParticleParticle => {
                 let are_neighbors = self.ranks.is_empty() || self.ranks[one].abs_diff(self.ranks[other]) == 1;
-                are_neighbors && self.boxes_meet(self.particle(one), self.particle(other))
+                are_neighbors && self.boxes_meet(self.particle_box(one), self.particle_box(other))
             }
             PairKind::ParticleEdge => {
                 !(makes(StepMistake::NearPairsLastEdgeMissing) && other + 1 == scene.edges.len())
-                    && self.edge(other).into_iter().any(|of_edge| self.boxes_meet(self.particle(one), of_edge))
+                    && self
+                        .edge_boxes(other)
+                        .into_iter()
+                        .any(|of_edge| self.boxes_meet(self.particle_box(one), of_edge))
             }
             PairKind::ParticleHalfPlane => {
                 !(makes(StepMistake::NearPairsLastHalfPlaneMissing) && other + 1 == scene.half_planes.len())
@@ -100,7 +103,7 @@ impl<'a> NearPairSearch<'a> {
             || (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
     }
 
-    fn particle(&self, particle: usize) -> BoundingBox {
+    fn particle_box(&self, particle: usize) -> BoundingBox {
         let is_point = self.world.student.makes(StepMistake::NearPairsBoxesOfPoints);
         let radius = if is_point { 0.0 } else { self.world.scene.particles[particle].radius };
         let (center, side) = (vector_at(&self.x, particle), radius + 0.5 * self.h);
@@ -108,7 +111,7 @@ impl<'a> NearPairSearch<'a> {
     }
 
     /// Returns the boxes with which an edge is searched.
-    fn edge(&self, edge: usize) -> Vec<BoundingBox> {
+    fn edge_boxes(&self, edge: usize) -> Vec<BoundingBox> {
         let edge = self.world.scene.edges[edge];
         let side = edge.radius + 0.5 * self.h;
         let around = |low: Vec2, high: Vec2| [low - Vec2::new(side, side), high + Vec2::new(side, side)];

@@ -41,7 +41,7 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
         }
     };
     // Such a force affects distant pairs.
-    if PairKind::ALL.into_iter().any(|kind| student.slips(term(kind)).any(|slip| !slip.keeps_distance())) {
+    if PairKind::ALL.into_iter().any(|kind| student.slips(pair_term(kind)).any(|slip| !slip.keeps_distance())) {
         for pair in world.pairs() {
             let (kind, other) = pair.object.numbers();
             visit(PairKind::ALL[kind], (pair.particle, other));
@@ -52,7 +52,7 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
     }
 }
 
-const fn term(kind: PairKind) -> Term {
+const fn pair_term(kind: PairKind) -> Term {
     match kind {
         PairKind::ParticleParticle => Term::PenaltyParticles,
         PairKind::ParticleEdge => Term::PenaltyEdges,
@@ -79,9 +79,9 @@ impl PenaltySum<'_> {
 
     /// Returns `k` times the depth of the overlap of two bodies' layers, a negative number; `None` if they do not
     /// overlap.
-    fn depth(&self, term: Term, distance: f64, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
+    fn overlap_depth(&self, term: Term, distance: f64, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
         let PenaltyLayer { k, h, detection } = self.layer;
-        let makes = |slip: Slip| self.world.student.slips_by(term, slip);
+        let makes = |slip: Slip| self.world.student.makes_slip(term, slip);
         let first = if makes(Slip::NoRadii) { 0.0 } else { first };
         let second = if makes(Slip::NoRadii) || makes(Slip::NoOtherRadius) { 0.0 } else { second };
         let of_test = if makes(Slip::NoThickness) || makes(Slip::ThicknessInDepth) { 0.0 } else { h };
@@ -101,7 +101,7 @@ impl PenaltySum<'_> {
     }
 
     /// Adds a body's part to the gradient.
-    fn push(&mut self, term: Term, (role, particle): (usize, usize), length: f64, push: Vec2) {
+    fn add_push(&mut self, term: Term, (role, particle): (usize, usize), length: f64, push: Vec2) {
         self.world.contribute(
             self.g,
             TermPart { role, length, is_negative: role == 0, ..TermPart::from_term(term, particle) },
@@ -113,18 +113,20 @@ impl PenaltySum<'_> {
         let term = Term::PenaltyParticles;
         let particles = &self.world.scene.particles;
         let n = vector_at(self.x, j) - vector_at(self.x, i);
-        let Some([k, depth]) = self.depth(term, length(n), [particles[i].radius, particles[j].radius]) else { return };
+        let Some([k, depth]) = self.overlap_depth(term, length(n), [particles[i].radius, particles[j].radius]) else {
+            return;
+        };
         // In the contest the original normalizes the direction twice.
         let is_contest = self.layer.detection == CollisionDetection::Contest;
         let u = if is_contest { unit(unit(n)) } else { unit(n) };
-        self.push(term, (0, i), length(n), k * depth * u);
-        self.push(term, (1, j), length(n), k * depth * u);
+        self.add_push(term, (0, i), length(n), k * depth * u);
+        self.add_push(term, (1, j), length(n), k * depth * u);
     }
 
     fn particle_edge(&mut self, (i, edge): (usize, usize)) {
         let term = Term::PenaltyEdges;
         let world = self.world;
-        let makes = |slip: Slip| world.student.slips_by(term, slip);
+        let makes = |slip: Slip| world.student.makes_slip(term, slip);
         let edge = world.scene.edges[edge];
         let (x1, x2, x3) = (vector_at(self.x, i), vector_at(self.x, edge.first), vector_at(self.x, edge.second));
         let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
@@ -133,7 +135,7 @@ impl PenaltySum<'_> {
         let n = x2 + alpha * (x3 - x2) - x1;
         let particles = &world.scene.particles;
         let radius = if makes(Slip::EndRadius) { particles[edge.first].radius } else { edge.radius };
-        let Some([k, depth]) = self.depth(term, length(n), [particles[i].radius, radius]) else { return };
+        let Some([k, depth]) = self.overlap_depth(term, length(n), [particles[i].radius, radius]) else { return };
         let u = unit(n);
         let [first, second] = match () {
             () if makes(Slip::SharesExchanged) => [alpha, 1.0 - alpha],
@@ -141,9 +143,9 @@ impl PenaltySum<'_> {
             () if makes(Slip::FullShares) => [1.0, 1.0],
             () => [1.0 - alpha, alpha],
         };
-        self.push(term, (0, i), length(n), k * depth * u);
-        self.push(term, (1, edge.first), length(n), k * first * depth * u);
-        self.push(term, (2, edge.second), length(n), k * second * depth * u);
+        self.add_push(term, (0, i), length(n), k * depth * u);
+        self.add_push(term, (1, edge.first), length(n), k * first * depth * u);
+        self.add_push(term, (2, edge.second), length(n), k * second * depth * u);
     }
 
     fn particle_half_plane(&mut self, (i, plane): (usize, usize)) {
@@ -151,7 +153,7 @@ impl PenaltySum<'_> {
             return;
         }
         let term = Term::PenaltyHalfPlanes;
-        let makes = |slip: Slip| self.world.student.slips_by(term, slip);
+        let makes = |slip: Slip| self.world.student.makes_slip(term, slip);
         let plane = self.world.scene.half_planes[plane];
         let q = plane.normal;
         let to_point = plane.point - vector_at(self.x, i);
@@ -160,7 +162,9 @@ impl PenaltySum<'_> {
             () if makes(Slip::Undivided) => to_point.dot(&q) * q,
             () => to_point.dot(&q) / q.dot(&q) * q,
         };
-        let Some([k, depth]) = self.depth(term, length(n), [self.world.scene.particles[i].radius, 0.0]) else { return };
+        let Some([k, depth]) = self.overlap_depth(term, length(n), [self.world.scene.particles[i].radius, 0.0]) else {
+            return;
+        };
         let u = unit(n);
         let push = match () {
             () if makes(Slip::ToPoint) || makes(Slip::Undivided) => k * depth * u,
@@ -169,7 +173,7 @@ impl PenaltySum<'_> {
             () if makes(Slip::OneSidedBack) => k * depth * -unit(q),
             () => k * depth * u.dot(&q) / q.dot(&q) * q,
         };
-        self.push(term, (0, i), length(n), push);
+        self.add_push(term, (0, i), length(n), push);
     }
 }
 

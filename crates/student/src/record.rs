@@ -51,11 +51,11 @@ impl Record {
     pub fn encode(&self, claim: Option<i32>, bytes: &mut Vec<u8>) {
         self.x.iter().chain(&self.v).for_each(|value| bytes.extend(value.to_le_bytes()));
         if let Some(impulses) = &self.impulses {
-            bytes.extend(integer(impulses.len()).to_le_bytes());
+            bytes.extend(to_i32(impulses.len()).to_le_bytes());
             for impulse in impulses {
                 let (kind, second) = impulse.pair.object.numbers();
                 for value in [kind, impulse.pair.particle, second] {
-                    bytes.extend(integer(value).to_le_bytes());
+                    bytes.extend(to_i32(value).to_le_bytes());
                 }
                 for value in [impulse.n.x, impulse.n.y, impulse.time] {
                     bytes.extend(value.to_le_bytes());
@@ -63,9 +63,9 @@ impl Record {
             }
         }
         if let Some(polynomials) = &self.polynomials {
-            bytes.extend(claim.unwrap_or(integer(polynomials.len())).to_le_bytes());
+            bytes.extend(claim.unwrap_or(to_i32(polynomials.len())).to_le_bytes());
             for coefficients in polynomials {
-                bytes.extend(integer(coefficients.len()).to_le_bytes());
+                bytes.extend(to_i32(coefficients.len()).to_le_bytes());
                 coefficients.iter().for_each(|coefficient| bytes.extend(coefficient.to_le_bytes()));
             }
         }
@@ -84,7 +84,7 @@ pub fn record_trace(scene: &Scene, student: Student) -> Result<Vec<u8>, (Vec<u8>
 ///
 /// # Errors
 /// Fails with the bytes written so far, and the reason why there are no more.
-pub fn trace_within(scene: &Scene, student: Student, most: usize) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
+pub fn record_limited_trace(scene: &Scene, student: Student, most: usize) -> Result<Vec<u8>, (Vec<u8>, StepFailure)> {
     let guard = |index: usize, _: &[f64]| index < most;
     write_trace(scene, student, StepLog { guard: Some(&guard), ..StepLog::default() })
 }
@@ -107,7 +107,7 @@ fn write_trace(scene: &Scene, student: Student, mut log: StepLog<'_>) -> Result<
     Ok(bytes)
 }
 
-fn integer(value: usize) -> i32 {
+fn to_i32(value: usize) -> i32 {
     i32::try_from(value).unwrap_or(i32::MAX)
 }
 

@@ -84,18 +84,18 @@ impl PairResponse<'_> {
             (share, moved)
         };
         if !student.makes(Mistake::ResponsePositionsOnly) {
-            student.push(&mut self.result.v, particle, sign * (share / inertia), self.u);
+            student.add_scaled_at(&mut self.result.v, particle, sign * (share / inertia), self.u);
         }
         if !student.makes(Mistake::ResponseVelocitiesOnly) {
             let moved = if student.makes(Mistake::ResponsePositionNoStep) { share } else { moved };
-            student.push(&mut self.result.x, particle, sign * (moved / inertia), self.u);
+            student.add_scaled_at(&mut self.result.x, particle, sign * (moved / inertia), self.u);
         }
     }
 
     fn particle_particle(&mut self, one: usize, two: usize) {
         let h = self.world.scene.time_step;
         let student = self.world.student;
-        let (m1, m2) = masses(student, self.world.collision_mass(one), self.world.collision_mass(two));
+        let (m1, m2) = response_masses(student, self.world.collision_mass(one), self.world.collision_mass(two));
         let closing = self.velocity(two) - self.velocity(one);
         let impulse = self.bounce * student.dot(closing, self.u);
         let (mut inertia1, mut inertia2) = (1.0 + m1 / m2, m2 / m1 + 1.0);
@@ -119,7 +119,7 @@ impl PairResponse<'_> {
         let (y1, y2, y3) = (impact(one, v1), impact(two, v2), impact(three, v3));
         let along = y3 - y2;
         let alpha = clamp(student.dot(y1 - y2, along) / student.dot(along, along));
-        let alpha = share_of_second(student, alpha);
+        let alpha = second_share(student, alpha);
         let beta = 1.0 - alpha;
         let edge_velocity = if student.makes(Mistake::ResponseEdgeStill) {
             Vec2::zeros()
@@ -176,7 +176,7 @@ impl PairResponse<'_> {
 }
 
 /// Returns the masses of two particles in this student's formulas.
-pub fn masses(student: Student, first: f64, second: f64) -> (f64, f64) {
+pub fn response_masses(student: Student, first: f64, second: f64) -> (f64, f64) {
     match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ResponseMassesSwapped) => (second, first),
         Some(Mistake::ResponseEqualMasses) => (1.0, 1.0),
@@ -185,7 +185,7 @@ pub fn masses(student: Student, first: f64, second: f64) -> (f64, f64) {
 }
 
 /// Returns the share of an edge's second end in this student's formulas.
-pub fn share_of_second(student: Student, alpha: f64) -> f64 {
+pub fn second_share(student: Student, alpha: f64) -> f64 {
     match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ResponseEdgeMiddle) => 0.5,
         Some(Mistake::ResponseEdgeSwapped) => 1.0 - alpha,

@@ -31,12 +31,12 @@ impl Student {
     }
 
     /// Returns `a + factor * b`, entry by entry.
-    pub fn sum(self, a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
+    pub fn add_scaled_lists(self, a: &[f64], factor: f64, b: &[f64]) -> Vec<f64> {
         a.iter().zip(b).map(|(a, b)| self.add_product(*a, factor, *b)).collect()
     }
 
     /// Adds `s * w` to the vector of one particle.
-    pub fn push(self, array: &mut [f64], particle: usize, s: f64, w: Vec2) {
+    pub fn add_scaled_at(self, array: &mut [f64], particle: usize, s: f64, w: Vec2) {
         set_vector(array, particle, self.add_scaled(vector_at(array, particle), s, w));
     }
 }

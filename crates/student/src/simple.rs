@@ -55,7 +55,7 @@ const EDGE_KIND: SimpleKind = SimpleKind {
     normal: Term::NormalEdges,
     response: Term::RespondEdges,
 };
-const HALF_PLANES: SimpleKind = SimpleKind {
+const HALF_PLANE_KIND: SimpleKind = SimpleKind {
     detection: Term::DetectHalfPlanes,
     overlap: Term::OverlapHalfPlanes,
     approach: Term::ApproachHalfPlanes,
@@ -65,7 +65,7 @@ const HALF_PLANES: SimpleKind = SimpleKind {
 
 impl SimplePass<'_> {
     fn makes(&self, term: Term, slip: Slip) -> bool {
-        self.world.student.slips_by(term, slip)
+        self.world.student.makes_slip(term, slip)
     }
 
     /// Returns whether two bodies collide, given their radii, their contact vector `n`, and their relative velocity
@@ -89,7 +89,7 @@ impl SimplePass<'_> {
     }
 
     /// Returns the contact vector that the program returns.
-    fn returned_vector(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
+    fn contact_vector(&self, kind: &SimpleKind, n: Vec2) -> Vec2 {
         self.world.student.slips(kind.normal).fold(n, |n, slip| match slip {
             Slip::Sign => -n,
             Slip::Unit => unit(n),
@@ -138,12 +138,12 @@ impl SimplePass<'_> {
     fn particle_particle(&self, state: &mut State, one: usize, two: usize) -> Option<Vec2> {
         let kind = &PARTICLE_KIND;
         let n = vector_at(&state.x, two) - vector_at(&state.x, one);
-        let [v1, v2] = self.seen_velocities(kind, [vector_at(&state.v, one), vector_at(&state.v, two)]);
+        let [v1, v2] = self.tested_velocities(kind, [vector_at(&state.v, one), vector_at(&state.v, two)]);
         let radii = [one, two].map(|particle| self.world.scene.particles[particle].radius);
         if !self.is_colliding(kind, n, radii, v1 - v2) {
             return None;
         }
-        let n = self.returned_vector(kind, n);
+        let n = self.contact_vector(kind, n);
         let (u, bounce) = (unit(n), self.restitution_factor(kind));
         let impulse = |pass: &Self, state: &State| {
             bounce * (pass.velocity(kind, state, two) - pass.velocity(kind, state, one)).dot(&u)
@@ -158,7 +158,7 @@ impl SimplePass<'_> {
     }
 
     /// Returns the velocities of two bodies that the test of approach uses.
-    fn seen_velocities(&self, kind: &SimpleKind, [first, second]: [Vec2; 2]) -> [Vec2; 2] {
+    fn tested_velocities(&self, kind: &SimpleKind, [first, second]: [Vec2; 2]) -> [Vec2; 2] {
         match () {
             () if self.makes(kind.approach, Slip::FirstOnly) => [first, Vec2::zeros()],
             () if self.makes(kind.approach, Slip::SecondOnly) => [Vec2::zeros(), second],
@@ -180,7 +180,7 @@ impl SimplePass<'_> {
             () if self.makes(kind.approach, Slip::Mirrored) => 1.0 - alpha,
             () => alpha,
         };
-        let [of_particle, of_first] = self.seen_velocities(kind, [v1, v2]);
+        let [of_particle, of_first] = self.tested_velocities(kind, [v1, v2]);
         let turning = if self.makes(kind.approach, Slip::FirstOnly) { Vec2::zeros() } else { seen * (v3 - v2) };
         let particles = &self.world.scene.particles;
         let radius = if self.makes(kind.overlap, Slip::EndRadius) { particles[two].radius } else { edge.radius };
@@ -188,7 +188,7 @@ impl SimplePass<'_> {
         if is_off || !self.is_colliding(kind, n, [particles[one].radius, radius], of_particle - of_first - turning) {
             return None;
         }
-        let n = self.returned_vector(kind, n);
+        let n = self.contact_vector(kind, n);
         self.push_edge(state, [one, two, three], n, closest_alpha(student, kind.response, on_line, clamp));
         Some(n)
     }
@@ -229,7 +229,7 @@ impl SimplePass<'_> {
 
     /// Responds to a contact with a half-plane; a fixed particle is changed as well.
     fn particle_half_plane(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
-        let kind = &HALF_PLANES;
+        let kind = &HALF_PLANE_KIND;
         let plane = self.world.scene.half_planes[index];
         let to_point = plane.point - vector_at(&state.x, one);
         let q = if self.makes(kind.normal, Slip::Undivided) { plane.normal } else { unit(plane.normal) };
@@ -240,7 +240,7 @@ impl SimplePass<'_> {
         if !self.is_colliding(kind, n, [reach, 0.0], seen) {
             return None;
         }
-        let n = self.returned_vector(kind, n);
+        let n = self.contact_vector(kind, n);
         if self.world.is_fixed(one) && self.makes(kind.response, Slip::FixedSpared) {
             return Some(n);
         }

@@ -36,7 +36,7 @@ impl Student {
     }
 
     /// Returns whether the student makes this slip in the quantity.
-    pub fn slips_by(&self, term: Term, slip: Slip) -> bool {
+    pub fn makes_slip(&self, term: Term, slip: Slip) -> bool {
         self.edits().any(|edit| edit.slip == slip && edit.term.covers(term))
     }
 
@@ -125,7 +125,7 @@ impl World {
     /// Adds `h` times each rate to the numbers of its particle.
     pub fn advance(&self, term: Term, target: &mut Vec<f64>, h: f64, rates: &[f64]) {
         if self.student.slips(term).next().is_none() {
-            *target = self.student.sum(target, h, rates);
+            *target = self.student.add_scaled_lists(target, h, rates);
             return;
         }
         for particle in 0..target.len() / 2 {

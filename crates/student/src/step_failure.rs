@@ -16,5 +16,5 @@ pub enum StepFailure {
     /// The guard of [`StepLog`](super::StepLog) stopped the step at a polynomial, because the caller has enough
     /// information.
     #[error("the caller rejected a polynomial, so the step was stopped")]
-    Refused,
+    Stopped,
 }

@@ -32,7 +32,7 @@ pub struct StepLog<'a> {
     /// The polynomials passed to the root finder, in order.
     pub polynomials: Vec<Polynomial>,
     /// The guard that receives each polynomial as it is logged, with its index, before its roots are searched.
-    pub guard: Option<Guard<'a>>,
+    pub guard: Option<StepGuard<'a>>,
     /// The number of steps of root searches beyond the usual number.
     pub long_searches: u64,
     /// The integrator's prediction, after the impulse rounds have begun.
@@ -41,7 +41,7 @@ pub struct StepLog<'a> {
 
 /// Decides whether a step may continue after a polynomial (index in the step's log, coefficients highest power first).
 /// A search for a certain step stops it as soon as it differs. A guard also bounds loops that mistakes make endless.
-pub type Guard<'a> = &'a dyn Fn(usize, &[f64]) -> bool;
+pub type StepGuard<'a> = &'a dyn Fn(usize, &[f64]) -> bool;
 
 /// Adds `change` to the vector of one particle.
 pub fn add(array: &mut [f64], particle: usize, change: Vec2) {

@@ -12,7 +12,7 @@ use super::{
 const MODULE_AREAS: &[Area] = &[Area::ImpactZones];
 
 /// Returns the zone of one contact.
-pub fn zone_of(world: &World, contact: &Contact) -> Zone {
+pub fn contact_zone(world: &World, contact: &Contact) -> Zone {
     let (student, all) = (world.student, world.scene.particles.len());
     let one = contact.pair.particle;
     let mut particles = BTreeSet::from([one]);
@@ -128,7 +128,7 @@ fn find_root(parents: &[usize], mut particle: usize) -> usize {
 }
 
 /// Returns whether two lists contain the same zones, in any order.
-pub fn are_equal(student: Student, old: &[Zone], new: &[Zone]) -> bool {
+pub fn has_same_zones(student: Student, old: &[Zone], new: &[Zone]) -> bool {
     let same = |one: &Zone, other: &Zone| match student.mistake_in(MODULE_AREAS) {
         Some(Mistake::ZonesEqualByCount) => true,
         Some(Mistake::ZonesEqualNoFlag) => one.particles == other.particles,

@@ -138,14 +138,14 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         let layer = sandbox::Layer::ALL.into_iter().find(|layer| layer.name() == name);
         let names = sandbox::Layer::ALL.into_iter().map(sandbox::Layer::name);
         let unknown = || format!("doctor shows no layer {name}{}", near::suggest(name, names));
-        backend = backend.without(layer.with_context(unknown)?)?;
+        backend = backend.without_layer(layer.with_context(unknown)?)?;
     }
     let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;
     // If this process is root, programs run as another user, who must be able to reach the folder.
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("the temporary folder")?;
     let mut done = 0;
     let chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
-    let table = selftest::run_some(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
+    let table = selftest::run_chosen(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
         done += 1;
         if let selftest::PromiseState::Broken(how) = &promise.state {
             console::print_error(format!("not held: {}: {how}\n", promise.attack));

@@ -34,7 +34,7 @@ pub(super) const MAX_LISTED_SCENES: usize = 3;
 /// Returns the areas in the order of the catalogue.
 pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     let written = |scene: &Scene, student: Student| {
-        student::trace_within(scene, student, MAX_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
+        student::record_limited_trace(scene, student, MAX_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
     };
     let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
     scenes.retain(|scene| scene.particles.len() <= MAX_PARTICLES);

@@ -224,7 +224,7 @@ int main() {
 fn waits_with_a_limit_of_time_last_until_it_and_end_when_they_should() {
     let Some(bench) = Bench::new() else { return };
     let Some(program) = built(&bench, WAITS, &["-pthread"]) else { return };
-    for backend in [bench.backend.clone(), bench.backend.without(Layer::Namespaces).unwrap()] {
+    for backend in [bench.backend.clone(), bench.backend.without_layer(Layer::Namespaces).unwrap()] {
         let outcome = backend.start(&bench.job(&program, &[])).unwrap().wait().unwrap();
         assert_eq!((outcome.ended, text(&outcome.stdout.bytes)), (RunEnd::Exited(0), "1 0 1 0 1 1 1\n"));
     }
@@ -247,9 +247,11 @@ fn a_program_reads_the_systems_libraries_and_nothing_else_of_the_system() {
     let library = std::fs::read_dir("/usr/lib").unwrap().flatten().map(|entry| entry.path().join("libc.so.6"));
     let library = library.into_iter().find(|path| path.exists()).map(|path| path.display().to_string());
     let words: Vec<&str> = others.into_iter().chain(library.as_deref()).collect();
-    for backend in
-        [Ok(bench.backend.clone()), bench.backend.without(Layer::FileRules), bench.backend.without(Layer::Namespaces)]
-    {
+    for backend in [
+        Ok(bench.backend.clone()),
+        bench.backend.without_layer(Layer::FileRules),
+        bench.backend.without_layer(Layer::Namespaces),
+    ] {
         let Ok(backend) = backend else { continue };
         let outcome = backend.start(&bench.job(&script, &words)).unwrap().wait().unwrap();
         let read: Vec<&str> = text(&outcome.stdout.bytes).lines().collect();

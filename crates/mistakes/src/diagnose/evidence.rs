@@ -153,7 +153,7 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
 fn contradicts(one: &Explanation, told: &Explanation) -> bool {
     let is_of_formula = match &told.about {
         About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
-        About::Mistake => find(&told.key).is_some_and(|row| row.kind_of_pair().is_some() && is_formula_area(row.area)),
+        About::Mistake => find(&told.key).is_some_and(|row| row.pair_kind().is_some() && is_formula_area(row.area)),
         _ => false,
     };
     let subjects = told.subjects();

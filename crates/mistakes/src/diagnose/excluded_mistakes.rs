@@ -4,7 +4,7 @@ use super::{
     naming::alternative_statements, non_finite::explain_source, sampling::Source, student_code::is_written_by_student,
 };
 use fosssim_model::{assignments::Assignment, scene::Scene};
-use fosssim_student::{Area, Student, find, trace_within};
+use fosssim_student::{Area, Student, find, record_limited_trace};
 use std::{cell::Cell, collections::BTreeMap};
 
 /// The maximum number of traces that are simulated to find out whether a mistake leads to values that are not finite.
@@ -33,7 +33,7 @@ fn supplied_keys(whose: Assignment, wrong: &[(&Scene, &[Explanation])]) -> Vec<S
 fn explain_non_finite_values(likely: &[Explanation], wrong: &[(&Scene, &[Explanation])]) -> bool {
     let mistakes = likely.iter().filter(|one| one.is_proven()).filter_map(|one| find(&one.key));
     let students: Vec<Student> = mistakes.map(|row| Student::new(Some(row.mistake))).collect();
-    let ends = |scene: &Scene, student: Student| match trace_within(scene, student, MAX_STEP_POLYNOMIALS) {
+    let ends = |scene: &Scene, student: Student| match record_limited_trace(scene, student, MAX_STEP_POLYNOMIALS) {
         Ok(trace) | Err((trace, _)) => !explain_source(scene, Source::from_trace(&trace)).is_empty(),
     };
     let mut of_end = wrong.iter().filter(|(_, list)| list.iter().any(Explanation::is_not_finite)).take(MAX_TRACES);

@@ -60,7 +60,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         polynomials.retain(|one| !one.is_of_missing());
     }
     for explanation in &mut known {
-        let of_kind = find(&explanation.key).filter(|row| is_formula_area(row.area)).map(|row| row.kind_of_pair());
+        let of_kind = find(&explanation.key).filter(|row| is_formula_area(row.area)).map(|row| row.pair_kind());
         if let Some(kind) = of_kind {
             let is_of_kind = |claim: &&String| {
                 let kinds = PairKind::ALL.into_iter().filter(|one| kind.is_none_or(|kind| kind == *one));
@@ -124,7 +124,7 @@ fn add_letter_note(explanation: &mut Explanation) {
     }
     let row = find(&explanation.key);
     let kinds = match &explanation.about {
-        About::Mistake => row.and_then(Row::kind_of_pair).into_iter().collect(),
+        About::Mistake => row.and_then(Row::pair_kind).into_iter().collect(),
         about => about.kinds(),
     };
     // A known mistake's last line names the place to check.

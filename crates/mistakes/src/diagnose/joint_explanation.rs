@@ -74,7 +74,7 @@ pub fn explain_together<'a>(
     let is_unwritten = |subject: &Subject| {
         let rows = empty.iter().filter_map(|one| find(&one.key));
         rows.filter(|row| is_formula_area(row.area))
-            .any(|row| row.kind_of_pair().is_none_or(|kind| kind == subject.kind()))
+            .any(|row| row.pair_kind().is_none_or(|kind| kind == subject.kind()))
     };
     // A trace in which stages are empty shows no other mistakes.
     wrong.retain(|list| !empty.iter().any(|one| is_named_in(one, list)));
@@ -114,7 +114,7 @@ fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
         |kind: &PairKind| Subject::all_of_kind(*kind).iter().filter(is_theirs).all(|one| subjects.contains(one));
     let kinds = PairKind::ALL.into_iter().filter(|kind| is_zero && is_all(kind));
     let row = |kind: PairKind| {
-        let of_kind = |row: &&Row| row.kind_of_pair() == Some(kind) && row.id.ends_with("-zero");
+        let of_kind = |row: &&Row| row.pair_kind() == Some(kind) && row.id.ends_with("-zero");
         CATALOGUE.iter().find(of_kind)
     };
     let told = |row: &Row| Explanation {
@@ -202,7 +202,7 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
         let theirs = one.subjects();
         // If a trace shows no polynomial of a known mistake, that mistake may be the cause of a reported guess.
         let is_guess = matches!(one.about, About::Polynomials { .. });
-        let kind = find(&next.key).filter(|row| is_formula_area(row.area)).and_then(Row::kind_of_pair);
+        let kind = find(&next.key).filter(|row| is_formula_area(row.area)).and_then(Row::pair_kind);
         let in_one_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
             Some(kind) => theirs.iter().any(|subject| subject.kind() == kind),
             None => !subjects.is_empty() && subjects.iter().all(|subject| theirs.contains(subject)),
@@ -218,9 +218,9 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
             (About::Stage(fault), _) => find(&next.key).is_some_and(|row| fault.areas().contains(&row.area)),
             _ => false,
         };
-        let is_of_vector = |row: &&Row| row.area == Area::ContactVector && row.kind_of_pair().is_some();
+        let is_of_vector = |row: &&Row| row.area == Area::ContactVector && row.pair_kind().is_some();
         let of_vectors = find(&one.key).filter(is_of_vector).zip(find(&next.key).filter(is_of_vector));
-        let in_one_vector = of_vectors.is_some_and(|(one, next)| one.kind_of_pair() == next.kind_of_pair());
+        let in_one_vector = of_vectors.is_some_and(|(one, next)| one.pair_kind() == next.pair_kind());
         in_one_formula || in_one_stage || in_one_vector
     };
     found.iter().any(is_said)
@@ -247,7 +247,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
     let kind_of = |one: &Explanation| if let About::Stage(fault) = &one.about { fault.kind() } else { None };
     let observed = |row: &Row| {
-        let is_of_kind = |one: &Explanation| row.kind_of_pair().is_none_or(|kind| kind_of(one) == Some(kind));
+        let is_of_kind = |one: &Explanation| row.pair_kind().is_none_or(|kind| kind_of(one) == Some(kind));
         let shows = |trace: &&OpenTrace| {
             trace.symptoms.iter().any(|one| is_of_it(&one.explanation) && is_of_kind(&one.explanation))
         };

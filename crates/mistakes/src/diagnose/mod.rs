@@ -30,7 +30,7 @@ pub use fosssim_findings::explanation::{
     WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_findings::explanation::{about, fault, guess};
-pub use fosssim_student::{assignments::probe_scenes, plain::formula_in};
+pub use fosssim_student::{assignments::probe_scenes, formula_detector::find_formula};
 pub use joint_explanation::explain_together;
 pub use known::{find_known, may_change_trace, mistake_is_visible, reproduces};
 pub use naming::is_named_in;

@@ -66,5 +66,5 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
 pub(super) fn is_in_other_words(one: &Explanation, row: &Row) -> bool {
     let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == one.key);
     let About::Polynomials { subjects, .. } = &one.about else { return false };
-    is_called_so && subjects.first().is_some_and(|first| Some(first.kind()) == row.kind_of_pair())
+    is_called_so && subjects.first().is_some_and(|first| Some(first.kind()) == row.pair_kind())
 }

@@ -206,7 +206,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     let explanations = limit_explanations(hints, all.clone());
     let what_if = WhatIf {
         id: id.to_owned(),
-        sentence: student::find(id).expect("a mistake").what.to_owned(),
+        sentence: student::find(id).expect("a mistake").summary.to_owned(),
         track: evidence.reference.clone(),
         equal: true,
     };
@@ -283,7 +283,7 @@ fn what_the_hints_hide_is_not_in_the_file() {
     };
     let [none, place, what, full] = [none, place, what, full].map(|html| body(&html));
     let row = student::find(id).expect("a mistake");
-    assert!(row.what.len() > 10);
+    assert!(row.summary.len() > 10);
     for (html, level) in [(&none, "none"), (&place, "where"), (&what, "what")] {
         for hidden in [
             "id=\"reference-",
@@ -299,7 +299,7 @@ fn what_the_hints_hide_is_not_in_the_file() {
             assert!(!html.contains(hidden), "{hidden} at level {level}");
         }
         assert!(!html.contains(row.term), "{level}");
-        assert_eq!(html.contains(row.what), level == "what", "{level}");
+        assert_eq!(html.contains(row.summary), level == "what", "{level}");
         assert_eq!(html.contains("first difference: step"), level != "none", "{level}");
         assert_eq!(html.contains("id=\"submission-"), level != "none", "{level}");
         assert_eq!(html.contains("class=\"steps\""), level != "none", "{level}");
@@ -312,7 +312,7 @@ fn what_the_hints_hide_is_not_in_the_file() {
         "differs",
         "data-plot",
         "Proof",
-        row.what,
+        row.summary,
     ] {
         assert!(full.contains(shown), "{shown}");
     }
@@ -426,7 +426,7 @@ fn a_student_s_page_has_no_hidden_group() {
     };
     let page = |reader| GradePage { grade: &grade, card: &|_| card.clone(), class: None, reader }.html();
     let (staff, student) = (page(Audience::Staff), page(Audience::Student));
-    let mistake = student::find("pe-linear-one-ab").expect("a mistake").what;
+    let mistake = student::find("pe-linear-one-ab").expect("a mistake").summary;
     for hidden in ["Veiled", "Later", "secret", "Secret/", mistake, "of 37", "of 13", "run-time error", "who sees it"] {
         assert!(staff.contains(hidden), "{hidden} is not even on the page for staff");
         assert!(!student.contains(hidden), "{hidden}");

@@ -13,16 +13,16 @@ use crate::{
 
 /// A requirement of an attack. On a host that does not meet it, the attack proves nothing.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(super) struct AttackNeed {
+pub(super) struct AttackRequirement {
     pub(super) name: &'static str,
     /// The layers that stop the attack. One of them is enough.
-    walls: &'static [Layer],
+    layers: &'static [Layer],
     /// Whether the processor offers what the attack needs.
     by_processor: bool,
 }
 
-impl AttackNeed {
-    const DENIED_NEEDS: [Self; 7] = [
+impl AttackRequirement {
+    const DENIAL_REQUIREMENTS: [Self; 7] = [
         Self::new("file rules", &[Layer::FileRules]),
         // Files of the host cannot be read, or cannot be seen.
         Self::new("hidden files", &[Layer::FileRules, Layer::Namespaces]),
@@ -31,16 +31,16 @@ impl AttackNeed {
         Self::new("private processes", &[Layer::Namespaces]),
         Self::new("signal scope", &[Layer::Scopes, Layer::OwnUser]),
         Self::new("named violations", &[Layer::NamedCalls]),
-        Self { name: "x86_64", walls: &[], by_processor: cfg!(target_arch = "x86_64") },
+        Self { name: "x86_64", layers: &[], by_processor: cfg!(target_arch = "x86_64") },
     ];
 
     const fn new(name: &'static str, walls: &'static [Layer]) -> Self {
-        Self { name, walls, by_processor: false }
+        Self { name, layers: walls, by_processor: false }
     }
 
     /// Returns whether a host with these layers offers what the attack needs.
     pub(super) fn is_met(self, layers: &[LayerReport]) -> bool {
-        self.by_processor || self.walls.iter().any(|wall| is_active(layers, *wall))
+        self.by_processor || self.layers.iter().any(|wall| is_active(layers, *wall))
     }
 }
 
@@ -71,23 +71,23 @@ impl ExpectedEnd {
 pub(super) struct Attack {
     pub(super) name: String,
     pub(super) promise: String,
-    pub(super) expected: Vec<ExpectedEnd>,
+    pub(super) expected_ends: Vec<ExpectedEnd>,
     pub(super) policy: Policy,
     pub(super) wall: Option<Duration>,
-    pub(super) needs: Vec<AttackNeed>,
+    pub(super) requirements: Vec<AttackRequirement>,
     /// The trace that the attack should leave: `nothing`, `refused`, or the text of `trace.bin`.
-    pub(super) leaves: Option<String>,
+    pub(super) left_trace: Option<String>,
 }
 
 impl Attack {
     /// Returns whether the run must end because of a forbidden call.
     pub(super) fn expects_violation(&self) -> bool {
-        self.expected.iter().any(|expected| expected.kind == "violation")
+        self.expected_ends.iter().any(|expected| expected.kind == "violation")
     }
 
     /// Returns whether the run may end by itself, with an exit code.
     pub(super) fn expects_exit(&self) -> bool {
-        self.expected.iter().any(|expected| expected.kind == "exited")
+        self.expected_ends.iter().any(|expected| expected.kind == "exited")
     }
 
     /// Parses the first lines of an attack's source.
@@ -95,31 +95,31 @@ impl Attack {
         let mut attack = Self {
             name: name.into(),
             promise: String::new(),
-            expected: Vec::new(),
+            expected_ends: Vec::new(),
             policy: Policy::Submission,
             wall: None,
-            needs: Vec::new(),
-            leaves: None,
+            requirements: Vec::new(),
+            left_trace: None,
         };
         for line in source.lines().map_while(|line| line.strip_prefix("// ")) {
             let (key, value) = line.split_once(": ").ok_or_else(|| format!("no key in: {line}"))?;
             match key {
                 "promise" => attack.promise = value.into(),
-                "expect" => attack.expected = value.split(" or ").map(parse_expected).collect(),
+                "expect" => attack.expected_ends = value.split(" or ").map(parse_expected).collect(),
                 "policy" if value == "tools" => attack.policy = Policy::Tools,
                 "wall" => {
                     let milliseconds = value.parse().map_err(|_| format!("no number: {value}"))?;
                     attack.wall = Some(Duration::from_millis(milliseconds));
                 }
                 "needs" => {
-                    let need = AttackNeed::DENIED_NEEDS.into_iter().find(|need| need.name == value);
-                    attack.needs.push(need.ok_or_else(|| format!("unknown need: {value}"))?);
+                    let need = AttackRequirement::DENIAL_REQUIREMENTS.into_iter().find(|need| need.name == value);
+                    attack.requirements.push(need.ok_or_else(|| format!("unknown need: {value}"))?);
                 }
-                "leaves" => attack.leaves = Some(value.into()),
+                "leaves" => attack.left_trace = Some(value.into()),
                 _ => return Err(format!("unknown: {line}")),
             }
         }
-        if !attack.promise.ends_with('.') || attack.expected.is_empty() {
+        if !attack.promise.ends_with('.') || attack.expected_ends.is_empty() {
             return Err("it needs a promise (a sentence) and an expectation".into());
         }
         Ok(attack)
@@ -144,8 +144,8 @@ mod tests {
         let attack = Attack::parse("a", text).unwrap();
         assert_eq!(attack.policy, Policy::Tools);
         assert_eq!(attack.wall, Some(Duration::from_millis(300)));
-        assert_eq!(attack.needs, [AttackNeed::DENIED_NEEDS[0]]);
-        let matches = |ended: &RunEnd| attack.expected.iter().any(|expected| expected.matches(ended));
+        assert_eq!(attack.requirements, [AttackRequirement::DENIAL_REQUIREMENTS[0]]);
+        let matches = |ended: &RunEnd| attack.expected_ends.iter().any(|expected| expected.matches(ended));
         assert!(matches(&RunEnd::Exited(0)) && !matches(&RunEnd::Exited(66)));
         assert!(matches(&RunEnd::Violation { call: "ptrace".into() }));
         assert!(!matches(&RunEnd::Violation { call: "bpf".into() }));

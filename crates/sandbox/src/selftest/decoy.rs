@@ -24,11 +24,11 @@ pub(super) struct Decoy {
 }
 
 /// The state of the decoys: the metadata and the contents of each path.
-pub(super) struct State(BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>);
+pub(super) struct DecoyState(BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>);
 
 type DecoyFacts = [i64; 7];
 
-impl State {
+impl DecoyState {
     /// Returns the first path whose state differs; `None` if the states are equal.
     pub(super) fn difference(&self, after: &Self) -> Option<String> {
         let changed = self.0.iter().find(|(path, state)| after.0.get(*path) != Some(state)).map(|(path, _)| path);
@@ -71,7 +71,7 @@ impl Decoy {
     }
 
     /// Copies the hostile program next to the decoys.
-    pub(super) fn bring(&self, program: &Path) -> io::Result<PathBuf> {
+    pub(super) fn copy_program(&self, program: &Path) -> io::Result<PathBuf> {
         let own = self.root.join("program");
         std::fs::copy(program, &own)?;
         Ok(own)
@@ -99,12 +99,12 @@ impl Decoy {
     }
 
     /// Returns the state of all decoys, without the working folder.
-    pub(super) fn state(&self) -> io::Result<State> {
+    pub(super) fn state(&self) -> io::Result<DecoyState> {
         let mut state = BTreeMap::new();
         for folder in ["secrets", "scenes", "neighbor"] {
-            record(&self.root.join(folder), &mut state)?;
+            record_state(&self.root.join(folder), &mut state)?;
         }
-        Ok(State(state))
+        Ok(DecoyState(state))
     }
 
     /// Removes all decoys.
@@ -121,12 +121,12 @@ impl Drop for Decoy {
     }
 }
 
-fn record(path: &Path, state: &mut BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>) -> io::Result<()> {
+fn record_state(path: &Path, state: &mut BTreeMap<PathBuf, (DecoyFacts, Vec<u8>)>) -> io::Result<()> {
     let metadata = path.symlink_metadata()?;
     let mut contents = Vec::new();
     if metadata.is_dir() {
         for entry in std::fs::read_dir(path)? {
-            record(&entry?.path(), state)?;
+            record_state(&entry?.path(), state)?;
         }
     } else if metadata.is_file() {
         contents = std::fs::read(path)?;

@@ -23,16 +23,16 @@ use self::{attack::Attack, decoy::Decoy};
 use super::{
     backend::Backend,
     collect::CollectError,
-    fault::SandboxError,
     job::{Job, Limits},
     layers::{Layer, is_active},
     outcome::{RunEnd, RunOutcome},
-    running_program::LeftFolder,
+    running_program::RemainingFolder,
+    sandbox_error::SandboxError,
     supervisor::processes,
     sys,
 };
 
-static SOURCES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../tests/attacks");
+static ATTACK_SOURCES: Dir<'_> = include_dir!("$CARGO_MANIFEST_DIR/../../tests/attacks");
 
 /// The environment variable without which the hostile programs do nothing.
 const PERMIT_VARIABLE: &str = "FOSSSIM_ATTACK";
@@ -105,7 +105,7 @@ pub fn run(
     folder: &Path,
     report: impl FnMut(&Promise) + Send,
 ) -> Result<PromiseTable, SandboxError> {
-    run_some(backend, cc, folder, |_| true, report)
+    run_chosen(backend, cc, folder, |_| true, report)
 }
 
 /// Runs the self-test like [`run`], but only for the attacks that `chosen` names.
@@ -113,7 +113,7 @@ pub fn run(
 /// # Errors
 ///
 /// Fails like [`run`].
-pub fn run_some(
+pub fn run_chosen(
     backend: &Backend,
     cc: &Path,
     folder: &Path,
@@ -121,7 +121,7 @@ pub fn run_some(
     mut report: impl FnMut(&Promise) + Send,
 ) -> Result<PromiseTable, SandboxError> {
     if !is_active(backend.layers(), Layer::CallFilter) {
-        return Err(SandboxError::Missing { missing: "the attacks run only inside the sandbox".into() });
+        return Err(SandboxError::MissingLayers { missing: "the attacks run only inside the sandbox".into() });
     }
     let folder_error = |source: std::io::Error| SandboxError::Folder { folder: folder.display().to_string(), source };
     let folder = folder.canonicalize().map_err(folder_error)?;
@@ -132,7 +132,7 @@ pub fn run_some(
     }
     let mut attacks = attacks();
     attacks.retain(|attack| chosen(&attack.name));
-    let header = SOURCES.get_file("attack.h").map(|file| file.contents()).unwrap_or_default();
+    let header = ATTACK_SOURCES.get_file("attack.h").map(|file| file.contents()).unwrap_or_default();
     write_file(&sources.join("attack.h"), header).map_err(folder_error)?;
 
     let next = AtomicUsize::new(0);
@@ -142,7 +142,7 @@ pub fn run_some(
         for _ in 0..workers {
             scope.spawn(|| {
                 while let Some(attack) = attacks.get(next.fetch_add(1, Ordering::Relaxed)) {
-                    let place = Place { backend, cc, sources: &sources, programs: &programs, folder: &folder };
+                    let place = TestSetup { backend, cc, sources: &sources, programs: &programs, folder: &folder };
                     let state = place.try_attack(attack).unwrap_or_else(|why| why);
                     let promise = Promise { attack: attack.name.clone(), promise: attack.promise.clone(), state };
                     let mut done = done.lock().unwrap_or_else(std::sync::PoisonError::into_inner);
@@ -159,7 +159,8 @@ pub fn run_some(
 
 /// Returns the attacks that the binary contains, in the order of their names.
 fn attacks() -> Vec<Attack> {
-    let sources = SOURCES.files().filter(|file| file.path().extension().is_some_and(|extension| extension == "c"));
+    let sources =
+        ATTACK_SOURCES.files().filter(|file| file.path().extension().is_some_and(|extension| extension == "c"));
     let mut attacks: Vec<Attack> = sources
         .filter_map(|file| Attack::parse(file.path().file_stem()?.to_str()?, file.contents_utf8()?).ok())
         .collect();
@@ -168,7 +169,7 @@ fn attacks() -> Vec<Attack> {
 }
 
 /// The folders and the tools that a self-test uses.
-struct Place<'a> {
+struct TestSetup<'a> {
     backend: &'a Backend,
     cc: &'a Path,
     sources: &'a Path,
@@ -176,10 +177,10 @@ struct Place<'a> {
     folder: &'a Path,
 }
 
-impl Place<'_> {
+impl TestSetup<'_> {
     /// Tries one attack, and returns the state of its promise, as `Ok` or as `Err`.
     fn try_attack(&self, attack: &Attack) -> Result<PromiseState, PromiseState> {
-        if let Some(need) = attack.needs.iter().find(|need| !need.is_met(self.backend.layers())) {
+        if let Some(need) = attack.requirements.iter().find(|need| !need.is_met(self.backend.layers())) {
             return Ok(PromiseState::NotTested(format!("this machine lacks: {}", need.name)));
         }
         let built = self.build(attack).map_err(PromiseState::NotTested)?;
@@ -188,7 +189,7 @@ impl Place<'_> {
         let mut decoy = Decoy::set_up(&self.folder.join(format!("run-{}-{}", attack.name, unique_name())))
             .map_err(|e| fault(&e))?;
         // Each run gets its own copy of the program, by which processes that survive the run can be recognized.
-        let program = decoy.bring(&built).map_err(|e| fault(&e))?;
+        let program = decoy.copy_program(&built).map_err(|e| fault(&e))?;
         let before = decoy.state().map_err(|e| fault(&e))?;
         let job = Job::new(&program, &decoy.work)
             .arguments(decoy.arguments())
@@ -202,7 +203,7 @@ impl Place<'_> {
         if attack.expects_exit() && running.is_in_memory() {
             // These runs share a supervisor, so anything that a run leaves in it would affect the next run.
             let outcome = running.wait().map_err(|error| broken(error.to_string()))?;
-            if !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
+            if !attack.expected_ends.iter().any(|expected| expected.matches(&outcome.ended)) {
                 return Err(broken(format!("in a first run it {}{}", outcome.ended, last_output(&outcome))));
             }
             if decoy.contains_secret(&outcome.stdout.bytes) || decoy.contains_secret(&outcome.stderr.bytes) {
@@ -218,7 +219,7 @@ impl Place<'_> {
         // In a container, the filter of the container engine may be the first to deny a forbidden call. Such a call is
         // not reported.
         let refused = outcome.ended == DENIED_END && attack.expects_violation() && is_filtered();
-        if !refused && !attack.expected.iter().any(|expected| expected.matches(&outcome.ended)) {
+        if !refused && !attack.expected_ends.iter().any(|expected| expected.matches(&outcome.ended)) {
             return Err(broken(format!("it {}{}", outcome.ended, last_output(&outcome))));
         }
         if decoy.contains_secret(&outcome.stdout.bytes) || decoy.contains_secret(&outcome.stderr.bytes) {
@@ -238,8 +239,8 @@ impl Place<'_> {
 
     /// Returns the built attack. It is built again only if a source file or the name of the compiler has changed.
     fn build(&self, attack: &Attack) -> Result<PathBuf, String> {
-        let source = SOURCES.get_file(format!("{}.c", attack.name)).ok_or("its source is missing")?;
-        let header = SOURCES.get_file("attack.h").ok_or("attack.h is missing")?;
+        let source = ATTACK_SOURCES.get_file(format!("{}.c", attack.name)).ok_or("its source is missing")?;
+        let header = ATTACK_SOURCES.get_file("attack.h").ok_or("attack.h is missing")?;
         let mut digest = blake3::Hasher::new();
         digest
             .update(source.contents())
@@ -332,13 +333,13 @@ fn last_output(outcome: &RunOutcome) -> String {
 }
 
 /// Checks that the folder contains the trace that the attack should leave.
-fn check_left_trace(attack: &Attack, work: &LeftFolder) -> Result<(), String> {
+fn check_left_trace(attack: &Attack, work: &RemainingFolder) -> Result<(), String> {
     let collected = work.regular_file(TRACE_NAME, MAX_TRACE_BYTES).and_then(|(mut file, _)| {
         let mut bytes = Vec::new();
         let read = std::io::Read::read_to_end(&mut file, &mut bytes);
         read.map(|_| bytes).map_err(|source| CollectError::System { name: TRACE_NAME.into(), source })
     });
-    match (attack.leaves.as_deref(), collected) {
+    match (attack.left_trace.as_deref(), collected) {
         (None, _)
         | (Some("nothing"), Err(CollectError::Missing { .. }))
         | (
@@ -359,7 +360,7 @@ mod tests {
 
     #[test]
     fn every_attack_makes_a_promise_and_an_expectation() {
-        let sources = SOURCES.files().filter(|file| file.path().extension().is_some_and(|e| e == "c"));
+        let sources = ATTACK_SOURCES.files().filter(|file| file.path().extension().is_some_and(|e| e == "c"));
         let mut count = 0;
         for file in sources {
             let name = file.path().file_stem().unwrap().to_str().unwrap();

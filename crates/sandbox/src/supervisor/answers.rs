@@ -14,7 +14,7 @@ use crate::sys::{self, CallAnswer, PendingCall};
 /// the call.
 fn open_memory(announced: &PendingCall, user: Option<u32>) -> io::Result<File> {
     let path = format!("/proc/{}/mem", announced.thread);
-    sys::with_files_of(user, || File::options().read(true).write(true).open(path))
+    sys::with_file_permissions_of(user, || File::options().read(true).write(true).open(path))
 }
 
 /// Threads that wait until a futex word changes. The word might be shared with other processes. The C library waits in
@@ -41,21 +41,21 @@ struct SharedWait {
 }
 
 impl SharedWaits {
-    const SHORTEST_WAIT: Duration = Duration::from_micros(50);
+    const MIN_WAIT: Duration = Duration::from_micros(50);
     const MAX_PAUSE: Duration = Duration::from_millis(2);
 
     /// Adds a thread that waits. If it does not need to wait, returns the answer.
     pub(super) fn add(&mut self, announced: &PendingCall, user: Option<u32>, now: Instant) -> Option<CallAnswer> {
-        let Ok(memory) = open_memory(announced, user) else { return Some(CallAnswer::GoOn) };
+        let Ok(memory) = open_memory(announced, user) else { return Some(CallAnswer::Continue) };
         let [word, _, value, ..] = announced.arguments;
         let limit = match apply_limit(announced, &memory, now) {
             Ok(limit) => limit,
-            Err(errno) => return Some(CallAnswer::Refused(errno)),
+            Err(errno) => return Some(CallAnswer::Error(errno)),
         };
-        let (pause, value) = (Self::SHORTEST_WAIT, value as u32);
+        let (pause, value) = (Self::MIN_WAIT, value as u32);
         let wait = SharedWait { id: announced.id, memory, word, value, limit, pause, due: now + pause };
         match wait.answer(now) {
-            Some(CallAnswer::Done) => Some(CallAnswer::Refused(libc::EAGAIN)),
+            Some(CallAnswer::Done) => Some(CallAnswer::Error(libc::EAGAIN)),
             None => {
                 self.0.push(wait);
                 None
@@ -95,9 +95,9 @@ impl SharedWait {
     fn answer(&self, now: Instant) -> Option<CallAnswer> {
         let mut word = [0; 4];
         match self.memory.read_exact_at(&mut word, self.word) {
-            Err(_) => Some(CallAnswer::Refused(libc::EFAULT)),
+            Err(_) => Some(CallAnswer::Error(libc::EFAULT)),
             Ok(()) if u32::from_ne_bytes(word) != self.value => Some(CallAnswer::Done),
-            Ok(()) => self.limit.is_some_and(|limit| limit <= now).then_some(CallAnswer::Refused(libc::ETIMEDOUT)),
+            Ok(()) => self.limit.is_some_and(|limit| limit <= now).then_some(CallAnswer::Error(libc::ETIMEDOUT)),
         }
     }
 }
@@ -118,7 +118,7 @@ fn apply_limit(announced: &PendingCall, memory: &File, now: Instant) -> Result<O
     let operation = operation as i32;
     let passed = match operation & !libc::FUTEX_CLOCK_REALTIME {
         libc::FUTEX_WAIT => Duration::ZERO,
-        _ => sys::time_by(operation & libc::FUTEX_CLOCK_REALTIME != 0),
+        _ => sys::clock_time(operation & libc::FUTEX_CLOCK_REALTIME != 0),
     };
     // If the time is beyond the range of the clock, there is no limit.
     Ok(now.checked_add(Duration::new(seconds, nanoseconds).saturating_sub(passed)))
@@ -139,16 +139,16 @@ mod tests {
     fn a_wait_lasts_until_the_word_changes_or_its_time_is_over() {
         let (mut waits, now, word) = (SharedWaits::default(), Instant::now(), 7);
         let changed = waits.add(&announced(libc::FUTEX_WAIT, &word, 8, None), None, now);
-        assert_eq!(changed, Some(CallAnswer::Refused(libc::EAGAIN)));
+        assert_eq!(changed, Some(CallAnswer::Error(libc::EAGAIN)));
         assert_eq!(waits.add(&announced(libc::FUTEX_WAIT, &word, 7, None), None, now), None);
         assert_eq!(waits.0[0].answer(now + Duration::from_secs(3600)), None, "it has no limit");
         let later = announced(libc::FUTEX_WAIT, &word, 7, Some(&[5, 0]));
         assert_eq!(waits.add(&later, None, now), None);
         assert_eq!(waits.0[1].answer(now + Duration::from_millis(4900)), None);
-        assert_eq!(waits.0[1].answer(now + Duration::from_secs(5)), Some(CallAnswer::Refused(libc::ETIMEDOUT)));
+        assert_eq!(waits.0[1].answer(now + Duration::from_secs(5)), Some(CallAnswer::Error(libc::ETIMEDOUT)));
         let mut other = announced(libc::FUTEX_WAIT, &word, 7, None);
         other.arguments[0] = 8;
-        assert_eq!(waits.add(&other, None, now), Some(CallAnswer::Refused(libc::EFAULT)));
+        assert_eq!(waits.add(&other, None, now), Some(CallAnswer::Error(libc::EFAULT)));
     }
 
     #[test]
@@ -159,7 +159,7 @@ mod tests {
             apply_limit(&announced(operation, &word, 7, Some(&time)), &memory, now).map(|limit| limit.unwrap() - now)
         };
         for (flag, real) in [(0, false), (libc::FUTEX_CLOCK_REALTIME, true)] {
-            let soon = sys::time_by(real).as_secs() as i64 + 100;
+            let soon = sys::clock_time(real).as_secs() as i64 + 100;
             let left = limit(libc::FUTEX_WAIT_BITSET | flag, [soon, 0]).unwrap();
             assert!(left > Duration::from_secs(98) && left <= Duration::from_secs(100), "{left:?}");
             assert_eq!(limit(libc::FUTEX_WAIT_BITSET | flag, [1, 0]), Ok(Duration::ZERO), "it has passed");

@@ -5,7 +5,7 @@
 //! programs of a user share their number; `setitimer`, `alarm` and `timerfd_create` do not affect others.
 
 /// The name and the number of a system call.
-pub(super) type Call = (&'static str, i64);
+pub(super) type NamedCall = (&'static str, i64);
 
 /// Lists calls. The calls after `old` exist only on x86_64: older names, and dangerous calls.
 macro_rules! calls {
@@ -19,7 +19,7 @@ macro_rules! calls {
 
 /// Calls that every program needs for its own memory, files, time, threads and signals. For file calls, Landlock
 /// decides which files; resource limits decide how much.
-pub(super) const ALLOWED_CALLS: &[Call] = calls![
+pub(super) const ALLOWED_CALLS: &[NamedCall] = calls![
     SYS_read SYS_write SYS_readv SYS_writev SYS_pread64 SYS_pwrite64 SYS_preadv SYS_pwritev SYS_preadv2 SYS_pwritev2
     SYS_openat SYS_close SYS_close_range SYS_lseek SYS_fstat SYS_newfstatat SYS_statx SYS_faccessat SYS_faccessat2
     SYS_readlinkat SYS_getdents64 SYS_getcwd SYS_chdir SYS_fchdir SYS_mkdirat SYS_unlinkat SYS_renameat SYS_renameat2
@@ -44,11 +44,11 @@ pub(super) const ALLOWED_CALLS: &[Call] = calls![
 ];
 
 /// Older calls that start a process. Compilers need them, and submissions do not.
-pub(super) const FORK_CALLS: &[Call] = calls![; old: SYS_fork SYS_vfork];
+pub(super) const FORK_CALLS: &[NamedCall] = calls![; old: SYS_fork SYS_vfork];
 
 /// Calls that create links and special files. They are answered with `EPERM`. The folder's rules forbid most of them as
 /// well.
-pub(super) const LINK_CALLS: &[Call] = calls![
+pub(super) const LINK_CALLS: &[NamedCall] = calls![
     SYS_linkat SYS_symlinkat SYS_mknodat
     ; old:
     SYS_link SYS_symlink SYS_mknod
@@ -56,17 +56,17 @@ pub(super) const LINK_CALLS: &[Call] = calls![
 
 /// Calls that change permission bits, by name or by descriptor. Landlock does not restrict them, so a program that runs
 /// as the grader's user could change the grader's files.
-pub(super) const MODE_CALLS: &[Call] = calls![SYS_fchmodat SYS_fchmod; old: SYS_chmod];
+pub(super) const MODE_CALLS: &[NamedCall] = calls![SYS_fchmodat SYS_fchmod; old: SYS_chmod];
 
 /// Calls that change the times of files. Landlock does not restrict them either.
-pub(super) const TIME_CALLS: &[Call] = calls![SYS_utimensat];
+pub(super) const TIME_CALLS: &[NamedCall] = calls![SYS_utimensat];
 /// Older calls that change the times of files. They take a name, and never an open file.
-pub(super) const TIMES_BY_NAME: &[Call] = calls![; old: SYS_utime SYS_utimes SYS_futimesat];
+pub(super) const TIMES_BY_NAME: &[NamedCall] = calls![; old: SYS_utime SYS_utimes SYS_futimesat];
 
 /// Calls that libraries try but do not need. They are denied with `EPERM` or `EACCES`, and do not count as an attack.
 /// An example is the socket by which the C library connects to the name service. The list includes calls that count
 /// free blocks, because they reveal what others wrote.
-pub(super) const DENIED_CALLS: &[Call] = calls![
+pub(super) const DENIED_CALLS: &[NamedCall] = calls![
     SYS_socket SYS_socketpair SYS_truncate SYS_fchown SYS_fchownat SYS_setxattr SYS_lsetxattr SYS_fsetxattr
     SYS_removexattr SYS_lremovexattr SYS_fremovexattr SYS_setpriority SYS_sched_setscheduler SYS_sched_setparam SYS_sched_setattr
     SYS_setgroups SYS_setfsuid SYS_setfsgid
@@ -79,7 +79,7 @@ pub(super) const DENIED_CALLS: &[Call] = calls![
 
 /// Calls that are dangerous for the kernel. No submission makes such a call by accident, so the program is stopped, and
 /// the outcome names the call.
-pub(super) const FORBIDDEN_CALLS: &[Call] = calls![
+pub(super) const FORBIDDEN_CALLS: &[NamedCall] = calls![
     SYS_ptrace SYS_process_vm_readv SYS_process_vm_writev SYS_kcmp SYS_pidfd_getfd SYS_unshare SYS_setns SYS_mount
     SYS_umount2 SYS_pivot_root SYS_chroot SYS_open_tree SYS_move_mount SYS_fsopen SYS_fsconfig SYS_fsmount SYS_fspick
     SYS_mount_setattr SYS_bpf SYS_perf_event_open SYS_userfaultfd SYS_io_uring_setup SYS_io_uring_enter
@@ -94,15 +94,15 @@ pub(super) const FORBIDDEN_CALLS: &[Call] = calls![
 
 /// Calls that lock whole files. Because locking a file does not require the right to write it, only build tools may use
 /// them, and only in their own folder.
-pub(super) const LOCK_CALLS: &[Call] = calls![SYS_flock];
+pub(super) const LOCK_CALLS: &[NamedCall] = calls![SYS_flock];
 
 /// Calls that change the user. The kernel denies them without privileges, which no program has. `make` sets its own
 /// user again before every command.
-pub(super) const IDENTITY_CALLS: &[Call] =
+pub(super) const IDENTITY_CALLS: &[NamedCall] =
     calls![SYS_setuid SYS_setgid SYS_setreuid SYS_setregid SYS_setresuid SYS_setresgid];
 
 /// All groups. Together they contain all calls that exist.
-pub(super) const CALL_GROUPS: [&[Call]; 10] = [
+pub(super) const CALL_GROUPS: [&[NamedCall]; 10] = [
     ALLOWED_CALLS,
     FORK_CALLS,
     LINK_CALLS,
@@ -116,7 +116,7 @@ pub(super) const CALL_GROUPS: [&[Call]; 10] = [
 ];
 
 /// Returns the usual name of a call.
-pub(super) fn name(number: i64) -> String {
+pub(super) fn call_name(number: i64) -> String {
     let known = CALL_GROUPS.into_iter().flatten().find(|(_, known)| *known == number);
     known.map_or_else(|| format!("number {number}"), |(name, _)| name.trim_start_matches("SYS_").to_string())
 }
@@ -137,7 +137,7 @@ mod tests {
 
     #[test]
     fn calls_have_their_usual_names() {
-        assert_eq!(name(libc::SYS_ptrace), "ptrace");
-        assert_eq!(name(99_999), "number 99999");
+        assert_eq!(call_name(libc::SYS_ptrace), "ptrace");
+        assert_eq!(call_name(99_999), "number 99999");
     }
 }

@@ -20,7 +20,7 @@ use std::{
 use landlock::RulesetCreated;
 use seccompiler::BpfProgram;
 
-use super::{filter, filter::Purpose, memory_folder, processes, view, walls};
+use super::{file_rules, file_view, filter, filter::Purpose, memory_folder, processes};
 use crate::{
     mounts,
     sys::{self, Access, Resource},
@@ -74,17 +74,18 @@ type Strings = Vec<CString>;
 
 /// Sets up all layers. Returns the arguments and the environment of the program.
 fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
-    sys::new_session().map_err(failure_at("start a session"))?;
+    sys::start_session().map_err(failure_at("start a session"))?;
     for group in &mut plan.groups {
         group.write_all(b"0").map_err(failure_at("enter the control group"))?;
     }
-    sys::connect(&plan.input, &plan.output, &plan.error).map_err(failure_at("connect the standard streams"))?;
+    sys::connect_standard_streams(&plan.input, &plan.output, &plan.error)
+        .map_err(failure_at("connect the standard streams"))?;
     sys::default_signals(&plan.ignored);
     sys::set_file_mask(0o022);
     sys::enter_folder(plan.folder.as_fd()).map_err(failure_at("enter the working folder"))?;
-    if plan.order.walls.namespaces && !plan.order.tools {
+    if plan.order.layers.namespaces && !plan.order.allows_tools {
         // This also changes the current folder.
-        view::leave_processes(&plan.order)?;
+        file_view::leave_processes(&plan.order)?;
     }
     // If memory runs out, the kernel should kill this process first. Some containers do not allow this setting.
     let _ = std::fs::write("/proc/self/oom_score_adj", "1000");
@@ -106,20 +107,20 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     for raw in &plan.order.readable {
         if !c_string(raw).is_ok_and(|path| sys::is_accessible(&path, Access::READ_OK)) {
             let stage =
-                format!("open {} for the program (every user must be able to read it)", wire::path(raw).display());
+                format!("open {} for the program (every user must be able to read it)", wire::to_path(raw).display());
             return Err(Failure { stage, errno: libc::EACCES });
         }
     }
-    sys::no_new_privileges().map_err(failure_at("give up privileges"))?;
+    sys::forbid_new_privileges().map_err(failure_at("give up privileges"))?;
     if let Some(rules) = plan.rules.take() {
-        let rules = walls::add_own_entry(rules).map_err(failure_at("prepare Landlock"))?;
-        walls::enforce(rules).map_err(failure_at("enforce Landlock"))?;
+        let rules = file_rules::add_own_entry(rules).map_err(failure_at("prepare Landlock"))?;
+        file_rules::enforce(rules).map_err(failure_at("enforce Landlock"))?;
     }
     sys::close_on_execute().map_err(failure_at("close descriptors"))?;
     if let Some(script) = script_by_descriptor(plan) {
         sys::keep_on_execute(script.file.as_fd()).map_err(failure_at("keep the script open"))?;
     }
-    if plan.order.walls.seccomp {
+    if plan.order.layers.seccomp {
         filter_calls(plan).map_err(failure_at("install the system call filter"))?;
     }
     Ok(strings)
@@ -160,8 +161,8 @@ fn set_limits(order: &RunOrder, own_user: bool) -> io::Result<()> {
     // the supervisor counts the processes of the run itself.
     let processes = u64::from(limits.processes) + SPARE_PROCESSES;
     // The processes of a fork bomb use memory and time until the supervisor has counted them; threads use little.
-    let most_runs = if order.tools { 8 } else { 64 };
-    let processes = match own_user || order.walls.namespaces {
+    let most_runs = if order.allows_tools { 8 } else { 64 };
+    let processes = match own_user || order.layers.namespaces {
         true => processes + SPARE_FOR_OTHERS,
         false => most_runs * processes + processes::threads_of_user(sys::user_id()),
     };
@@ -173,13 +174,13 @@ pub(super) type Filters = Rc<(Purpose, Vec<BpfProgram>)>;
 
 /// Returns the purpose of the filters for a child with the process number `number`.
 pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, number: i32) -> Purpose {
-    let walls = order.walls;
+    let walls = order.layers;
     Purpose {
-        tools: order.tools,
+        tools: order.allows_tools,
         announce: walls.notify,
         // Tools send signals to their own children. Landlock's scope or a separate user distinguishes these from other
         // processes.
-        own_process: (!order.tools || !(walls.scopes || walls.own_user)).then_some(number),
+        own_process: (!order.allows_tools || !(walls.scopes || walls.own_user)).then_some(number),
         entrance,
         own_user,
     }
@@ -187,12 +188,12 @@ pub(super) fn purpose(order: &RunOrder, own_user: bool, entrance: Option<u64>, n
 
 /// Installs the filters, and sends the listener to the supervisor.
 fn filter_calls(plan: &ChildPlan) -> io::Result<()> {
-    let walls = plan.order.walls;
+    let walls = plan.order.layers;
     let entrance = plan.entrance.as_ref().map(|file| file.as_raw_fd() as u64);
     let purpose = purpose(&plan.order, plan.user.is_some(), entrance, std::process::id() as i32);
     let compiled = match plan.filters.as_ref().filter(|filters| filters.0 == purpose) {
         Some(filters) => filters.clone(),
-        None => Rc::new((purpose, filter::filters(purpose)?)),
+        None => Rc::new((purpose, filter::compile_filters(purpose)?)),
     };
     for (index, program) in compiled.1.iter().enumerate() {
         let listener = sys::install_filter(program, walls.notify && index == 0)?;
@@ -232,7 +233,7 @@ fn execute_once(plan: &ChildPlan, arguments: &[CString], environment: &[CString]
     }
     match &plan.opened {
         _ if plan.order.interpreter.is_some() => sys::execute(&path, arguments, environment),
-        Some(opened) if opened.copied => open(opened),
+        Some(opened) if opened.is_copy => open(opened),
         opened => {
             let error = sys::execute(&path, arguments, environment);
             match opened {
@@ -247,7 +248,7 @@ fn arguments(plan: &ChildPlan) -> io::Result<Strings> {
     let order = &plan.order;
     let script = script_by_descriptor(plan).map(|script| format!("/proc/self/fd/{}", script.file.as_raw_fd()).into());
     let program = script.unwrap_or_else(|| order.program.clone());
-    order.words.iter().chain([&program]).chain(&order.arguments).map(c_string).collect()
+    order.interpreter_arguments.iter().chain([&program]).chain(&order.arguments).map(c_string).collect()
 }
 
 /// Returns the open script if its interpreter must read it by a descriptor, because the run's user cannot reach the
@@ -291,7 +292,7 @@ fn c_string(raw: &RawBytes) -> io::Result<CString> {
 /// A program as an open file that every user may execute.
 pub(super) struct OpenedFile {
     file: OwnedFd,
-    copied: bool,
+    is_copy: bool,
 }
 
 impl OpenedFile {
@@ -305,7 +306,7 @@ impl OpenedFile {
             let mode = program.metadata()?.permissions().mode();
             let fits = !for_another || mode & READ_AND_EXECUTE == READ_AND_EXECUTE;
             match fits && !mounts::forbids_execution(program.as_fd()) {
-                true => Ok(Self { file: program.into(), copied: false }),
+                true => Ok(Self { file: program.into(), is_copy: false }),
                 false => Self::copy(&program, most),
             }
         };
@@ -322,11 +323,11 @@ impl OpenedFile {
         copy.set_permissions(Permissions::from_mode(0o555))?;
         // A file that is open for writing cannot be executed, so it is opened again only for reading.
         let again = File::open(format!("/proc/self/fd/{}", copy.as_raw_fd()))?;
-        Ok(Self { file: again.into(), copied: true })
+        Ok(Self { file: again.into(), is_copy: true })
     }
 
     /// Returns the file under a descriptor number that is at least `least`.
-    pub(super) fn under_number(&self, least: u32) -> io::Result<OwnedFd> {
+    pub(super) fn with_min_number(&self, least: u32) -> io::Result<OwnedFd> {
         sys::duplicate_from(self.file.as_fd(), least)
     }
 }

@@ -14,7 +14,7 @@ use seccompiler::{
     BpfProgram, SeccompAction, SeccompCmpArgLen, SeccompCmpOp, SeccompCondition, SeccompFilter, SeccompRule,
 };
 
-use super::calls::{self, Call};
+use super::calls::{self, NamedCall};
 
 /// The value that stands for "announce" while a filter is compiled, because the compiler does not know that action.
 const ANNOUNCE_PLACEHOLDER: u16 = 0x5151;
@@ -131,15 +131,15 @@ pub(super) struct Purpose {
 }
 
 /// Returns the filters in the order in which they are installed. The first one announces calls.
-pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
+pub(super) fn compile_filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
     let strictest = if purpose.announce { announce() } else { SeccompAction::KillProcess };
-    let mut filters = vec![compile(forbidden(purpose)?, strictest, SeccompAction::Allow)?];
+    let mut filters = vec![compile(forbidden_rules(purpose)?, strictest, SeccompAction::Allow)?];
     for instruction in &mut filters[0] {
         if instruction.code == RETURN_CONSTANT && instruction.k == u32::from(announce()) {
             instruction.k = ACTION_ANNOUNCE;
         }
     }
-    for (errno, rules) in denials(purpose)? {
+    for (errno, rules) in denial_rules(purpose)? {
         filters.push(compile(rules, SeccompAction::Errno(errno as u32), SeccompAction::Allow)?);
     }
     // If a call is in any group, it exists, and the earlier filters decide about it. Other calls do not exist.
@@ -150,7 +150,7 @@ pub(super) fn filters(purpose: Purpose) -> io::Result<Vec<BpfProgram>> {
 
 /// Returns the calls that are denied, by their error numbers. The number 0 means that a call succeeds without any
 /// effect.
-fn denials(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
+fn denial_rules(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     let mut refusals: BTreeMap<i32, CallRules> = BTreeMap::new();
     let mut refuse = |errno: i32, call: i64, rules: Vec<SeccompRule>| {
         refusals.entry(errno).or_default().insert(call, rules);
@@ -205,7 +205,7 @@ fn denials(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
     refuse(libc::EPERM, libc::SYS_open, vec![mask_rule(1, mask, emptied)?]);
     // If threads could stop sharing descriptors, they could hide open files from the supervisor.
     refuse(libc::EINVAL, libc::SYS_close_range, vec![all_differ(2, &[0, u64::from(libc::CLOSE_RANGE_CLOEXEC)])?]);
-    for (errno, call, rules) in on_others(purpose)? {
+    for (errno, call, rules) in denials_for_others(purpose)? {
         refuse(errno, call, rules);
     }
     Ok(refusals)
@@ -213,7 +213,7 @@ fn denials(purpose: Purpose) -> io::Result<BTreeMap<i32, CallRules>> {
 
 /// Returns the denials of calls that name another process than the caller. Each has the error number, the call, and the
 /// rules.
-fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> {
+fn denials_for_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> {
     let own = purpose.own_process.map(|pid| pid as u64);
     let mut refusals = vec![
         (libc::EPERM, libc::SYS_sched_setaffinity, vec![all_differ(0, &[0, own.unwrap_or(0)])?]),
@@ -239,8 +239,8 @@ fn on_others(purpose: Purpose) -> io::Result<Vec<(i32, i64, Vec<SeccompRule>)>> 
 type CallRules = BTreeMap<i64, Vec<SeccompRule>>;
 
 /// Returns the calls that end the program, and those about which the supervisor decides.
-fn forbidden(purpose: Purpose) -> io::Result<CallRules> {
-    let always = |group: &[Call]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<CallRules>();
+fn forbidden_rules(purpose: Purpose) -> io::Result<CallRules> {
+    let always = |group: &[NamedCall]| group.iter().map(|(_, call)| (*call, Vec::new())).collect::<CallRules>();
     let mut rules = always(calls::FORBIDDEN_CALLS);
     let mut clone = NAMESPACE_FLAGS.map(|flag| mask_rule(0, flag, flag)).into_iter().collect::<io::Result<Vec<_>>>()?;
     if !purpose.tools {
@@ -326,9 +326,14 @@ mod tests {
     #[test]
     fn the_announcing_filter_has_no_placeholder_left() {
         for tools in [false, true] {
-            let filters =
-                filters(Purpose { tools, announce: true, own_process: Some(77), entrance: None, own_user: true })
-                    .unwrap();
+            let filters = compile_filters(Purpose {
+                tools,
+                announce: true,
+                own_process: Some(77),
+                entrance: None,
+                own_user: true,
+            })
+            .unwrap();
             let returns = |k: u32| filters[0].iter().any(|i| i.code == RETURN_CONSTANT && i.k == k);
             assert!(returns(ACTION_ANNOUNCE));
             assert!(filters.iter().flatten().all(|i| i.k != u32::from(announce())));
@@ -337,7 +342,7 @@ mod tests {
 
     #[test]
     fn without_announcements_forbidden_calls_kill() {
-        let filters = filters(Purpose {
+        let filters = compile_filters(Purpose {
             tools: false,
             announce: false,
             own_process: Some(77),

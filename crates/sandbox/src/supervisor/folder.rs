@@ -37,24 +37,24 @@ pub(super) struct FolderUsage {
     /// The number of folders, if they were counted.
     pub(super) folders: u64,
     /// Whether a part could not be counted, because it is too deep, cannot be entered, or is beyond the limits.
-    pub(super) over: bool,
+    pub(super) exceeds_limit: bool,
 }
 
 impl FolderUsage {
     /// Returns the larger value of each field.
-    pub(super) fn at_least(self, other: Self) -> Self {
+    pub(super) fn field_maximum(self, other: Self) -> Self {
         Self {
             bytes: self.bytes.max(other.bytes),
             files: self.files.max(other.files),
             folders: self.folders.max(other.folders),
-            over: self.over || other.over,
+            exceeds_limit: self.exceeds_limit || other.exceeds_limit,
         }
     }
 }
 
 /// Returns the bytes and files in the file system whose root is `folder`, as the kernel counts them. This includes
 /// removed files that are still in use.
-pub(super) fn in_use(folder: BorrowedFd<'_>) -> FolderUsage {
+pub(super) fn file_system_usage(folder: BorrowedFd<'_>) -> FolderUsage {
     let (bytes, files) = mounts::file_system_usage(folder).unwrap_or_default();
     // The root folder is counted as a file, so it is subtracted.
     FolderUsage { bytes, files: files.saturating_sub(1), ..FolderUsage::default() }
@@ -69,7 +69,7 @@ pub(super) fn measure(folder: BorrowedFd<'_>, most_bytes: u64, most_files: u64) 
         contents.folders += u64::from(metadata.is_dir());
         contents.bytes <= most_bytes && contents.files <= most_files
     });
-    contents.over = !whole;
+    contents.exceeds_limit = !whole;
     contents
 }
 
@@ -90,14 +90,14 @@ pub(super) fn change_owner(folder: BorrowedFd<'_>, user: u32, group: u32) -> io:
 /// Sets the permissions of all folders so that their owner can read and remove them, at any depth. Entries deeper than
 /// [`MAX_DEPTH`] are moved up into `folder`, because the process that removes it would run out of descriptors. Returns
 /// true if no entry was that deep. This must be called only when no process of the program is alive.
-pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
+pub(crate) fn open_closed_folders(folder: BorrowedFd<'_>) -> bool {
     let mut moved: Vec<CString> = Vec::new();
-    open_level(folder, folder, 0, &mut moved);
+    open_folder_level(folder, folder, 0, &mut moved);
     let mut next = 0;
     while let Some(name) = moved.get(next) {
         next += 1;
         if let Ok(inner) = sys::open_beneath(folder, name, OFlags::RDONLY | OFlags::DIRECTORY) {
-            open_level(folder, inner.as_fd(), 1, &mut moved);
+            open_folder_level(folder, inner.as_fd(), 1, &mut moved);
         }
     }
     moved.is_empty()
@@ -105,7 +105,7 @@ pub(crate) fn open_up(folder: BorrowedFd<'_>) -> bool {
 
 /// Sets the permissions of the folders below a folder that is at `depth`. Records the new names of those that were too
 /// deep.
-fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &mut Vec<CString>) {
+fn open_folder_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &mut Vec<CString>) {
     let Ok(entries) = std::fs::read_dir(read_descriptor_path(folder)) else { return };
     for entry in entries.flatten().filter(|entry| entry.file_type().is_ok_and(|kind| kind.is_dir())) {
         let Ok(name) = CString::new(entry.file_name().as_bytes()) else { continue };
@@ -123,9 +123,9 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
         drop(opened);
         if depth < MAX_DEPTH {
             if let Ok(inner) = sys::open_beneath(folder, &name, OFlags::RDONLY | OFlags::DIRECTORY) {
-                open_level(root, inner.as_fd(), depth + 1, moved);
+                open_folder_level(root, inner.as_fd(), depth + 1, moved);
             }
-        } else if let Some(name) = free_name(root, moved.len())
+        } else if let Some(name) = find_free_name(root, moved.len())
             && std::fs::rename(entry.path(), read_descriptor_path(root).join(&name)).is_ok()
         {
             moved.extend(CString::new(name));
@@ -134,7 +134,7 @@ fn open_level(root: BorrowedFd<'_>, folder: BorrowedFd<'_>, depth: u32, moved: &
 }
 
 /// Returns a name that no entry of the folder has.
-fn free_name(folder: BorrowedFd<'_>, from: usize) -> Option<String> {
+fn find_free_name(folder: BorrowedFd<'_>, from: usize) -> Option<String> {
     const MAX_TRIES: usize = 100_000;
     let names = (from..from + MAX_TRIES).map(|number| format!(".too-deep-{number}"));
     { names }.find(|name| read_descriptor_path(folder).join(name).symlink_metadata().is_err())
@@ -188,18 +188,18 @@ mod tests {
         std::os::unix::fs::symlink("/usr", folder.path().join("link")).unwrap();
         let contents = measure(opened(&folder).as_fd(), 1 << 30, 100);
         assert_eq!(contents.files, 4, "two folders, a file, a link that is not followed");
-        assert!(!contents.over);
+        assert!(!contents.exceeds_limit);
         let contents = measure(opened(&folder).as_fd(), 1 << 30, 3);
-        assert!(contents.over && contents.files == 4);
+        assert!(contents.exceeds_limit && contents.files == 4);
     }
 
     #[test]
     fn holes_do_not_count_and_depth_has_an_end() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::File::create(folder.path().join("sparse")).unwrap().set_len(1 << 40).unwrap();
-        assert!(!measure(opened(&folder).as_fd(), 1 << 20, 100).over);
+        assert!(!measure(opened(&folder).as_fd(), 1 << 20, 100).exceeds_limit);
         std::fs::create_dir_all(folder.path().join("x/".repeat(40))).unwrap();
-        assert!(measure(opened(&folder).as_fd(), 1 << 20, 100).over);
+        assert!(measure(opened(&folder).as_fd(), 1 << 20, 100).exceeds_limit);
     }
 
     #[test]
@@ -213,14 +213,14 @@ mod tests {
             std::fs::set_permissions(closed, Permissions::from_mode(0o000)).unwrap();
             closed = closed.parent().unwrap();
         }
-        assert!(!open_up(opened(&folder).as_fd()), "it says that something lay too deep");
+        assert!(!open_closed_folders(opened(&folder).as_fd()), "it says that something lay too deep");
         let mut folders = 0;
         let whole = walk(opened(&folder).as_fd(), 0, &mut |_, metadata| {
             folders += 1;
             metadata.permissions().mode() & 0o700 == 0o700
         });
         assert!(whole && folders == 300, "{folders} folders");
-        assert!(open_up(opened(&folder).as_fd()));
+        assert!(open_closed_folders(opened(&folder).as_fd()));
         folder.close().unwrap();
     }
 }

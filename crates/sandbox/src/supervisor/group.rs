@@ -30,7 +30,7 @@ const SPARE_PROCESSES: u32 = 16;
 
 /// The hierarchy to which a control group belongs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-enum Kind {
+enum HierarchyKind {
     /// The single hierarchy of control groups in version 2.
     Unified,
     /// The hierarchy of version 1 that limits memory.
@@ -40,12 +40,12 @@ enum Kind {
 /// A control group for one run. If the host's files are visible when the value is dropped, the group is removed as soon
 /// as it has no processes.
 pub(super) struct Group {
-    parts: Vec<Part>,
+    parts: Vec<GroupPart>,
 }
 
 /// The control group in one hierarchy. Its folder is locked while it is in use.
-struct Part {
-    kind: Kind,
+struct GroupPart {
+    kind: HierarchyKind,
     path: PathBuf,
     folder: File,
     /// The names of the quantities that the kernel limits, because their controllers are available.
@@ -59,17 +59,17 @@ impl Group {
     ///
     /// Fails if the grader may create a group in no hierarchy. Also fails if it may create one only in version 2, and
     /// the kernel is older than 5.14, so that it cannot end a group.
-    pub(super) fn make(order: &RunOrder) -> io::Result<Self> {
+    pub(super) fn create(order: &RunOrder) -> io::Result<Self> {
         let mounts = std::fs::read_to_string("/proc/self/mountinfo")?;
         let groups = std::fs::read_to_string("/proc/self/cgroup")?;
         let mut problem = io::Error::other("no control groups are mounted");
-        let mut parts: Vec<Part> = Vec::new();
-        for kind in [Kind::Unified, Kind::Memory] {
+        let mut parts: Vec<GroupPart> = Vec::new();
+        for kind in [HierarchyKind::Unified, HierarchyKind::Memory] {
             if parts.iter().flat_map(|part| &part.limits).any(|held| kind.limits().iter().any(|(name, _)| name == held))
             {
                 continue;
             }
-            match Part::make(kind, &places_in(&mounts, &groups, kind)) {
+            match GroupPart::create(kind, &list_group_places(&mounts, &groups, kind)) {
                 Ok(Some(part)) => parts.push(part),
                 Ok(None) => {}
                 Err(error) => problem = error,
@@ -92,7 +92,7 @@ impl Group {
 
     /// Opens the files by which a process enters the group. The process writes a zero to each of them.
     pub(super) fn entrances(&self) -> io::Result<Vec<File>> {
-        self.parts.iter().map(Part::entrance).collect()
+        self.parts.iter().map(GroupPart::entrance).collect()
     }
 
     /// Returns whether all processes of the group can be ended by a single command.
@@ -108,18 +108,20 @@ impl Group {
     /// Returns whether the kernel ended a process because the group had no memory left.
     pub(super) fn was_out_of_memory(&self) -> bool {
         self.parts.iter().any(|part| {
-            let file = if part.kind == Kind::Memory { c"memory.oom_control" } else { c"memory.events" };
-            part.number(file, "oom_kill").is_some_and(|count| count > 0)
+            let file = if part.kind == HierarchyKind::Memory { c"memory.oom_control" } else { c"memory.events" };
+            part.read_number(file, "oom_kill").is_some_and(|count| count > 0)
         })
     }
 
     /// Returns the processor time of all processes that are or were in the group.
     pub(super) fn cpu(&self) -> Duration {
-        Duration::from_micros(self.unified_part().and_then(|part| part.number(c"cpu.stat", "usage_usec")).unwrap_or(0))
+        Duration::from_micros(
+            self.unified_part().and_then(|part| part.read_number(c"cpu.stat", "usage_usec")).unwrap_or(0),
+        )
     }
 
-    fn unified_part(&self) -> Option<&Part> {
-        self.parts.iter().find(|part| part.kind == Kind::Unified)
+    fn unified_part(&self) -> Option<&GroupPart> {
+        self.parts.iter().find(|part| part.kind == HierarchyKind::Unified)
     }
 
     fn set_limits(&self, order: &RunOrder) -> io::Result<()> {
@@ -130,13 +132,13 @@ impl Group {
         let processes = limits.processes.saturating_add(SPARE_PROCESSES);
         for part in &self.parts {
             let values: &[(&CStr, String)] = match part.kind {
-                Kind::Unified => &[
+                HierarchyKind::Unified => &[
                     (c"memory.max", memory.to_string()),
                     (c"memory.swap.max", "0".into()),
                     (c"memory.oom.group", "1".into()),
                     (c"pids.max", processes.to_string()),
                 ],
-                Kind::Memory => &[
+                HierarchyKind::Memory => &[
                     (c"memory.limit_in_bytes", memory.to_string()),
                     (c"memory.memsw.limit_in_bytes", memory.to_string()),
                 ],
@@ -155,11 +157,11 @@ impl Group {
 }
 
 /// A quantity that the kernel can limit for a group, and the file in which the limit is set.
-type HeldLimit = (&'static str, &'static CStr);
+type GroupLimit = (&'static str, &'static CStr);
 
-impl Kind {
+impl HierarchyKind {
     /// Returns the limits that this version of control groups offers.
-    fn limits(self) -> &'static [HeldLimit] {
+    fn limits(self) -> &'static [GroupLimit] {
         match self {
             Self::Unified => &[("memory", c"memory.max"), ("threads and processes", c"pids.max")],
             Self::Memory => &[("memory", c"memory.limit_in_bytes")],
@@ -167,17 +169,17 @@ impl Kind {
     }
 }
 
-impl Part {
+impl GroupPart {
     /// Creates a group in the first of the places in which all limits work. If there is no such place, in the first one
     /// in which a group can be created.
-    fn make(kind: Kind, places: &[PathBuf]) -> io::Result<Option<Self>> {
+    fn create(kind: HierarchyKind, places: &[PathBuf]) -> io::Result<Option<Self>> {
         let (mut weaker, mut problem) = (None, None);
         for place in places {
-            sweep(place);
-            match Self::make_in(kind, place) {
+            remove_abandoned_groups(place);
+            match Self::create_in(kind, place) {
                 Ok(part) if part.limits.len() == kind.limits().len() => return Ok(Some(part)),
                 // A group of version 1 without the limit is useless.
-                Ok(part) if weaker.is_none() && kind == Kind::Unified => weaker = Some(part),
+                Ok(part) if weaker.is_none() && kind == HierarchyKind::Unified => weaker = Some(part),
                 Ok(_) => {}
                 Err(error) => problem = Some(error),
             }
@@ -188,7 +190,7 @@ impl Part {
         }
     }
 
-    fn make_in(kind: Kind, place: &Path) -> io::Result<Self> {
+    fn create_in(kind: HierarchyKind, place: &Path) -> io::Result<Self> {
         const MAX_TRIES: u32 = 10;
         let mut tries = 0;
         loop {
@@ -202,20 +204,20 @@ impl Part {
         }
     }
 
-    fn try_in(kind: Kind, place: &Path) -> io::Result<Self> {
+    fn try_in(kind: HierarchyKind, place: &Path) -> io::Result<Self> {
         let (path, folder) = claim(place)?;
         let mut part = Self { kind, path, folder, limits: Vec::new() };
         // A group is useful only if it can be entered and, in version 2, can be ended.
-        if kind == Kind::Unified {
+        if kind == HierarchyKind::Unified {
             part.open(c"cgroup.kill", OFlags::WRONLY)?;
         }
         part.entrance()?;
-        part.look_for_limits();
+        part.find_limits();
         Ok(part)
     }
 
-    fn look_for_limits(&mut self) {
-        let held = |(name, file): &HeldLimit| self.open(file, OFlags::WRONLY).is_ok().then_some(*name);
+    fn find_limits(&mut self) {
+        let held = |(name, file): &GroupLimit| self.open(file, OFlags::WRONLY).is_ok().then_some(*name);
         self.limits = self.kind.limits().iter().filter_map(held).collect();
     }
 
@@ -227,14 +229,14 @@ impl Part {
         sys::open_beneath(self.folder.as_fd(), name, flags).map(File::from)
     }
 
-    fn number(&self, file: &CStr, key: &str) -> Option<u64> {
+    fn read_number(&self, file: &CStr, key: &str) -> Option<u64> {
         let mut text = String::new();
         self.open(file, OFlags::RDONLY).ok()?.read_to_string(&mut text).ok()?;
-        value_of(&text, key)
+        find_value(&text, key)
     }
 }
 
-impl Drop for Part {
+impl Drop for GroupPart {
     fn drop(&mut self) {
         const MAX_ATTEMPTS: u32 = 200;
         for _ in 0..MAX_ATTEMPTS {
@@ -251,7 +253,7 @@ impl Drop for Part {
 }
 
 /// Returns the number after `key` in a file that consists of lines of the form `key number`.
-fn value_of(text: &str, key: &str) -> Option<u64> {
+fn find_value(text: &str, key: &str) -> Option<u64> {
     text.lines().find_map(|line| line.strip_prefix(key)?.strip_prefix(' ')?.trim().parse().ok())
 }
 
@@ -273,7 +275,7 @@ fn claim(place: &Path) -> io::Result<(PathBuf, File)> {
 }
 
 /// Removes empty groups of killed supervisors. Each is locked while it is removed.
-fn sweep(place: &Path) {
+fn remove_abandoned_groups(place: &Path) {
     for entry in std::fs::read_dir(place).into_iter().flatten().flatten() {
         let ours = entry.file_name().to_str().is_some_and(|name| name.starts_with(GROUP_PREFIX));
         let Some(folder) = ours.then(|| File::open(entry.path()).ok()).flatten() else { continue };
@@ -288,16 +290,19 @@ fn sweep(place: &Path) {
 pub(crate) fn memory_groups() -> Vec<PathBuf> {
     let read = |path| std::fs::read_to_string(path).unwrap_or_default();
     let (mounts, groups) = (read("/proc/self/mountinfo"), read("/proc/self/cgroup"));
-    [Kind::Unified, Kind::Memory].into_iter().flat_map(|kind| places_in(&mounts, &groups, kind)).collect()
+    [HierarchyKind::Unified, HierarchyKind::Memory]
+        .into_iter()
+        .flat_map(|kind| list_group_places(&mounts, &groups, kind))
+        .collect()
 }
 
 /// Returns the places in which a new group can be created: in the group of this process, and then in its parents, up to
 /// the mounted root.
-fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
+fn list_group_places(mounts: &str, groups: &str, kind: HierarchyKind) -> Vec<PathBuf> {
     let of_memory = |list: &str| list.split(',').any(|word| word == "memory");
     let own = groups.lines().find_map(|line| match kind {
-        Kind::Unified => line.strip_prefix("0::"),
-        Kind::Memory => {
+        HierarchyKind::Unified => line.strip_prefix("0::"),
+        HierarchyKind::Memory => {
             line.split_once(':')?.1.split_once(':').filter(|(list, _)| of_memory(list)).map(|(_, path)| path)
         }
     });
@@ -306,8 +311,8 @@ fn places_in(mounts: &str, groups: &str, kind: Kind) -> Vec<PathBuf> {
         let (before, after) = line.split_once(" - ")?;
         let mut fields = before.split(' ').skip(3);
         let fits = match kind {
-            Kind::Unified => after.starts_with("cgroup2 "),
-            Kind::Memory => after.starts_with("cgroup ") && after.rsplit(' ').next().is_some_and(of_memory),
+            HierarchyKind::Unified => after.starts_with("cgroup2 "),
+            HierarchyKind::Memory => after.starts_with("cgroup ") && after.rsplit(' ').next().is_some_and(of_memory),
         };
         fits.then_some((fields.next()?, fields.next()?))
     });
@@ -327,7 +332,7 @@ mod tests {
         let mounts =
             "24 1 0:22 / /proc rw - proc proc rw\n31 23 0:27 / /sys/fs/cgroup rw,nosuid - cgroup2 cgroup2 rw\n";
         let own = "12:pids:/old\n0::/user.slice/app.scope\n";
-        let places_in = |mounts, groups| places_in(mounts, groups, Kind::Unified);
+        let places_in = |mounts, groups| list_group_places(mounts, groups, HierarchyKind::Unified);
         let places = places_in(mounts, own);
         let expected = ["/sys/fs/cgroup/user.slice/app.scope", "/sys/fs/cgroup/user.slice", "/sys/fs/cgroup"];
         assert_eq!(places, expected.map(PathBuf::from));
@@ -346,16 +351,19 @@ mod tests {
                       34 31 0:30 / /sys/fs/cgroup/unified rw - cgroup2 cgroup2 rw\n";
         let groups = "5:memory:/a/b\n4:cpu,cpuacct:/c\n3:pids:/p\n0::/u\n";
         let memory = ["/sys/fs/cgroup/memory/a/b", "/sys/fs/cgroup/memory/a", "/sys/fs/cgroup/memory"];
-        assert_eq!(places_in(mounts, groups, Kind::Memory), memory.map(PathBuf::from));
-        assert!(places_in(&mounts.replace("memory", "pids"), groups, Kind::Memory).is_empty(), "not mounted");
-        assert_eq!(places_in(mounts, groups, Kind::Unified)[0], Path::new("/sys/fs/cgroup/unified/u"));
-        assert!(places_in(mounts, "0::/u\n", Kind::Memory).is_empty());
+        assert_eq!(list_group_places(mounts, groups, HierarchyKind::Memory), memory.map(PathBuf::from));
+        assert!(
+            list_group_places(&mounts.replace("memory", "pids"), groups, HierarchyKind::Memory).is_empty(),
+            "not mounted"
+        );
+        assert_eq!(list_group_places(mounts, groups, HierarchyKind::Unified)[0], Path::new("/sys/fs/cgroup/unified/u"));
+        assert!(list_group_places(mounts, "0::/u\n", HierarchyKind::Memory).is_empty());
     }
 
     #[test]
     fn groups_that_nobody_holds_are_swept_away() {
         let place = tempfile::tempdir().unwrap();
-        let held = Part::try_in(Kind::Memory, place.path());
+        let held = GroupPart::try_in(HierarchyKind::Memory, place.path());
         assert!(held.is_err(), "an ordinary folder is no group");
         let at = |name: &str| place.path().join(name);
         for name in ["fosssim-oracle-1-1", "fosssim-oracle-2-2", "other"] {
@@ -363,7 +371,7 @@ mod tests {
         }
         let living = File::open(at("fosssim-oracle-2-2")).unwrap();
         living.try_lock().unwrap();
-        sweep(place.path());
+        remove_abandoned_groups(place.path());
         let mut names: Vec<_> = std::fs::read_dir(place.path()).unwrap().map(|e| e.unwrap().file_name()).collect();
         names.sort();
         assert_eq!(names, ["fosssim-oracle-2-2", "other"]);
@@ -379,7 +387,7 @@ mod tests {
             for _ in 0..3 {
                 scope.spawn(|| {
                     while !done.load(std::sync::atomic::Ordering::Relaxed) {
-                        sweep(place.path());
+                        remove_abandoned_groups(place.path());
                     }
                 });
             }
@@ -402,9 +410,10 @@ mod tests {
         let (unified, memory) = (tempfile::tempdir().unwrap(), tempfile::tempdir().unwrap());
         let part = |kind, folder: &tempfile::TempDir| {
             let path = folder.path().to_path_buf();
-            Part { kind, folder: File::open(&path).unwrap(), path, limits: Vec::new() }
+            GroupPart { kind, folder: File::open(&path).unwrap(), path, limits: Vec::new() }
         };
-        let mut group = Group { parts: vec![part(Kind::Unified, &unified), part(Kind::Memory, &memory)] };
+        let mut group =
+            Group { parts: vec![part(HierarchyKind::Unified, &unified), part(HierarchyKind::Memory, &memory)] };
         let limits = crate::Limits { memory: 1 << 20, folder_bytes: 1 << 10, processes: 4, ..crate::Limits::default() };
         let order = RunOrder { limits, ..RunOrder::default() };
         group.set_limits(&order).unwrap();
@@ -414,7 +423,7 @@ mod tests {
             std::fs::write(memory.path().join(name), "").unwrap();
         }
         group.set_limits(&order).unwrap();
-        group.parts.iter_mut().for_each(Part::look_for_limits);
+        group.parts.iter_mut().for_each(GroupPart::find_limits);
         assert_eq!(group.controls(), ["memory", "threads and processes"]);
         let read = |path: PathBuf| std::fs::read_to_string(path).unwrap();
         let limit = ((65 << 20) + (1 << 10)).to_string();
@@ -433,8 +442,8 @@ mod tests {
     #[test]
     fn the_kernels_counts_are_read_by_their_whole_name() {
         let text = "oom 3\noom_kill 2\noom_group_kill 1\n";
-        assert_eq!(value_of(text, "oom_kill"), Some(2));
-        assert_eq!(value_of(text, "oom"), Some(3));
-        assert_eq!(value_of(text, "max"), None);
+        assert_eq!(find_value(text, "oom_kill"), Some(2));
+        assert_eq!(find_value(text, "oom"), Some(3));
+        assert_eq!(find_value(text, "max"), None);
     }
 }

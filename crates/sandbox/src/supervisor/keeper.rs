@@ -23,10 +23,9 @@ use std::{
 };
 
 use super::{
-    namespaces,
+    file_view, namespaces,
     prepared_run::{HeldResources, PreparedRun},
     run::{self, Run},
-    view,
 };
 use crate::{
     mounts,
@@ -44,14 +43,14 @@ pub(super) fn main() -> ExitCode {
     let Ok(socket) = io::stdin().as_fd().try_clone_to_owned().map(UnixStream::from) else { return ExitCode::from(2) };
     let Ok(Some(mut first)) = RunRequest::next(&socket) else { return ExitCode::from(2) };
     ExitCode::from(match fork_keeper(&first.order) {
-        Ok(Side::Guardian { keeper, held }) => {
+        Ok(ForkSide::Guardian { keeper, held }) => {
             // The pipe from which the grader reads must be closed at the end of the run.
             drop((first, socket));
             let code = sys::wait_for(keeper).unwrap_or(1);
             drop(held);
             code
         }
-        Ok(Side::Keeper(keeper)) => keeper.serve(first, &socket),
+        Ok(ForkSide::Keeper(keeper)) => keeper.serve(first, &socket),
         Err(failure) => {
             // This fails if the grader has ended, which does not matter.
             let _ = wire::send(&mut first.answers, &Event::Failed(failure));
@@ -88,7 +87,7 @@ impl RunRequest {
     }
 }
 
-enum Side {
+enum ForkSide {
     /// The process outside of the namespaces, which only waits for the keeper.
     Guardian {
         keeper: i32,
@@ -98,22 +97,22 @@ enum Side {
 }
 
 /// Takes the exclusive resources of the runs, and prepares their namespaces in a child process.
-fn fork_keeper(order: &RunOrder) -> Result<Side, Failure> {
-    sys::new_session().map_err(failure_at("start the supervisor's session"))?;
+fn fork_keeper(order: &RunOrder) -> Result<ForkSide, Failure> {
+    sys::start_session().map_err(failure_at("start the supervisor's session"))?;
     let alone = sys::single_thread().map_err(failure_at("fork"))?;
     let held = HeldResources::take(order)?;
     if let Fork::Parent(keeper) = namespaces::fork_into_namespaces()? {
-        return Ok(Side::Guardian { keeper, held });
+        return Ok(ForkSide::Guardian { keeper, held });
     }
     mounts::unshare(libc::CLONE_NEWNS | libc::CLONE_NEWNET).map_err(failure_at("make namespaces"))?;
-    view::prepare(order)?;
+    file_view::prepare(order)?;
     let prepared = PreparedRun::for_order(order, PROGRAM_PID, alone)?;
-    Ok(Side::Keeper(Keeper { held: Some(held), prepared }))
+    Ok(ForkSide::Keeper(Keeper { resources: Some(held), prepared }))
 }
 
 struct Keeper {
     /// The exclusive resources. Each run uses a copy of their descriptors.
-    held: Option<HeldResources>,
+    resources: Option<HeldResources>,
     prepared: PreparedRun,
 }
 
@@ -135,7 +134,7 @@ impl Keeper {
     }
 
     fn run(&mut self, mut request: RunRequest) -> u8 {
-        let folder = wire::path(&request.order.folder);
+        let folder = wire::to_path(&request.order.folder);
         let namespaces = libc::CLONE_NEWPID | libc::CLONE_NEWNS | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
         // The mount point for the folder exists only during the run.
         let forked = std::fs::create_dir_all(&folder).and_then(|()| self.prepared.fork_into(namespaces));
@@ -155,10 +154,10 @@ impl Keeper {
     /// Serves one run, and returns the exit code of its supervisor.
     fn supervise(&mut self, request: RunRequest) -> u8 {
         let RunRequest { order, control, mut answers, folder, files } = request;
-        let Some(held) = self.held.take() else { return 1 };
+        let Some(held) = self.resources.take() else { return 1 };
         let bound = sys::die_with_parent().map_err(failure_at("bind the supervisor's life to its keeper's"));
         let finished = bound
-            .and_then(|()| view::complete(&order, folder.as_fd(), &files))
+            .and_then(|()| file_view::complete_view(&order, folder.as_fd(), &files))
             .and_then(|()| Run::start(order, control, held, &self.prepared))
             .and_then(|run| run.finish(&mut answers));
         run::report_end(finished, &mut answers)

@@ -22,7 +22,7 @@ const SPARE_FILES: u64 = 64;
 const BYTES_PER_COPY: usize = 1 << 16;
 
 /// Returns the mount options for the folder of an order.
-pub(super) fn options(order: &RunOrder) -> String {
+pub(super) fn mount_options(order: &RunOrder) -> String {
     let bytes = order.folder_bytes().saturating_add(SPARE_BYTES);
     let files = order.limits.folder_files.saturating_add(SPARE_FILES);
     format!("mode=700,size={bytes},nr_inodes={files}")
@@ -52,9 +52,9 @@ pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
 /// # Errors
 ///
 /// Fails if a name leads out of the folder, or if writing fails.
-pub(super) fn add(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()> {
+pub(super) fn add_files(folder: &Path, files: &[(RawBytes, Vec<u8>)]) -> io::Result<()> {
     for (name, content) in files {
-        let plain = wire::plain_name(name).ok_or(io::ErrorKind::InvalidInput)?;
+        let plain = wire::entry_name(name).ok_or(io::ErrorKind::InvalidInput)?;
         std::fs::write(folder.join(plain), content)?;
     }
     Ok(())
@@ -100,7 +100,7 @@ mod tests {
     #[test]
     fn files_are_added_under_plain_names_only() {
         let folder = tempfile::tempdir().unwrap();
-        let add = |name: &[u8]| add(folder.path(), &[(name.to_vec(), b"text".to_vec())]);
+        let add = |name: &[u8]| add_files(folder.path(), &[(name.to_vec(), b"text".to_vec())]);
         add(b"scene.xml").unwrap();
         assert_eq!(std::fs::read(folder.path().join("scene.xml")).unwrap(), b"text");
         for name in [&b""[..], b".", b"..", b"../other", b"/other", b"a\0b"] {

@@ -6,10 +6,12 @@
 mod answers;
 mod calls;
 mod child;
+mod file_rules;
+mod file_view;
 mod filter;
 mod folder;
 mod group;
-mod holdings;
+mod hidden_usage;
 mod keeper;
 mod locks;
 mod memory_folder;
@@ -20,14 +22,12 @@ mod prepared_run;
 mod probe;
 pub(super) mod processes;
 mod run;
-mod slot;
 mod streams;
-mod view;
-mod walls;
+mod user_slot;
 
 use std::{ffi::OsString, process::ExitCode};
 
-pub(super) use self::{folder::open_up, group::memory_groups};
+pub(super) use self::{folder::open_closed_folders, group::memory_groups};
 use super::wire::SUPERVISOR_ARGUMENT;
 
 /// The mode in which the supervisor serves one run.

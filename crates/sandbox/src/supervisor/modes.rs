@@ -35,13 +35,13 @@ pub(super) fn change_mode(announced: &PendingCall, folder: BorrowedFd<'_>, root:
     let [first, second, third, ..] = announced.arguments;
     let thread = announced.thread;
     let (file, mode) = match announced.call {
-        libc::SYS_fchmod => (reopen_held(thread, first, folder, root)?, second),
+        libc::SYS_fchmod => (reopen_descriptor(thread, first, folder, root)?, second),
         libc::SYS_fchmodat => {
-            let start = if first as i32 == libc::AT_FDCWD { Start::Current } else { Start::Held(first) };
+            let start = if first as i32 == libc::AT_FDCWD { StartFolder::Current } else { StartFolder::Held(first) };
             (change_named(thread, &start, second, folder, root)?, third)
         }
         // The only other call is `chmod`.
-        _ => (change_named(thread, &Start::Current, first, folder, root)?, second),
+        _ => (change_named(thread, &StartFolder::Current, first, folder, root)?, second),
     };
     // The current name of the open file is checked, and then the mode of this open file is changed.
     let entry = format!("/proc/self/fd/{}", file.as_raw_fd());
@@ -54,23 +54,29 @@ pub(super) fn change_mode(announced: &PendingCall, folder: BorrowedFd<'_>, root:
 }
 
 /// The folder at which a relative path starts.
-enum Start {
+enum StartFolder {
     Current,
     Held(u64),
 }
 
 /// Returns the file that the thread has open under this number. It is opened again by its current name.
-fn reopen_held(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
+fn reopen_descriptor(thread: u32, number: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
     let target = std::fs::read_link(format!("/proc/{thread}/fd/{}", number as i32)).map_err(|_| libc::EBADF)?;
     open_beneath(&target, folder, root).map_err(|_| libc::EPERM)
 }
 
 /// Returns the file whose name is at `address` in the thread's memory. Links are not followed.
-fn change_named(thread: u32, start: &Start, address: u64, folder: BorrowedFd<'_>, root: &Path) -> Result<OwnedFd, i32> {
-    let path = text_at(thread, address).ok_or(libc::EFAULT)?;
+fn change_named(
+    thread: u32,
+    start: &StartFolder,
+    address: u64,
+    folder: BorrowedFd<'_>,
+    root: &Path,
+) -> Result<OwnedFd, i32> {
+    let path = read_text(thread, address).ok_or(libc::EFAULT)?;
     let from = match start {
-        Start::Current => format!("/proc/{thread}/cwd"),
-        Start::Held(number) => format!("/proc/{thread}/fd/{}", *number as i32),
+        StartFolder::Current => format!("/proc/{thread}/cwd"),
+        StartFolder::Held(number) => format!("/proc/{thread}/fd/{}", *number as i32),
     };
     let from = std::fs::read_link(from).map_err(|_| libc::EBADF)?;
     open_beneath(&from.join(path), folder, root).map_err(|error| match error.raw_os_error() {
@@ -87,7 +93,7 @@ fn open_beneath(path: &Path, folder: BorrowedFd<'_>, root: &Path) -> io::Result<
 }
 
 /// Returns the zero-terminated text at `address` in the memory of the thread.
-fn text_at(thread: u32, address: u64) -> Option<PathBuf> {
+fn read_text(thread: u32, address: u64) -> Option<PathBuf> {
     let mut memory = File::open(format!("/proc/{thread}/mem")).ok()?;
     memory.seek(SeekFrom::Start(address)).ok()?;
     let mut text = Vec::new();

@@ -8,7 +8,7 @@
 //! A supervisor that serves many runs ([`keeper`](super::keeper)) moves into namespaces once. For each run it creates
 //! new ones inside, for processes, mounts and messages.
 
-use super::view;
+use super::file_view;
 use crate::{
     mounts,
     sys::{self, Fork},
@@ -16,7 +16,7 @@ use crate::{
 };
 
 /// The process in which [`enter`] returns: inside or outside of the namespaces.
-pub(super) enum Side {
+pub(super) enum NamespaceSide {
     /// The process inside the namespaces. It continues with the run.
     Inside,
     /// The process outside. The process inside has ended with this exit code.
@@ -28,14 +28,14 @@ pub(super) enum Side {
 /// # Errors
 ///
 /// Fails with the name of the step that failed. The process has then moved only partly, and must end.
-pub(super) fn enter(order: &RunOrder) -> Result<Side, Failure> {
+pub(super) fn enter(order: &RunOrder) -> Result<NamespaceSide, Failure> {
     match fork_into_namespaces()? {
-        Fork::Parent(inside) => Ok(Side::Outside(sys::wait_for(inside).map_err(failure_at("wait"))?)),
+        Fork::Parent(inside) => Ok(NamespaceSide::Outside(sys::wait_for(inside).map_err(failure_at("wait"))?)),
         Fork::Child => {
             let rest = libc::CLONE_NEWNS | libc::CLONE_NEWNET | libc::CLONE_NEWIPC | libc::CLONE_NEWUTS;
             mounts::unshare(rest).map_err(failure_at("make namespaces"))?;
-            view::build(order)?;
-            Ok(Side::Inside)
+            file_view::build(order)?;
+            Ok(NamespaceSide::Inside)
         }
     }
 }

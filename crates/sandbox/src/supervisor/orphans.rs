@@ -3,8 +3,8 @@
 use std::time::Duration;
 
 use super::{
-    processes::{find_by_user, find_of_session, stop_then_kill},
-    slot,
+    processes::{find_by_session, find_by_user, stop_then_kill},
+    user_slot,
 };
 
 /// Ends the processes that a lost supervisor may have left behind. These are the processes in its child's session, and
@@ -13,11 +13,11 @@ use super::{
 pub(crate) fn end_orphans(session: Option<i32>, user: Option<u32>) {
     const MAX_ATTEMPTS: u32 = 1000;
     // The lock on the user ended with the supervisor, so another run may already have this user.
-    let slot = user.and_then(slot::retake);
+    let slot = user.and_then(user_slot::retake_slot);
     let user = slot.as_ref().map(|slot| slot.user);
     for _ in 0..MAX_ATTEMPTS {
         let victims = stop_then_kill(|| {
-            let mut victims = session.map(find_of_session).unwrap_or_default();
+            let mut victims = session.map(find_by_session).unwrap_or_default();
             victims.extend(user.into_iter().flat_map(find_by_user));
             victims
         });

@@ -4,7 +4,7 @@ use std::{io, os::fd::BorrowedFd, rc::Rc};
 
 use landlock::RulesetCreated;
 
-use super::{child, filter, group::Group, slot, walls};
+use super::{child, file_rules, filter, group::Group, user_slot};
 use crate::{
     mounts,
     sys::{self, Fork, SingleThread},
@@ -14,7 +14,7 @@ use crate::{
 /// The exclusive resources of a run on this machine. They are held until the value is dropped.
 pub(super) struct HeldResources {
     /// The run's own user, if it has one.
-    pub(super) slot: Option<slot::Slot>,
+    pub(super) slot: Option<user_slot::UserSlot>,
     /// The run's control group, if it has one.
     pub(super) group: Option<Group>,
 }
@@ -23,8 +23,8 @@ impl HeldResources {
     /// Takes the exclusive resources that the order requires.
     pub(super) fn take(order: &RunOrder) -> Result<Self, Failure> {
         let taken = |error: io::Error| Failure::new(format!("take a separate user ({error})"), &error);
-        let slot = order.walls.own_user.then(slot::take).transpose().map_err(taken)?;
-        let group = order.walls.group.then(|| Group::make(order)).transpose();
+        let slot = order.layers.own_user.then(user_slot::take_slot).transpose().map_err(taken)?;
+        let group = order.layers.group.then(|| Group::create(order)).transpose();
         Ok(Self { slot, group: group.map_err(failure_at("make a control group"))? })
     }
 }
@@ -32,47 +32,47 @@ impl HeldResources {
 /// Preparations that do not depend on the program. All runs that differ only in the scene and the folder share them.
 #[derive(Default)]
 pub(super) struct PreparedRun {
-    places: Option<walls::Places>,
+    places: Option<file_rules::AllowedPlaces>,
     pub(super) filters: Option<child::Filters>,
-    ignored: Option<Rc<[i32]>>,
+    ignored_signals: Option<Rc<[i32]>>,
     /// The proof that the supervisor has only one thread.
-    alone: Option<SingleThread>,
+    single_thread: Option<SingleThread>,
 }
 
 impl PreparedRun {
     /// Makes the preparations for orders like `order`. Their programs have the process number `number`. The process
     /// must have only one thread.
     pub(super) fn for_order(order: &RunOrder, number: i32, alone: SingleThread) -> Result<Self, Failure> {
-        let open = || walls::Places::for_order(order).with_high_numbers();
-        let purpose = child::purpose(order, order.walls.own_user, None, number);
-        let filters = filter::filters(purpose).map_err(failure_at("compile the system call filter"))?;
-        let places = order.walls.landlock.then(open).flatten();
+        let open = || file_rules::AllowedPlaces::for_order(order).with_high_numbers();
+        let purpose = child::purpose(order, order.layers.own_user, None, number);
+        let filters = filter::compile_filters(purpose).map_err(failure_at("compile the system call filter"))?;
+        let places = order.layers.landlock.then(open).flatten();
         let filters = Some(child::Filters::new((purpose, filters)));
-        Ok(Self { places, filters, ignored: Some(sys::ignored_signals().into()), alone: Some(alone) })
+        Ok(Self { places, filters, ignored_signals: Some(sys::ignored_signals().into()), single_thread: Some(alone) })
     }
 
     /// Returns the signals that the supervisor ignores.
     pub(super) fn ignored_signals(&self) -> Rc<[i32]> {
-        self.ignored.clone().unwrap_or_else(|| sys::ignored_signals().into())
+        self.ignored_signals.clone().unwrap_or_else(|| sys::ignored_signals().into())
     }
 
     /// Forks into new namespaces, given by the flags.
     pub(super) fn fork_into(&self, namespaces: i32) -> io::Result<Fork> {
-        let alone = self.alone.as_ref().ok_or_else(|| io::Error::other("nothing is prepared"))?;
+        let alone = self.single_thread.as_ref().ok_or_else(|| io::Error::other("nothing is prepared"))?;
         mounts::fork_into(alone, namespaces)
     }
 
     /// Forks into the same namespaces.
     pub(super) fn fork(&self) -> io::Result<Fork> {
-        self.alone.as_ref().map_or_else(sys::fork, sys::fork_alone)
+        self.single_thread.as_ref().map_or_else(sys::fork, sys::fork_single_threaded)
     }
 
     /// Returns the file rules of an order, if it has file rules.
-    pub(super) fn rules(&self, order: &RunOrder, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
+    pub(super) fn file_rules(&self, order: &RunOrder, folder: BorrowedFd<'_>) -> io::Result<Option<RulesetCreated>> {
         match &self.places {
-            _ if !order.walls.landlock => Ok(None),
-            Some(places) => walls::build_ruleset(order, places, folder).map(Some),
-            None => walls::build_ruleset(order, &walls::Places::for_order(order), folder).map(Some),
+            _ if !order.layers.landlock => Ok(None),
+            Some(places) => file_rules::build_ruleset(order, places, folder).map(Some),
+            None => file_rules::build_ruleset(order, &file_rules::AllowedPlaces::for_order(order), folder).map(Some),
         }
     }
 }

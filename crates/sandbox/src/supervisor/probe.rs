@@ -13,10 +13,10 @@ use std::{
 };
 
 use super::{
-    filter,
+    file_rules, filter,
     group::Group,
-    namespaces::{self, Side},
-    slot, walls,
+    namespaces::{self, NamespaceSide},
+    user_slot,
 };
 use crate::{
     sys::{self, Fork, Resource},
@@ -52,7 +52,7 @@ fn probe() -> io::Result<Probe> {
         }
         Err(error) => probe.group = Some(error.to_string()),
     }
-    let slot = if root { slot::take().map(Some) } else { Ok(None) };
+    let slot = if root { user_slot::take_slot().map(Some) } else { Ok(None) };
     let user = slot.as_ref().ok().and_then(|slot| slot.as_ref()).map(|slot| slot.user);
     if let Err(error) = &slot {
         probe.own_user = Some(error.to_string());
@@ -112,7 +112,7 @@ fn try_execution() -> (Option<String>, bool) {
 
 /// Tests whether a control group can end a child. Returns the limits of the group, and whether it can.
 fn try_group() -> io::Result<(Vec<&'static str>, bool)> {
-    let group = Group::make(&RunOrder::default())?;
+    let group = Group::create(&RunOrder::default())?;
     let mut entrances = group.entrances()?;
     let (mut waits, entered) = io::pipe()?;
     let Fork::Parent(child) = sys::fork()? else {
@@ -156,9 +156,9 @@ fn try_namespaces() -> Option<String> {
         }
         drop(answer);
         let word = match namespaces::enter(&order) {
-            Ok(Side::Inside) => Some(None),
+            Ok(NamespaceSide::Inside) => Some(None),
             // The child has reported the reason itself, or has ended without a report.
-            Ok(Side::Outside(_)) => None,
+            Ok(NamespaceSide::Outside(_)) => None,
             Err(Failure { stage, errno }) => {
                 Some(Some(format!("could not {stage}: {}", io::Error::from_raw_os_error(errno))))
             }
@@ -177,14 +177,16 @@ fn try_walls(mut probe: Probe, user: Option<u32>) -> Probe {
     if let Some(user) = user {
         probe.own_user = failure_reason(sys::switch_user(user));
     }
-    probe.no_new_privileges = failure_reason(sys::no_new_privileges());
+    probe.no_new_privileges = failure_reason(sys::forbid_new_privileges());
     probe.landlock = match probe.landlock_abi {
         0 => Some("the kernel has no Landlock, or it is switched off".into()),
-        version => failure_reason(walls::deny_all_ruleset(version >= SIGNAL_SCOPE_ABI).and_then(walls::enforce)),
+        version => {
+            failure_reason(file_rules::deny_all_ruleset(version >= SIGNAL_SCOPE_ABI).and_then(file_rules::enforce))
+        }
     };
     let filters = |announce| {
         let own_process = Some(std::process::id() as i32);
-        filter::filters(filter::Purpose {
+        filter::compile_filters(filter::Purpose {
             tools: false,
             announce,
             own_process,

@@ -10,7 +10,7 @@ use crate::{machine, sys};
 
 /// The fields of a line in `/proc/PID/stat` that are used here.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
-struct Stat {
+struct ProcessStat {
     pid: i32,
     state: u8,
     parent: i32,
@@ -21,7 +21,7 @@ struct Stat {
     resident_pages: u64,
 }
 
-impl Stat {
+impl ProcessStat {
     /// Returns whether any thread of the process can still run. A process whose main thread has ended is shown as dead
     /// (state Z) while its other threads continue.
     fn is_alive(&self) -> bool {
@@ -56,14 +56,14 @@ pub(super) fn measure_usage(pid: i32, tree: bool) -> Usage {
     let mut usage = Usage::default();
     let page = sys::page_size();
     let swap = machine::has_swap();
-    let mut add = |stat: &Stat| {
+    let mut add = |stat: &ProcessStat| {
         usage.cpu += Duration::from_millis(10 * stat.ticks);
         usage.memory += stat.resident_pages() * page + if swap { read_swapped(stat.pid) } else { 0 };
         usage.threads += stat.threads;
     };
     if tree {
         list_descendants().iter().for_each(&mut add);
-    } else if let Some(stat) = read(pid) {
+    } else if let Some(stat) = read_process(pid) {
         add(&stat);
     }
     usage
@@ -72,7 +72,7 @@ pub(super) fn measure_usage(pid: i32, tree: bool) -> Usage {
 /// Returns how many bytes of a process were swapped out. If the main thread has ended, another thread reports it.
 fn read_swapped(pid: i32) -> u64 {
     let of = |thread: i32| {
-        machine::bytes_of(&std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?, "VmSwap:")
+        machine::read_byte_count(&std::fs::read_to_string(format!("/proc/{pid}/task/{thread}/status")).ok()?, "VmSwap:")
     };
     of(pid).or_else(|| list_threads(pid).find_map(of)).unwrap_or(0)
 }
@@ -81,12 +81,12 @@ fn read_swapped(pid: i32) -> u64 {
 /// its threads. If all threads of a process share their descriptors and memory, one thread is enough. A main thread
 /// that has ended no longer shares anything.
 pub(super) fn group_members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
-    let stats = if tree { list_descendants() } else { read(pid).into_iter().collect() };
-    let living = |stat: &Stat| {
+    let stats = if tree { list_descendants() } else { read_process(pid).into_iter().collect() };
+    let living = |stat: &ProcessStat| {
         if stat.state != b'Z' {
             return Some((stat.pid, stat.pid));
         }
-        let is_living = |stat: Stat| !matches!(stat.state, b'Z' | b'X');
+        let is_living = |stat: ProcessStat| !matches!(stat.state, b'Z' | b'X');
         let alive = |thread: &i32| read_thread(stat.pid, *thread).is_some_and(is_living);
         list_threads(stat.pid).find(alive).map(|thread| (stat.pid, thread))
     };
@@ -95,7 +95,7 @@ pub(super) fn group_members(pid: i32, tree: bool) -> Vec<(i32, i32)> {
 
 /// Returns the numbers of a process's threads.
 pub(crate) fn list_threads(pid: i32) -> impl Iterator<Item = i32> {
-    numbers_in(format!("/proc/{pid}/task"))
+    list_numbers(format!("/proc/{pid}/task"))
 }
 
 /// Returns the processes of a user. They are recognized by the owners of entries in `/proc`.
@@ -107,12 +107,12 @@ pub(super) fn find_by_user(user: u32) -> Vec<i32> {
 
 /// Returns the number of threads of a user, as the kernel counts them for its limit.
 pub(super) fn threads_of_user(user: u32) -> u64 {
-    find_by_user(user).into_iter().filter_map(read).map(|stat| stat.threads).sum()
+    find_by_user(user).into_iter().filter_map(read_process).map(|stat| stat.threads).sum()
 }
 
 /// The processes that did not end, although they were killed.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct LeftProcesses {
+pub(super) struct RemainingProcesses {
     /// The number of these processes.
     pub(super) count: u32,
     /// Whether the kernel itself blocks all of them (state D). A program cannot cause this.
@@ -124,7 +124,11 @@ pub(super) struct LeftProcesses {
 ///
 /// All processes are stopped before any is killed, because a fork bomb would otherwise start a new process for each
 /// that has ended. `reaped` is called for every process that was reaped.
-pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys::ReapedProcess)) -> LeftProcesses {
+pub(super) fn end_all(
+    user: Option<u32>,
+    alone: bool,
+    mut reaped: impl FnMut(sys::ReapedProcess),
+) -> RemainingProcesses {
     // Only a process that the kernel itself blocks (state D) takes longer than this to end.
     const MAX_WAIT: Duration = Duration::from_secs(20);
     let start = Instant::now();
@@ -132,7 +136,7 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
         if alone {
             // A single command ends all processes in any state. If no child is left, there are no other processes.
             if sys::kill_namespace() && reap_all(&mut reaped) {
-                return LeftProcesses::default();
+                return RemainingProcesses::default();
             }
         }
         let victims = stop_then_kill(|| {
@@ -142,11 +146,11 @@ pub(super) fn end_all(user: Option<u32>, alone: bool, mut reaped: impl FnMut(sys
         });
         // No child is left, not even one that has ended and was not reaped.
         if reap_all(&mut reaped) && user.is_none_or(|user| find_by_user(user).is_empty()) {
-            return LeftProcesses::default();
+            return RemainingProcesses::default();
         }
         if start.elapsed() > MAX_WAIT {
-            let held = victims.iter().filter_map(|pid| read(*pid)).all(|stat| stat.state == b'D');
-            return LeftProcesses { count: u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1), held };
+            let held = victims.iter().filter_map(|pid| read_process(*pid)).all(|stat| stat.state == b'D');
+            return RemainingProcesses { count: u32::try_from(victims.len()).unwrap_or(u32::MAX).max(1), held };
         }
         std::thread::sleep(Duration::from_millis(1));
     }
@@ -164,8 +168,8 @@ fn reap_all(reaped: &mut impl FnMut(sys::ReapedProcess)) -> bool {
 }
 
 /// Returns the processes of a session that are alive.
-pub(super) fn find_of_session(session: i32) -> Vec<i32> {
-    let members = list_all().filter_map(read).filter(|stat| stat.session == session && stat.is_alive());
+pub(super) fn find_by_session(session: i32) -> Vec<i32> {
+    let members = list_all().filter_map(read_process).filter(|stat| stat.session == session && stat.is_alive());
     members.map(|stat| stat.pid).collect()
 }
 
@@ -193,18 +197,19 @@ pub(super) fn stop_then_kill(victims: impl Fn() -> Vec<i32>) -> Vec<i32> {
 
 /// Returns all descendants of this process that are alive. This process is their reaper, so it is an ancestor even of
 /// processes whose parents have ended.
-fn list_descendants() -> Vec<Stat> {
-    let mut stats: Vec<Stat> = list_all().filter_map(read).collect();
+fn list_descendants() -> Vec<ProcessStat> {
+    let mut stats: Vec<ProcessStat> = list_all().filter_map(read_process).collect();
     let mut family = vec![std::process::id() as i32];
     let mut found = Vec::new();
     // Parents may have larger numbers than their children, so this is repeated until no process is added.
     loop {
-        let (mut mine, rest): (Vec<Stat>, Vec<Stat>) = stats.iter().partition(|stat| family.contains(&stat.parent));
+        let (mut mine, rest): (Vec<ProcessStat>, Vec<ProcessStat>) =
+            stats.iter().partition(|stat| family.contains(&stat.parent));
         if mine.is_empty() {
             break;
         }
         family = mine.iter().map(|stat| stat.pid).collect();
-        mine.retain(Stat::is_alive);
+        mine.retain(ProcessStat::is_alive);
         found.extend(mine);
         stats = rest;
     }
@@ -213,31 +218,31 @@ fn list_descendants() -> Vec<Stat> {
 
 /// Returns the numbers of all processes.
 pub(crate) fn list_all() -> impl Iterator<Item = i32> {
-    numbers_in("/proc")
+    list_numbers("/proc")
 }
 
 /// Returns the entries of a folder that are numbers.
-fn numbers_in(folder: impl AsRef<Path>) -> impl Iterator<Item = i32> {
+fn list_numbers(folder: impl AsRef<Path>) -> impl Iterator<Item = i32> {
     let entries = std::fs::read_dir(folder).into_iter().flatten().flatten();
     entries.filter_map(|entry| entry.file_name().to_str()?.parse().ok())
 }
 
-fn read_thread(pid: i32, thread: i32) -> Option<Stat> {
+fn read_thread(pid: i32, thread: i32) -> Option<ProcessStat> {
     parse(&std::fs::read(format!("/proc/{pid}/task/{thread}/stat")).ok()?)
 }
 
-fn read(pid: i32) -> Option<Stat> {
+fn read_process(pid: i32) -> Option<ProcessStat> {
     parse(&std::fs::read(format!("/proc/{pid}/stat")).ok()?)
 }
 
 /// Parses the line. The name in parentheses may contain anything, including parentheses and newlines, so the fields are
 /// counted from the last closing parenthesis.
-fn parse(line: &[u8]) -> Option<Stat> {
+fn parse(line: &[u8]) -> Option<ProcessStat> {
     let end = line.iter().rposition(|&byte| byte == b')')?;
     let pid = std::str::from_utf8(line.split(|&byte| byte == b' ').next()?).ok()?.parse().ok()?;
     let fields: Vec<&str> = std::str::from_utf8(&line[end + 1..]).ok()?.split_ascii_whitespace().collect();
     let number = |index: usize| fields.get(index).and_then(|field| field.parse::<u64>().ok());
-    Some(Stat {
+    Some(ProcessStat {
         pid,
         state: *fields.first()?.as_bytes().first()?,
         parent: fields.get(1)?.parse().ok()?,
@@ -258,7 +263,7 @@ mod tests {
         let stat = parse(line).unwrap();
         assert_eq!(
             stat,
-            Stat { pid: 42, state: b'S', parent: 7, session: 43, ticks: 18, threads: 2, resident_pages: 512 }
+            ProcessStat { pid: 42, state: b'S', parent: 7, session: 43, ticks: 18, threads: 2, resident_pages: 512 }
         );
     }
 

@@ -20,11 +20,12 @@ use super::{
     filter,
     folder::{self, FolderUsage},
     group::Group,
-    holdings, locks, modes,
-    namespaces::{self, Side},
+    hidden_usage, locks, modes,
+    namespaces::{self, NamespaceSide},
     prepared_run::{HeldResources, PreparedRun},
-    processes, slot,
+    processes,
     streams::CapturedStream,
+    user_slot,
 };
 use crate::{
     outcome::RunEnd,
@@ -47,9 +48,9 @@ pub(super) fn main() -> ExitCode {
         .map_err(failure_at("read the order"))
         .and_then(|order| prepare_run(order, control));
     ExitCode::from(match settled {
-        Ok(SettledRun::Here(run)) => report_end(run.finish(&mut answers), &mut answers),
+        Ok(StartedRun::Here(run)) => report_end(run.finish(&mut answers), &mut answers),
         // The process inside the namespaces has already reported everything.
-        Ok(SettledRun::Elsewhere(code)) => code,
+        Ok(StartedRun::Elsewhere(code)) => code,
         Err(failure) => report_end(Err(failure), &mut answers),
     })
 }
@@ -68,23 +69,23 @@ pub(super) fn report_end(finished: Result<Option<FinishedRun>, Failure>, answers
 }
 
 /// A run that this process supervises, or the end of a run that another process supervised.
-enum SettledRun {
+enum StartedRun {
     Here(Box<Run>),
     /// Another process has supervised the run, and has ended with this exit code.
     Elsewhere(u8),
 }
 
 /// Takes a user and sets up the namespaces for a run, and starts the run there.
-fn prepare_run(order: RunOrder, control: File) -> Result<SettledRun, Failure> {
+fn prepare_run(order: RunOrder, control: File) -> Result<StartedRun, Failure> {
     // In a session of its own, the supervisor does not receive Ctrl-C from the terminal. The grader tells it to stop.
-    sys::new_session().map_err(failure_at("start the supervisor's session"))?;
+    sys::start_session().map_err(failure_at("start the supervisor's session"))?;
     let held = HeldResources::take(&order)?;
-    if order.walls.namespaces
-        && let Side::Outside(code) = namespaces::enter(&order)?
+    if order.layers.namespaces
+        && let NamespaceSide::Outside(code) = namespaces::enter(&order)?
     {
-        return Ok(SettledRun::Elsewhere(code));
+        return Ok(StartedRun::Elsewhere(code));
     }
-    Run::start(order, control, held, &PreparedRun::default()).map(|run| SettledRun::Here(Box::new(run)))
+    Run::start(order, control, held, &PreparedRun::default()).map(|run| StartedRun::Here(Box::new(run)))
 }
 
 /// The report on a run, with its standard output and its standard error.
@@ -98,24 +99,24 @@ pub(super) struct Run {
     /// The name of the trace in the working folder.
     trace: Option<CString>,
     /// The program's own user, if it has one, and the user and group that owned the folder before.
-    slot: Option<(slot::Slot, (u32, u32))>,
+    slot: Option<(user_slot::UserSlot, (u32, u32))>,
     /// The run's control group, if it has one.
     group: Option<Group>,
     child: i32,
     process: Option<OwnedFd>,
     status: Option<UnixStream>,
-    told: Vec<u8>,
+    received_bytes: Vec<u8>,
     listener: Option<OwnedFd>,
-    waits: SharedWaits,
+    shared_waits: SharedWaits,
     stdout: CapturedStream,
     stderr: CapturedStream,
-    began: Instant,
+    start_time: Instant,
     main_status: Option<i32>,
     cause: Option<RunEnd>,
     peak_memory: u64,
     /// The number of bytes of memory that are not resident for any process, at the last check of mappings.
-    unseen_memory: u64,
-    orphaned: bool,
+    hidden_memory: u64,
+    is_orphaned: bool,
 }
 
 impl Run {
@@ -129,21 +130,21 @@ impl Run {
         let (order, HeldResources { slot, group }) = (Rc::new(order), held);
         sys::become_reaper().map_err(failure_at("become the reaper"))?;
         let folder: OwnedFd =
-            File::open(wire::path(&order.folder)).map_err(failure_at("open the working folder"))?.into();
+            File::open(wire::to_path(&order.folder)).map_err(failure_at("open the working folder"))?.into();
         let trace = order.trace.clone().map(CString::new).transpose();
         let trace = trace.map_err(|error| Failure::new("name the trace", &error.into()))?;
-        let slot = slot.map(|slot| owner_before(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
+        let slot = slot.map(|slot| take_ownership(folder.as_fd(), slot.user).map(|owner| (slot, owner))).transpose();
         let slot = slot.map_err(failure_at("change the owner of the working folder"))?;
-        if order.volatile {
+        if order.is_in_memory {
             send_folder(&control, folder.as_fd()).map_err(failure_at("send the working folder to the grader"))?;
         }
         let (stdout, output) = io::pipe().map_err(failure_at("make a pipe"))?;
         let (stderr, error) = io::pipe().map_err(failure_at("make a pipe"))?;
         let (status, child_status) = UnixStream::pair().map_err(failure_at("make a socket"))?;
         status.set_nonblocking(true).map_err(failure_at("make a socket"))?;
-        let opened = OpenedFile::new(&wire::path(&order.program), slot.is_some(), order.limits.memory)?;
+        let opened = OpenedFile::new(&wire::to_path(&order.program), slot.is_some(), order.limits.memory)?;
         let entrance = open_entrance(&order, &opened)?;
-        let rules = prepared.rules(&order, folder.as_fd()).map_err(failure_at("prepare Landlock"))?;
+        let rules = prepared.file_rules(&order, folder.as_fd()).map_err(failure_at("prepare Landlock"))?;
         let plan = ChildPlan {
             supervisor: std::process::id(),
             folder: folder.try_clone().map_err(failure_at("open the working folder"))?,
@@ -185,15 +186,15 @@ impl Run {
             process: sys::process_descriptor(child),
             group,
             status: Some(status),
-            told: Vec::new(),
+            received_bytes: Vec::new(),
             listener: None,
-            waits: SharedWaits::default(),
-            began,
+            shared_waits: SharedWaits::default(),
+            start_time: began,
             main_status: None,
             cause: None,
             peak_memory: 0,
-            unseen_memory: 0,
-            orphaned: false,
+            hidden_memory: 0,
+            is_orphaned: false,
         })
     }
 
@@ -202,8 +203,7 @@ impl Run {
     pub(super) fn finish(mut self, answers: &mut File) -> Result<Option<FinishedRun>, Failure> {
         let user = self.user();
         // The end of this pipe also shows that the grader has ended.
-        let walls = self.order.walls;
-        let session = (!walls.namespaces).then_some(self.child);
+        let session = (!self.order.layers.namespaces).then_some(self.child);
         let _ = wire::send(answers, &Event::Ready { session, user });
         let watched = self.watch();
         let (child, mut main_status) = (self.child, self.main_status);
@@ -215,7 +215,7 @@ impl Run {
             // The process number is valid until the process is reaped.
             let _ = sys::kill(child, libc::SIGKILL);
         }
-        let left = processes::end_all(user, walls.namespaces, |process| {
+        let left = processes::end_all(user, self.order.layers.namespaces, |process| {
             if process.pid == child {
                 main_status = Some(process.status);
             }
@@ -225,29 +225,30 @@ impl Run {
         self.read_messages();
         let mut after = measure_folder(&self.order, self.folder.as_fd());
         // Most programs do not create folders.
-        let shallow = match after.over || after.folders > 0 {
+        let shallow = match after.exceeds_limit || after.folders > 0 {
             true => {
-                let shallow = folder::open_up(self.folder.as_fd());
+                let shallow = folder::open_closed_folders(self.folder.as_fd());
                 after = measure_folder(&self.order, self.folder.as_fd());
                 shallow
             }
             false => true,
         };
         // Only root reads the files that a submission leaves in memory, so the owner of such files is not changed.
-        if let Some((_, (owner, group))) = self.slot.as_ref().filter(|_| !self.order.volatile || self.order.tools) {
+        let slot = self.slot.as_ref().filter(|_| !self.order.is_in_memory || self.order.allows_tools);
+        if let Some((_, (owner, group))) = slot {
             folder::change_owner(self.folder.as_fd(), *owner, *group)
                 .map_err(failure_at("restore the folder's owner"))?;
         }
         // The time for cleaning up counts for the run.
-        let wall = self.began.elapsed();
+        let wall = self.start_time.elapsed();
         watched.map_err(failure_at("watch the program"))?;
-        if self.orphaned {
+        if self.is_orphaned {
             return Ok(None);
         }
         // Most programs print nothing. Searching for a message is slow, because it asks the processor for its features
         // several times.
-        let told = Some(&self.told[..]).filter(|told| !told.is_empty());
-        let failure: Option<Failure> = told.and_then(|told| serde_json::from_slice(told).ok());
+        let received = Some(&self.received_bytes[..]).filter(|received| !received.is_empty());
+        let failure: Option<Failure> = received.and_then(|received| serde_json::from_slice(received).ok());
         let exec_errno = match failure {
             Some(failure) if failure.stage == wire::EXECUTE_STEP => Some(failure.errno),
             Some(failure) => return Err(failure),
@@ -269,8 +270,8 @@ impl Run {
             cpu: cpu.max(self.uncounted_cpu()),
             wall,
             peak_memory: largest.max(self.peak_memory),
-            trace_over: self.is_trace_over(),
-            folder_over: self.exceeds_folder_limits(&after) || !shallow,
+            exceeds_trace_limit: self.exceeds_trace_limit(),
+            exceeds_folder_limit: self.exceeds_folder_limits(&after) || !shallow,
             stdout_bytes: self.stdout.bytes.len() as u64,
             stderr_bytes: self.stderr.bytes.len() as u64,
             stdout_truncated: self.stdout.truncated,
@@ -283,7 +284,7 @@ impl Run {
     /// Watches the run until the main process has ended, or there is a reason to end it.
     fn watch(&mut self) -> io::Result<()> {
         let (mut next_look, mut next_folder) = (Instant::now() + TICK_INTERVAL, Instant::now() + TICK_INTERVAL);
-        while self.main_status.is_none() && self.cause.is_none() && !self.orphaned {
+        while self.main_status.is_none() && self.cause.is_none() && !self.is_orphaned {
             let found = sys::poll(
                 [
                     Some(self.control.as_fd()),
@@ -293,7 +294,7 @@ impl Run {
                     self.listener.as_ref().map(AsFd::as_fd),
                     self.process.as_ref().map(AsFd::as_fd),
                 ],
-                self.waits
+                self.shared_waits
                     .next()
                     .map_or(next_look, |next| next.min(next_look))
                     .saturating_duration_since(Instant::now()),
@@ -303,10 +304,10 @@ impl Run {
                 self.run_commands();
             }
             if ready[1] {
-                self.stdout.take();
+                self.stdout.read_available();
             }
             if ready[2] {
-                self.stderr.take();
+                self.stderr.read_available();
             }
             if ready[3] {
                 self.read_messages();
@@ -320,7 +321,7 @@ impl Run {
             }
             let now = Instant::now();
             if let Some(listener) = &self.listener {
-                self.waits.answer(listener.as_fd(), now);
+                self.shared_waits.answer(listener.as_fd(), now);
             }
             if now >= next_look || ready[5] {
                 self.reap();
@@ -352,7 +353,7 @@ impl Run {
         let mut command = [0];
         match self.control.read(&mut command) {
             Ok(1) => self.record_cause(true, RunEnd::Cancelled),
-            _ => self.orphaned = true,
+            _ => self.is_orphaned = true,
         }
     }
 
@@ -364,7 +365,7 @@ impl Run {
             match descriptors.pop() {
                 _ if length == 0 => self.status = None,
                 Some(listener) => self.listener = Some(listener),
-                None => self.told.extend_from_slice(&buffer[..length]),
+                None => self.received_bytes.extend_from_slice(&buffer[..length]),
             }
         }
     }
@@ -386,21 +387,21 @@ impl Run {
         // The socket closes when the program starts, before it executes its first instruction.
         self.read_messages();
         let executes = announced.call == libc::SYS_execve || announced.call == libc::SYS_execveat;
-        let (user, root) = (self.user(), wire::path(&self.order.folder));
-        let unless = |allowed| if allowed { CallAnswer::GoOn } else { CallAnswer::Refused(libc::EPERM) };
+        let (user, root) = (self.user(), wire::to_path(&self.order.folder));
+        let unless = |allowed| if allowed { CallAnswer::Continue } else { CallAnswer::Error(libc::EPERM) };
         let answer = match announced.call {
-            _ if executes && self.status.is_some() => Some(CallAnswer::GoOn),
-            libc::SYS_futex => match self.waits.add(&announced, user, Instant::now()) {
+            _ if executes && self.status.is_some() => Some(CallAnswer::Continue),
+            libc::SYS_futex => match self.shared_waits.add(&announced, user, Instant::now()) {
                 None => return Ok(()),
                 answer => answer,
             },
             call if locks::is_lock_call(call) => {
-                Some(unless(sys::with_files_of(user, || locks::is_inside(&announced, &root))))
+                Some(unless(sys::with_file_permissions_of(user, || locks::is_inside(&announced, &root))))
             }
             call if modes::is_mode_call(call) => {
                 Some(match modes::change_mode(&announced, self.folder.as_fd(), &root) {
                     Ok(()) => CallAnswer::Done,
-                    Err(errno) => CallAnswer::Refused(errno),
+                    Err(errno) => CallAnswer::Error(errno),
                 })
             }
             _ => None,
@@ -410,7 +411,7 @@ impl Run {
             let _ = sys::answer(listener.as_fd(), announced.id, answer);
             return Ok(());
         }
-        let mut call = calls::name(announced.call);
+        let mut call = calls::call_name(announced.call);
         if announced.call == libc::SYS_clone {
             let flags = announced.arguments[0];
             let namespace = filter::NAMESPACE_FLAGS.iter().any(|flag| flags & flag != 0);
@@ -444,19 +445,19 @@ impl Run {
         }
         let usage = processes::measure_usage(self.child, self.has_children());
         let reaped = sys::children_usage().map_or(Duration::ZERO, |(cpu, _)| cpu);
-        let memory = usage.memory + self.unseen_memory;
+        let memory = usage.memory + self.hidden_memory;
         self.peak_memory = self.peak_memory.max(memory);
         // A fork bomb exceeds both of these limits.
         self.record_cause(usage.threads > u64::from(self.order.limits.processes), RunEnd::ProcessLimit);
         self.record_cause(memory > self.order.limits.memory, RunEnd::MemoryLimit);
         let cpu = (usage.cpu + reaped).max(self.uncounted_cpu());
         self.record_cause(cpu > self.order.limits.cpu, RunEnd::CpuLimit);
-        self.record_cause(self.is_trace_over(), RunEnd::TraceLimit);
-        self.record_cause(self.began.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
+        self.record_cause(self.exceeds_trace_limit(), RunEnd::TraceLimit);
+        self.record_cause(self.start_time.elapsed() > self.order.limits.wall, RunEnd::WallLimit);
     }
 
     /// Returns whether the trace's file is longer than a trace may be.
-    fn is_trace_over(&self) -> bool {
+    fn exceeds_trace_limit(&self) -> bool {
         let opened = self.trace.as_ref().map(|name| sys::open_beneath(self.folder.as_fd(), name, OFlags::PATH));
         let metadata = opened.and_then(|opened| File::from(opened.ok()?).metadata().ok());
         metadata.is_some_and(|metadata| metadata.is_file() && metadata.len() > self.order.limits.trace_bytes)
@@ -472,23 +473,25 @@ impl Run {
     fn check_folder(&mut self) {
         let mut contents =
             folder::measure(self.folder.as_fd(), self.order.folder_bytes(), self.order.limits.folder_files);
-        if self.order.volatile {
-            contents = contents.at_least(folder::in_use(self.folder.as_fd()));
+        if self.order.is_in_memory {
+            contents = contents.field_maximum(folder::file_system_usage(self.folder.as_fd()));
         }
         let over = self.exceeds_folder_limits(&contents);
         self.record_cause(over, RunEnd::FolderLimit);
-        if self.order.volatile && !self.can_hide_memory() {
+        if self.order.is_in_memory && !self.can_hide_memory() {
             return;
         }
         let user = self.user();
         let members = processes::group_members(self.child, self.has_children());
-        let root = wire::path(&self.order.folder);
+        let root = wire::to_path(&self.order.folder);
         let page_tables = self.order.sanitizers;
-        let held = sys::with_files_of(user, || holdings::measure(&members, &root, self.order.tools, page_tables));
-        if !self.order.volatile {
-            contents.bytes += held.nameless;
+        let held = sys::with_file_permissions_of(user, || {
+            hidden_usage::measure(&members, &root, self.order.allows_tools, page_tables)
+        });
+        if !self.order.is_in_memory {
+            contents.bytes += held.nameless_bytes;
         }
-        self.unseen_memory = held.memory;
+        self.hidden_memory = held.memory;
         let over = self.exceeds_folder_limits(&contents);
         self.record_cause(over, RunEnd::FolderLimit);
     }
@@ -496,28 +499,30 @@ impl Run {
     /// Returns whether the program may have memory that is not resident for any process. This requires files outside of
     /// the folder that no rules deny.
     fn can_hide_memory(&self) -> bool {
-        self.order.tools || self.order.sanitizers || !self.order.walls.landlock || !self.order.walls.seccomp
+        self.order.allows_tools || self.order.sanitizers || !self.order.layers.landlock || !self.order.layers.seccomp
     }
 
     /// Returns whether there may be other processes than the main one. Without the filter, every program can start
     /// processes.
     fn has_children(&self) -> bool {
-        self.order.tools || !self.order.walls.seccomp
+        self.order.allows_tools || !self.order.layers.seccomp
     }
 
     fn exceeds_folder_limits(&self, contents: &FolderUsage) -> bool {
-        contents.over || contents.bytes > self.order.folder_bytes() || contents.files > self.order.limits.folder_files
+        contents.exceeds_limit
+            || contents.bytes > self.order.folder_bytes()
+            || contents.files > self.order.limits.folder_files
     }
 }
 
 /// Measures the working folder of an order.
 fn measure_folder(order: &RunOrder, folder: BorrowedFd<'_>) -> FolderUsage {
     let contents = folder::measure(folder, u64::MAX, u64::MAX);
-    if order.volatile { contents.at_least(folder::in_use(folder)) } else { contents }
+    if order.is_in_memory { contents.field_maximum(folder::file_system_usage(folder)) } else { contents }
 }
 
 /// Makes the run's own user the owner of the working folder. Returns the previous owner and group.
-fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
+fn take_ownership(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
     let owner = File::from(folder.try_clone_to_owned()?).metadata()?;
     folder::change_owner(folder, user, user)?;
     Ok((owner.uid(), owner.gid()))
@@ -525,12 +530,12 @@ fn owner_before(folder: BorrowedFd<'_>, user: u32) -> io::Result<(u32, u32)> {
 
 /// Returns the descriptor number from which alone the program can be executed, if only the filter restricts executions.
 fn open_entrance(order: &RunOrder, opened: &OpenedFile) -> Result<Option<OwnedFd>, Failure> {
-    if !order.walls.seccomp || order.walls.notify || order.tools {
+    if !order.layers.seccomp || order.layers.notify || order.allows_tools {
         return Ok(None);
     }
-    let open = |path| OpenedFile::new(&wire::path(path), false, order.limits.memory);
+    let open = |path| OpenedFile::new(&wire::to_path(path), false, order.limits.memory);
     let interpreter = order.interpreter.as_ref().map(open).transpose()?;
-    let entrance = interpreter.as_ref().unwrap_or(opened).under_number(order.limits.open_files);
+    let entrance = interpreter.as_ref().unwrap_or(opened).with_min_number(order.limits.open_files);
     entrance.map(Some).map_err(failure_at("open the program once more"))
 }
 

@@ -32,7 +32,7 @@ impl CapturedStream {
 
     /// Reads the bytes that have arrived, and returns whether there were any. Bytes beyond the limit are dropped, and
     /// the stream is then marked as truncated.
-    pub(super) fn take(&mut self) -> bool {
+    pub(super) fn read_available(&mut self) -> bool {
         let Some(pipe) = &mut self.pipe else { return false };
         // Touching memory for the first time takes longer than another call, and most programs print little.
         let (mut small, mut large) = ([0; 1 << 12], Vec::new());
@@ -64,7 +64,7 @@ impl CapturedStream {
 
     /// Reads the rest of the stream. This must be called only when no process is alive that could still write.
     pub(super) fn read_rest(&mut self) {
-        while self.pipe.is_some() && self.take() {}
+        while self.pipe.is_some() && self.read_available() {}
     }
 }
 
@@ -79,7 +79,7 @@ mod tests {
         for (limit, truncated) in [(6, false), (5, true), (0, true)] {
             let (reader, mut writer) = io::pipe().unwrap();
             let mut capture = CapturedStream::new(reader, limit).unwrap();
-            capture.take();
+            capture.read_available();
             writer.write_all(b"abcdef").unwrap();
             drop(writer);
             capture.read_rest();

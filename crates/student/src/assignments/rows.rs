@@ -22,7 +22,7 @@ fosssim_num::closed_set! {
 
 /// One row of a table whose mistakes have type `M`.
 #[derive(Debug, Clone, Copy)]
-pub struct RowOf<M> {
+pub struct MistakeRow<M> {
     /// The mistake as a value for programs.
     pub mistake: M,
     /// The mistake's id for users.
@@ -33,35 +33,35 @@ pub struct RowOf<M> {
     pub area: Area,
     /// The mistake in one sentence, in a teacher's words, without formulas, symbols or numbers, so that it does not
     /// reveal the solution.
-    pub what: &'static str,
+    pub summary: &'static str,
     /// The exact form: the wrong and the right expression, in the assignment's notation.
     pub term: &'static str,
 }
 
-impl<M> RowOf<M> {
+impl<M> MistakeRow<M> {
     /// Returns the row with its mistake replaced by `mistake`.
     #[must_use]
-    pub fn with_mistake<N>(self, mistake: N) -> RowOf<N> {
-        let Self { id, kind, area, what, term, .. } = self;
-        RowOf { mistake, id, kind, area, what, term }
+    pub fn with_mistake<N>(self, mistake: N) -> MistakeRow<N> {
+        let Self { id, kind, area, summary: what, term, .. } = self;
+        MistakeRow { mistake, id, kind, area, summary: what, term }
     }
 
     /// Returns the sentence about the mistake, preceded by the part of the program.
     #[must_use]
     pub fn sentence(&self) -> String {
-        format!("{}: {}", self.place(), self.what)
+        format!("{}: {}", self.program_part(), self.summary)
     }
 
     /// Returns the kind of pair for which the mistake is made, if there is only one.
     #[must_use]
-    pub fn kind_of_pair(&self) -> Option<PairKind> {
-        PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.place()))
+    pub fn pair_kind(&self) -> Option<PairKind> {
+        PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.program_part()))
     }
 
     /// Returns the part of the program in which the mistake is made: the kind of pair if there is only one, otherwise
     /// the area of the assignment.
     #[must_use]
-    pub fn place(&self) -> &'static str {
+    pub fn program_part(&self) -> &'static str {
         match (self.id.split_once('-'), self.area) {
             (Some(("pp", _)), _) => "Particle-particle",
             (Some(("pe", _)), _) => "Particle-edge",
@@ -74,17 +74,17 @@ impl<M> RowOf<M> {
 /// Returns the rows with their sentences from `text`, which has four lines per row, in order: its id, its two
 /// sentences, and an empty line. The compiler reports the row whose id is not next.
 pub(super) const fn with_sentences<M: Copy, const N: usize>(
-    mut rows: [RowOf<M>; N],
+    mut rows: [MistakeRow<M>; N],
     text: &'static str,
-) -> [RowOf<M>; N] {
+) -> [MistakeRow<M>; N] {
     let (mut row, mut rest) = (0, text);
     while row < N {
         let id = split_line(rest);
         let what = split_line(id.1);
         let term = split_line(what.1);
         let end = split_line(term.1);
-        assert!(are_equal(id.0, rows[row].id) && end.0.is_empty(), "{}", rows[row].id);
-        (rows[row].what, rows[row].term, rest) = (what.0, term.0, end.1);
+        assert!(is_equal_text(id.0, rows[row].id) && end.0.is_empty(), "{}", rows[row].id);
+        (rows[row].summary, rows[row].term, rest) = (what.0, term.0, end.1);
         row += 1;
     }
     assert!(rest.is_empty(), "{}", rest);
@@ -100,7 +100,7 @@ const fn split_line(text: &str) -> (&str, &str) {
     (text.split_at(end).0, text.split_at(end + 1).1)
 }
 
-const fn are_equal(one: &str, other: &str) -> bool {
+const fn is_equal_text(one: &str, other: &str) -> bool {
     let mut at = 0;
     while at < one.len() && at < other.len() && one.as_bytes()[at] == other.as_bytes()[at] {
         at += 1;
@@ -137,13 +137,13 @@ macro_rules! rows {
         $crate::assignments::rows::rows!(@ $type [$($edits)?] $($($mistake $([$edit])?,)*)*);
 
         /// All rows of this table, in the order of the assignment.
-        pub const $table: &[$crate::assignments::rows::RowOf<$type>] = &$crate::assignments::rows::with_sentences(
-            [$($($crate::assignments::rows::RowOf {
+        pub const $table: &[$crate::assignments::rows::MistakeRow<$type>] = &$crate::assignments::rows::with_sentences(
+            [$($($crate::assignments::rows::MistakeRow {
                 mistake: $type::$mistake,
                 id: $id,
                 kind: $crate::assignments::rows::RowKind::$kind,
                 area: $crate::assignments::rows::Area::$area,
-                what: "",
+                summary: "",
                 term: "",
             },)*)*],
             concat!($($(include_str!($sentences), "\n",)?)*),

@@ -37,7 +37,7 @@ impl Number for FusedDouble {
 
 type Vector<N> = [N; 2];
 
-fn vector<N: Number>(v: Vec2) -> Vector<N> {
+fn to_vector<N: Number>(v: Vec2) -> Vector<N> {
     [v.x.into(), v.y.into()]
 }
 
@@ -54,13 +54,13 @@ fn add_scaled<N: Number>(v: Vector<N>, s: N, w: Vector<N>) -> Vector<N> {
     [s.multiply_add(w[0], v[0]), s.multiply_add(w[1], v[1])]
 }
 
-fn rounded_vector<N: Number>(v: Vector<N>) -> Vec2 {
+fn round_vector<N: Number>(v: Vector<N>) -> Vec2 {
     Vec2::new(v[0].to_double(), v[1].to_double())
 }
 
 /// Returns a center at time `t`.
 fn position_at<N: Number>(body: &PointMotion, t: f64) -> Vector<N> {
-    add_scaled(vector(body.start), N::from(t), vector(body.shift))
+    add_scaled(to_vector(body.start), N::from(t), to_vector(body.shift))
 }
 
 /// Returns a polynomial, highest power first, from the letters of its first formula.
@@ -78,8 +78,8 @@ fn evaluate<N: Number>(subject: Subject, letters: &[N]) -> Vec<f64> {
 
 /// Returns the overlap and approach of two particles.
 pub fn particle_particle<N: Number>([one, two]: &[PointMotion; 2], radii: [f64; 2]) -> Vec<Vec<f64>> {
-    let x: Vector<N> = subtract(vector(two.start), vector(one.start));
-    let d: Vector<N> = subtract(vector(two.shift), vector(one.shift));
+    let x: Vector<N> = subtract(to_vector(two.start), to_vector(one.start));
+    let d: Vector<N> = subtract(to_vector(two.shift), to_vector(one.shift));
     let reach = N::from(radii[0]) + N::from(radii[1]);
     let letters = [dot(d, d), dot(x, d), dot(x, x), reach * reach];
     vec![evaluate(Subject::ParticleOverlap, &letters), evaluate(Subject::ParticleApproach, &letters)]
@@ -87,17 +87,17 @@ pub fn particle_particle<N: Number>([one, two]: &[PointMotion; 2], radii: [f64; 
 
 /// Returns the overlap and approach of a particle and a half-plane.
 pub fn particle_half_plane<N: Number>(one: &PointMotion, radius: f64, point: Vec2, normal: Vec2) -> Vec<Vec<f64>> {
-    let q: Vector<N> = vector(normal);
-    let offset = subtract(vector(point), vector(one.start));
+    let q: Vector<N> = to_vector(normal);
+    let offset = subtract(to_vector(point), to_vector(one.start));
     let radius = N::from(radius);
-    let letters = [dot(vector(one.shift), q), dot(offset, q), dot(q, q), radius * radius];
+    let letters = [dot(to_vector(one.shift), q), dot(offset, q), dot(q, q), radius * radius];
     vec![evaluate(Subject::HalfPlaneOverlap, &letters), evaluate(Subject::HalfPlaneApproach, &letters)]
 }
 
 /// Returns overlap, alpha > 0, alpha < 1 and approach of a particle and an edge.
 pub fn particle_edge<N: Number>(bodies: &[PointMotion; 3], radii: [f64; 2]) -> Vec<Vec<f64>> {
     let [one, two, three] = bodies;
-    let between = |a: Vec2, b: Vec2| -> Vector<N> { subtract(vector(a), vector(b)) };
+    let between = |a: Vec2, b: Vec2| -> Vector<N> { subtract(to_vector(a), to_vector(b)) };
     let (x12, x32) = (between(one.start, two.start), between(three.start, two.start));
     let (d12, d32) = (between(one.shift, two.shift), between(three.shift, two.shift));
     let (x13, x23) = (between(one.start, three.start), between(two.start, three.start));
@@ -117,7 +117,7 @@ pub fn particle_edge<N: Number>(bodies: &[PointMotion; 3], radii: [f64; 2]) -> V
 
 /// Returns the vector from the first center to the second at time `t`.
 pub fn vector_between_particles<N: Number>([one, two]: &[PointMotion; 2], t: f64) -> Vec2 {
-    rounded_vector::<N>(subtract(position_at(two, t), position_at(one, t)))
+    round_vector::<N>(subtract(position_at(two, t), position_at(one, t)))
 }
 
 /// Returns the vector from the particle to the closest point of the edge's line at time `t`.
@@ -125,12 +125,12 @@ pub fn vector_to_edge<N: Number>([one, two, three]: &[PointMotion; 3], t: f64) -
     let along: Vector<N> = subtract(position_at(three, t), position_at(two, t));
     let beside = subtract(position_at(one, t), position_at(two, t));
     let alpha = dot(beside, along) / dot(along, along);
-    rounded_vector(subtract(add_scaled(position_at(two, t), alpha, along), position_at(one, t)))
+    round_vector(subtract(add_scaled(position_at(two, t), alpha, along), position_at(one, t)))
 }
 
 /// Returns the vector from the particle to the boundary of a half-plane at time `t`.
-pub fn to_half_plane<N: Number>(one: &PointMotion, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
-    let q: Vector<N> = vector(normal);
-    let share = dot(subtract(vector(point), position_at(one, t)), q) / dot(q, q);
-    rounded_vector([share * q[0], share * q[1]])
+pub fn vector_to_half_plane<N: Number>(one: &PointMotion, point: Vec2, normal: Vec2, t: f64) -> Vec2 {
+    let q: Vector<N> = to_vector(normal);
+    let share = dot(subtract(to_vector(point), position_at(one, t)), q) / dot(q, q);
+    round_vector([share * q[0], share * q[1]])
 }

@@ -4,13 +4,13 @@ use fosssim_num::vector::Vec2;
 use fosssim_model::sim::PointMotion;
 
 /// Converts a power basis list (highest power first) to the Bernstein basis over the step, and back.
-pub fn through_bernstein(list: &[f64]) -> Vec<f64> {
+pub fn convert_through_bernstein(list: &[f64]) -> Vec<f64> {
     let degree = list.len() - 1;
     let power = |k: usize| list[degree - k];
     let bernstein: Vec<f64> =
         (0..=degree).map(|i| (0..=i).map(|k| binomial(i, k) / binomial(degree, k) * power(k)).sum()).collect();
     let back = |k: usize| -> f64 {
-        let sum: f64 = (0..=k).map(|i| sign(k - i) * binomial(k, i) * bernstein[i]).sum();
+        let sum: f64 = (0..=k).map(|i| alternating_sign(k - i) * binomial(k, i) * bernstein[i]).sum();
         binomial(degree, k) * sum
     };
     (0..=degree).rev().map(back).collect()
@@ -21,7 +21,7 @@ fn binomial(n: usize, k: usize) -> f64 {
     (1..=k).fold(1.0, |product, i| product * (n - k + i) as f64 / i as f64)
 }
 
-fn sign(exponent: usize) -> f64 {
+fn alternating_sign(exponent: usize) -> f64 {
     if exponent.is_multiple_of(2) { 1.0 } else { -1.0 }
 }
 
@@ -97,7 +97,7 @@ mod tests {
     #[test]
     fn bernstein_and_back_changes_nothing_but_bits() {
         for list in [vec![3.0, -2.0, 0.5], vec![1.0, 2.0, -3.0, 4.0, -5.0, 6.0], vec![-7.0]] {
-            let back = through_bernstein(&list);
+            let back = convert_through_bernstein(&list);
             assert!(back.iter().zip(&list).all(|(back, list)| (back - list).abs() < 1e-13), "{back:?} of {list:?}");
         }
     }

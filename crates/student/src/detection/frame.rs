@@ -58,7 +58,7 @@ impl Axes {
     }
 
     /// Converts a difference of points back to the scene's axes.
-    pub fn turn_back(self, v: Vec2) -> Vec2 {
+    pub fn transform_back(self, v: Vec2) -> Vec2 {
         let (cosine, sine) = ROTATION;
         match self {
             Self::Rotated => Vec2::new(cosine * v.x + sine * v.y, cosine * v.y - sine * v.x),
@@ -77,6 +77,6 @@ mod tests {
         let (cosine, sine) = ROTATION;
         assert!((cosine * cosine + sine * sine - 1.0).abs() < f64::EPSILON);
         let v = Vec2::new(3.0, -7.0);
-        assert!(length(Axes::Rotated.turn_back(Axes::Rotated.transform_direction(v)) - v) < 1e-14);
+        assert!(length(Axes::Rotated.transform_back(Axes::Rotated.transform_direction(v)) - v) < 1e-14);
     }
 }

@@ -13,7 +13,7 @@ pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Ve
     if lists.is_empty() {
         return Vec::new();
     }
-    if let Some(factor) = factor(student, object) {
+    if let Some(factor) = rescaling_factor(student, object) {
         lists.iter_mut().flatten().for_each(|coefficient| *coefficient *= factor);
     }
     let edge = matches!(object, Object::Edge(_));
@@ -34,7 +34,7 @@ pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Ve
 }
 
 /// Returns the positive factor of the correct variants that rescale their polynomials.
-fn factor(student: Student, object: Object) -> Option<f64> {
+fn rescaling_factor(student: Student, object: Object) -> Option<f64> {
     let factor = match (student.mistake_in(MODULE_AREAS)?, object) {
         (Mistake::ScaleTwo, _) | (Mistake::ScaleParticleParticleTwo, Object::Particle(_)) => 2.0,
         (Mistake::ScaleHalf, _) => 0.5,

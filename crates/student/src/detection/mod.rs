@@ -54,17 +54,17 @@ const REJECTION_MISTAKES: &[Mistake] = &[
 ];
 
 /// The usual maximum number of steps in the root searches of one pair.
-const USUAL_SEARCH: u64 = 128;
+const USUAL_SEARCH_STEPS: u64 = 128;
 
 /// The number of steps after which an endless search is stopped (`num::rpoly`).
-const ENDLESS_SEARCH: u64 = 1000;
+const MAX_SEARCH_STEPS: u64 = 1000;
 
 /// The areas of the mistakes in the formulas of each kind of pair.
 const FORMULA_AREAS: [Area; 3] = [Area::ParticleParticle, Area::ParticleEdge, Area::ParticleHalfPlane];
 
 /// Returns the motion of a pair, as this student's program reads it from its lists.
 fn read_motion(world: &World, pair: Pair, q_start: &[f64], q_end: &[f64]) -> PairMotion {
-    let frame = axes_of(world.student, pair);
+    let frame = pair_axes(world.student, pair);
     let (student, all) = (world.student, world.scene.particles.len());
     let (kind, number) = pair.object.numbers();
     let slip = IndexSlip::for_student(student, kind);
@@ -121,7 +121,7 @@ fn polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     };
     let kind = motion.kind();
     if let Some(edit) = student.mistake_in(&[FORMULA_AREAS[kind as usize]]).and_then(Mistake::edit) {
-        let approach = usize::from(student.approach_is_right());
+        let approach = usize::from(student.has_right_approach());
         edit.apply(&Inputs::new(motion), &mut lists, Subject::all_of_kind(kind), approach);
     }
     lists
@@ -195,13 +195,13 @@ impl IndexSlip {
 }
 
 /// Returns whether pairs of this kind are checked with the integrator's prediction.
-fn is_on_prediction(student: Student, kind: usize) -> bool {
+fn uses_prediction(student: Student, kind: usize) -> bool {
     let all = [Mistake::ParticleParticlePrediction, Mistake::ParticleEdgePrediction, Mistake::HalfPlanePrediction];
     student.makes(all[kind])
 }
 
 /// Returns the axes for a pair. No formulas support a moving half-plane, so the axes do not move with its particle.
-fn axes_of(student: Student, pair: Pair) -> Axes {
+fn pair_axes(student: Student, pair: Pair) -> Axes {
     match (Axes::for_student(student), pair.object) {
         (Axes::Comoving, Object::HalfPlane(_)) => Axes::Scene,
         (frame, _) => frame,
@@ -210,7 +210,7 @@ fn axes_of(student: Student, pair: Pair) -> Axes {
 
 /// Returns the polynomials of a pair of bodies by this student's formulas, as passed to the root finder.
 #[must_use]
-pub fn polynomials_of(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
+pub fn body_polynomials(student: Student, motion: &PairMotion) -> Vec<Vec<f64>> {
     let object = match motion {
         PairMotion::Particles { .. } => Object::Particle(1),
         PairMotion::Edge { .. } => Object::Edge(0),
@@ -229,16 +229,16 @@ pub fn detect(
     log: &mut StepLog,
 ) -> Result<Option<Contact>, StepFailure> {
     let student = world.student;
-    let is_old = is_on_prediction(student, pair.object.numbers().0);
+    let is_old = uses_prediction(student, pair.object.numbers().0);
     let prediction = if is_old { log.prediction.clone() } else { None };
     let motion = read_motion(world, pair, q_start, prediction.as_deref().unwrap_or(q_end));
-    if student.makes(Mistake::PairsPruned) && out_of_reach(&motion) {
+    if student.makes(Mistake::PairsPruned) && is_out_of_reach(&motion) {
         return Ok(None);
     }
     let mut lists = polynomials(student, &motion);
     normalization::normalize(student, &motion, &mut lists);
     if student.makes(Mistake::ThroughBernstein) {
-        lists.iter_mut().for_each(|list| *list = basis::through_bernstein(list));
+        lists.iter_mut().for_each(|list| *list = basis::convert_through_bernstein(list));
     }
     let polynomials = handover::pass_on(student, pair.object, lists);
     if polynomials.is_empty() {
@@ -249,20 +249,20 @@ pub fn detect(
     if let Some(guard) = log.guard
         && !(first..log.polynomials.len()).all(|index| guard(index, &logged_polynomial(student, log, index)))
     {
-        return Err(StepFailure::Refused);
+        return Err(StepFailure::Stopped);
     }
-    let mut time = searched_time(&polynomials, log)?;
+    let mut time = search_time(&polynomials, log)?;
     if student.makes(Mistake::ContactTimeSingle) {
         time = round_to_f32(time);
     }
-    if !within_step(student, time, world.scene.time_step) {
+    if !is_within_step(student, time, world.scene.time_step) {
         return Ok(None);
     }
-    let mut n = axes_of(student, pair).turn_back(contact_vector(student, &motion, time));
+    let mut n = pair_axes(student, pair).transform_back(contact_vector(student, &motion, time));
     if matches!(motion, PairMotion::Edge { .. }) && length(n) == 0.0 {
         return Ok(None);
     }
-    if is_rejected(student, &motion, time) || is_held(world, pair) {
+    if is_rejected(student, &motion, time) || rejects_fixed_pair(world, pair) {
         return Ok(None);
     }
     match student.mistake_in(&[Area::ContactVector]) {
@@ -276,10 +276,10 @@ pub fn detect(
 }
 
 /// Returns the time of impact; the log counts the unusual part of the search.
-fn searched_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, StepFailure> {
+fn search_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, StepFailure> {
     let mut steps = 0;
     let found = first_time_with_steps(polynomials, &mut steps);
-    log.long_searches += if found.is_err() { ENDLESS_SEARCH } else { steps.saturating_sub(USUAL_SEARCH) };
+    log.long_searches += if found.is_err() { MAX_SEARCH_STEPS } else { steps.saturating_sub(USUAL_SEARCH_STEPS) };
     Ok(found?)
 }
 
@@ -298,7 +298,7 @@ pub fn detect_contacts(
 }
 
 /// Returns whether a time of impact is within the step.
-fn within_step(student: Student, time: f64, time_step: f64) -> bool {
+fn is_within_step(student: Student, time: f64, time_step: f64) -> bool {
     let is_of_time = |mistake: &Mistake| {
         [Area::Decision, Area::Process].contains(&mistake.area()) && !REJECTION_MISTAKES.contains(mistake)
     };
@@ -341,7 +341,7 @@ fn is_rejected(student: Student, motion: &PairMotion, time: f64) -> bool {
 }
 
 /// Returns whether this student's program rejects the impact because something is fixed.
-fn is_held(world: &World, pair: Pair) -> bool {
+fn rejects_fixed_pair(world: &World, pair: Pair) -> bool {
     match (world.student.mistake_among(REJECTION_MISTAKES), pair.object) {
         (Some(Mistake::DecisionFixedAtEdges), Object::Edge(_))
         | (Some(Mistake::DecisionFixedAtHalfPlanes), Object::HalfPlane(_)) => world.is_fixed(pair.particle),
@@ -355,7 +355,7 @@ fn is_held(world: &World, pair: Pair) -> bool {
 
 /// Returns whether the particles' paths stay far apart, judged by bounding circles. The assignment does not require
 /// this test.
-fn out_of_reach(motion: &PairMotion) -> bool {
+fn is_out_of_reach(motion: &PairMotion) -> bool {
     let PairMotion::Particles { centers: [one, two], radii } = motion else { return false };
     length(two.start - one.start) > radii[0] + radii[1] + length(one.shift) + length(two.shift)
 }

@@ -35,7 +35,7 @@ pub fn polynomials(student: Student, bodies: &[PointMotion; 3], radii: [f64; 2])
         Some(Mistake::WideArithmetic) => arithmetic::particle_edge::<WideNumber>(bodies, radii).swap_remove(0),
         Some(Mistake::FactorizedQuartic | Mistake::FactorizedAll) => factorized::quartic(bodies, square),
         Some(Mistake::InterpolatedQuartic) => basis::overlap_from_values(bodies, square),
-        Some(Mistake::RearrangedParticleEdge) => rearrange(dots, square),
+        Some(Mistake::RearrangedParticleEdge) => rearranged_quartic(dots, square),
         _ => quartic(dots, square),
     };
     let [a, b, c, _, _, _, g, h, i] = dots;
@@ -72,7 +72,7 @@ fn quartic([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
 }
 
 /// Returns the quartic, with its sums associated differently.
-fn rearrange([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
+fn rearranged_quartic([a, b, c, d, e, f, g, h, i]: DotProducts, s: f64) -> Vec<f64> {
     vec![
         c * c - i * f,
         2.0 * (b * c - (e * i + h * f)),

@@ -62,8 +62,8 @@ pub fn contact_vector(student: Student, one: &PointMotion, point: Vec2, normal: 
             let u = unit(normal);
             (point - one.position_at(t)).dot(&u) * u
         }
-        Some(Mistake::ExtendedPrecision) => arithmetic::to_half_plane::<WideNumber>(one, point, normal, t),
-        Some(Mistake::FusedArithmetic) => arithmetic::to_half_plane::<FusedDouble>(one, point, normal, t),
+        Some(Mistake::ExtendedPrecision) => arithmetic::vector_to_half_plane::<WideNumber>(one, point, normal, t),
+        Some(Mistake::FusedArithmetic) => arithmetic::vector_to_half_plane::<FusedDouble>(one, point, normal, t),
         _ => offset.dot(&normal) / square * normal,
     }
 }

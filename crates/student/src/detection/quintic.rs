@@ -35,7 +35,7 @@ fn course_formula(student: Student, [one, two, three]: &[PointMotion; 3]) -> Vec
     let n = c * g + 2.0 * b * h;
     let o = c * h;
     let (p, q) = (b, c);
-    let cubic_slip = if student.approach_is_right() { 2.0 * f * h * q } else { 2.0 * f * g * q };
+    let cubic_slip = if student.has_right_approach() { 2.0 * f * h * q } else { 2.0 * f * g * q };
     vec![
         -h * h * q - c * c * d - 2.0 * o * j,
         -h * h * p - 2.0 * g * h * q - 4.0 * b * c * d - c * c * e - o * i - 2.0 * n * j,

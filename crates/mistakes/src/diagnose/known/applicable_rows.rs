@@ -57,7 +57,7 @@ fn is_applicable(scene: &Scene, counts: &PairKindMap<usize>, row: &Row) -> bool 
         }
         (Collision::Hybrid { .. }, area) => area != Area::ContinuousTime,
     };
-    has_stage && row.kind_of_pair().is_none_or(|kind| counts[kind] > 0)
+    has_stage && row.pair_kind().is_none_or(|kind| counts[kind] > 0)
 }
 
 /// Returns whether mistakes of forces and integrators, and their effects, show.

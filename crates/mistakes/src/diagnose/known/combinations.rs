@@ -199,7 +199,7 @@ impl<'a> Search<'a> {
     /// each.
     fn row_sizes(&self) -> Vec<(&'static Row, usize)> {
         let counts = pairs(self.scene).counts();
-        let size = |row: &Row| row.kind_of_pair().map_or(0, |kind| counts[kind] * kind.polynomial_count());
+        let size = |row: &Row| row.pair_kind().map_or(0, |kind| counts[kind] * kind.polynomial_count());
         self.empty_stage_rows().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
     }
 

@@ -22,7 +22,7 @@ pub(super) fn find_contradicted_keys(scene: &Scene, scan: &Scan) -> Vec<String> 
         | Mistake::HalfPlaneEmpty
         | Mistake::ParticleParticleZero
         | Mistake::ParticleEdgeZero
-        | Mistake::HalfPlaneZero => row.kind_of_pair().is_some_and(|kind| kinds.contains(&kind)),
+        | Mistake::HalfPlaneZero => row.pair_kind().is_some_and(|kind| kinds.contains(&kind)),
         Mistake::ImpulsesEmpty | Mistake::ImpulsesEmptySuccess => is_hybrid && samples().any(has_rounds),
         Mistake::GeometricEmpty => is_hybrid && samples().any(|sample| has_passes(sample) || is_moving(sample)),
         Mistake::FailsafeEmpty => is_hybrid && samples().any(is_moving),

@@ -5,7 +5,7 @@ use fosssim_model::{
     scene::{Collision, Scene, original},
     sim::PairKind,
 };
-use fosssim_student::{Student, find, plain::formula_in, record_trace};
+use fosssim_student::{Student, find, formula_detector::find_formula, record_trace};
 use std::{fs, path::Path};
 
 #[expect(clippy::disallowed_methods, reason = "the scenes of the suites belong to a crate above this one")]
@@ -77,6 +77,6 @@ fn no_pair_of_any_kind_is_found_without_a_search() {
 #[test]
 fn no_trait_gives_a_formula_away() {
     for one in traits::variants() {
-        assert_eq!(formula_in(&one.describe()), None, "{}", one.describe());
+        assert_eq!(find_formula(&one.describe()), None, "{}", one.describe());
     }
 }

@@ -30,7 +30,7 @@ use super::{
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::assignments::t2m2::{NAMED_EDITS, NamedEdit, Subject};
-use fosssim_student::{Area, CATALOGUE, Row, RowKind, Student, polynomials_of};
+use fosssim_student::{Area, CATALOGUE, Row, RowKind, Student, body_polynomials};
 use std::collections::BTreeMap;
 use study::{Candidate, Case, PolynomialStudy};
 
@@ -182,13 +182,13 @@ fn find_known_mistakes(study: &PolynomialStudy<'_>) -> Vec<String> {
         return Vec::new();
     };
     let is_formula = |row: &&Row| {
-        let is_of_kind = row.kind_of_pair() == Some(kind)
+        let is_of_kind = row.pair_kind() == Some(kind)
             && matches!(row.area, Area::ParticleParticle | Area::ParticleEdge | Area::ParticleHalfPlane);
         row.kind == RowKind::Wrong && (is_of_kind || row.area == Area::Handover)
     };
     let makes = |row: &&Row| {
         study.cases.iter().all(|case| {
-            let made = polynomials_of(Student::new(Some(row.mistake)), &case.sample.motion);
+            let made = body_polynomials(Student::new(Some(row.mistake)), &case.sample.motion);
             let same = |made: &Vec<f64>| polynomial_matches(made, case.logged, &ROUND_OFF);
             made.get(number).is_some_and(same)
         })

@@ -81,7 +81,7 @@ fn collect_formula_slips(study: &PolynomialStudy, formula: &Formula, reading: Re
         });
         for trial in scaled.chain(letters).chain(dots).chain([SlipTrial::One]) {
             let counted = study.count_predicted(|case| {
-                let mut values = formula.values(&case.inputs);
+                let mut values = formula.letter_values(&case.inputs);
                 values[slot] = trial.value(slot, &values, &case.inputs);
                 formula.evaluate(&values)
             });

@@ -9,7 +9,7 @@ mod places;
 mod polynomials;
 mod stages;
 
-use fosssim_mistakes::diagnose::{About, Detail, Explanation, OfPolynomials, PolynomialDetail, formula_in};
+use fosssim_mistakes::diagnose::{About, Detail, Explanation, OfPolynomials, PolynomialDetail, find_formula};
 use fosssim_student::{Area, Mistake, Row, StepMistake, find};
 
 pub(crate) use letters::explain_letters;
@@ -30,7 +30,7 @@ pub fn describe(explanation: &Explanation) -> String {
         About::Pairs(wrong) => near::describe(wrong),
         About::NotFinite(found) => not_finite::describe(found),
     };
-    debug_assert!(formula_in(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
+    debug_assert!(find_formula(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
     sentence
 }
 

@@ -234,7 +234,7 @@ fn no_sentence_gives_a_formula_away() {
     let known = all_rows().map(|row| explanation(row.id, About::Mistake, Vec::new()));
     for one in all().into_iter().chain(known) {
         let sentence = describe(&one);
-        assert_eq!(formula_in(&sentence), None, "{sentence}");
+        assert_eq!(find_formula(&sentence), None, "{sentence}");
         assert!(sentence.ends_with(['.', '?']) && sentence.starts_with(char::is_uppercase), "{sentence}");
     }
 }

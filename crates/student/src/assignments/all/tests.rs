@@ -2,7 +2,7 @@
 use std::collections::BTreeSet;
 
 use super::*;
-use crate::plain::formula_in;
+use crate::formula_detector::find_formula;
 
 #[test]
 fn ids_are_unique_and_kebab_case() {
@@ -17,7 +17,7 @@ fn ids_are_unique_and_kebab_case() {
 #[test]
 fn every_sentence_is_one_and_no_two_rows_are_the_same() {
     for (index, row) in all_rows().enumerate() {
-        assert!(row.what.ends_with('.') && !row.what.contains(". "), "{}: {}", row.id, row.what);
+        assert!(row.summary.ends_with('.') && !row.summary.contains(". "), "{}: {}", row.id, row.summary);
         assert!(!row.term.is_empty(), "{}", row.id);
         let twin = all_rows()
             .take(index)
@@ -28,7 +28,8 @@ fn every_sentence_is_one_and_no_two_rows_are_the_same() {
 
 #[test]
 fn what_is_wrong_is_said_without_a_formula() {
-    let telling: Vec<String> =
-        all_rows().filter_map(|row| Some(format!("{}: {} in {}", row.id, formula_in(row.what)?, row.what))).collect();
+    let telling: Vec<String> = all_rows()
+        .filter_map(|row| Some(format!("{}: {} in {}", row.id, find_formula(row.summary)?, row.summary)))
+        .collect();
     assert!(telling.is_empty(), "{telling:#?}");
 }

@@ -4,7 +4,7 @@ use super::{
     steps::StepMistake,
     terms::{Edit, TERMS, TermRow},
 };
-use crate::assignments::rows::{RowKind, RowOf};
+use crate::assignments::rows::{MistakeRow, RowKind};
 use std::sync::LazyLock;
 
 impl From<Edit> for StepMistake {
@@ -13,22 +13,22 @@ impl From<Edit> for StepMistake {
     }
 }
 
-fn row(of: &'static TermRow, slip: Slip) -> RowOf<StepMistake> {
+fn new_row(of: &'static TermRow, slip: Slip) -> MistakeRow<StepMistake> {
     let kept = |text: String| -> &'static str { Box::leak(text.into_boxed_str()) };
-    RowOf {
+    MistakeRow {
         mistake: StepMistake::Edit(Edit { term: of.term, slip }),
         id: kept(format!("{}-{}", of.id, slip.id())),
         kind: RowKind::Wrong,
         area: of.area(),
-        what: kept(format!("{} {}.", of.subject, slip.predicate(of))),
-        term: kept(slip.exact(of)),
+        summary: kept(format!("{} {}.", of.subject, slip.predicate(of))),
+        term: kept(slip.exact_form(of)),
     }
 }
 
 /// The catalogue rows that edit one term of a formula. Rows for functions that the student left empty come first.
-pub static EDIT_ROWS: LazyLock<Vec<RowOf<StepMistake>>> = LazyLock::new(|| {
+pub static EDIT_ROWS: LazyLock<Vec<MistakeRow<StepMistake>>> = LazyLock::new(|| {
     let of = |row: &'static TermRow| row.slips.iter().copied().flatten().map(move |slip| (row, *slip));
     let mut all: Vec<(&TermRow, Slip)> = TERMS.iter().flat_map(of).collect();
     all.sort_by_key(|(row, slip)| !(row.is_function && *slip == Slip::Missing));
-    all.into_iter().map(|(of, slip)| row(of, slip)).collect()
+    all.into_iter().map(|(of, slip)| new_row(of, slip)).collect()
 });

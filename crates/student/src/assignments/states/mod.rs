@@ -2,10 +2,10 @@
 //! only states, not intermediate results.
 mod edits;
 pub(super) mod probes;
+mod slip_text;
 mod slips;
 mod steps;
 mod terms;
-mod words;
 
 pub use edits::EDIT_ROWS;
 pub use slips::Slip;

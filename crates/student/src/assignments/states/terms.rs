@@ -310,7 +310,7 @@ impl TermRow {
 
 impl Term {
     /// Returns the quantity of which this one is a part.
-    const fn whole(self) -> Option<Self> {
+    const fn containing_term(self) -> Option<Self> {
         Some(match self {
             Self::SpringElastic | Self::SpringDamping => Self::Spring,
             Self::JacobianSpring | Self::JacobianVelocity => Self::JacobianSprings,
@@ -327,7 +327,7 @@ impl Term {
             if one == self {
                 return true;
             }
-            part = one.whole();
+            part = one.containing_term();
         }
         false
     }

@@ -1,7 +1,7 @@
 //! Mistakes and variants of a student's program in collision handling, in its trace, and as a process.
 use super::{
     super::{
-        rows::{RowOf, rows},
+        rows::{MistakeRow, rows},
         states::StepMistake,
     },
     Subject::*,
@@ -9,13 +9,13 @@ use super::{
         FormulaEdit::{self, *},
         *,
     },
-    inputs::root,
-    named::*,
-    specials::*,
+    inputs::square_root,
+    named_edits::*,
+    special_formulas::*,
 };
 
 /// A row of the catalogue, with the mistake as a [`Mistake`].
-pub type Row = RowOf<Mistake>;
+pub type Row = MistakeRow<Mistake>;
 
 impl From<StepMistake> for Mistake {
     fn from(mistake: StepMistake) -> Self {
@@ -39,23 +39,23 @@ rows! {
         ParticleParticleRadiiSquaredApart "pp-radii-squared-apart" [Named(&RADII_SQUARED_APART)];
         ParticleParticleRadiusNotSquared "pp-radius-not-squared" [Named(&RADIUS_NOT_SQUARED)];
         ParticleParticleDistanceNotSquared "pp-distance-not-squared"
-            [Letters(ParticleOverlap, |letters, _| letters[2] = root(letters[2]))];
+            [Letters(ParticleOverlap, |letters, _| letters[2] = square_root(letters[2]))];
         ParticleParticleFirstRadiusTwice "pp-first-radius-twice" [Named(&FIRST_RADIUS_TWICE)];
         ParticleParticleSecondRadiusTwice "pp-second-radius-twice" [Named(&SECOND_RADIUS_TWICE)];
         ParticleParticleDiameters "pp-diameters" [Named(&DIAMETERS)];
         ParticleParticleOneRadius "pp-one-radius" [Named(&FIRST_RADIUS_ONLY)];
         ParticleParticleNoFirstRadius "pp-no-first-radius" [Named(&SECOND_RADIUS_ONLY)];
         ParticleParticleEndPositions "pp-end-positions" [Named(&END_POSITIONS)];
-        ParticleParticleFirstStill "pp-first-still" [Letters(ParticleOverlap, first_still)];
+        ParticleParticleFirstStill "pp-first-still" [Letters(ParticleOverlap, omit_first_displacement)];
         ParticleParticleSecondStill "pp-second-still" [Named(&SECOND_PARTICLE_STILL)];
-        ParticleParticleEndForDisplacement "pp-end-for-displacement" [Letters(ParticleOverlap, ends_for_displacements)];
+        ParticleParticleEndForDisplacement "pp-end-for-displacement" [Letters(ParticleOverlap, use_end_positions)];
         ParticleParticleDisplacementsSwapped "pp-displacements-swapped" [Named(&DISPLACEMENT_REVERSED)];
         ParticleParticlePositionIndex "pp-position-index";
         ParticleParticleNextRadius "pp-next-radius";
-        ParticleParticleXOnly "pp-x-only" [Letters(ParticleOverlap, x_only)];
+        ParticleParticleXOnly "pp-x-only" [Letters(ParticleOverlap, omit_second_component)];
         ParticleParticleTinyError "pp-tiny-error" [List(ParticleOverlap, |list| list[2] *= 1.0 + 1e-9)];
-        ParticleParticleOverlapNegated "pp-overlap-negated" [List(ParticleOverlap, negate)];
-        ParticleParticleApproachNegated "pp-approach-negated" [List(ParticleApproach, negate)];
+        ParticleParticleOverlapNegated "pp-overlap-negated" [List(ParticleOverlap, negate_list)];
+        ParticleParticleApproachNegated "pp-approach-negated" [List(ParticleApproach, negate_list)];
         ParticleParticleSeparating "pp-separating" [List(ParticleApproach, negate_at::<1>)];
         ParticleParticleApproachSlopeSign "pp-approach-slope-sign" [List(ParticleApproach, negate_at::<0>)];
         ParticleParticleApproachSlopeTwice "pp-approach-slope-twice" [List(ParticleApproach, |list| list[0] *= 2.0)];
@@ -90,7 +90,7 @@ rows! {
         ParticleEdgeRadiusIndex "pe-radius-index";
         ParticleEdgePositionIndex "pe-position-index";
         ParticleEdgeRadiusUnscaled "pe-radius-unscaled" [Named(&RADIUS_UNSCALED)];
-        ParticleEdgeQuarticNegated "pe-quartic-negated" [List(EdgeOverlap, negate)];
+        ParticleEdgeQuarticNegated "pe-quartic-negated" [List(EdgeOverlap, negate_list)];
         ParticleEdgeThreeTerms "pe-three-terms" [List(EdgeOverlap, keep_last::<3>)];
         ParticleEdgeQuarticNoFi "pe-quartic-no-fi" [Weight(EdgeOverlap, 4, &[5, 8], 0.0)];
         ParticleEdgeQuarticPlusFi "pe-quartic-plus-fi" [Weight(EdgeOverlap, 4, &[5, 8], -1.0)];
@@ -114,7 +114,7 @@ rows! {
         ParticleEdgeConstantNoDg "pe-constant-no-dg" [Weight(EdgeOverlap, 0, &[3, 6], 0.0)];
         ParticleEdgeConstantMinusAa "pe-constant-minus-aa" [Weight(EdgeOverlap, 0, &[0, 0], -1.0)];
         AlphaLowSlopeSign "pe-alpha-low-slope-sign" [List(AlphaLow, negate_at::<1>)];
-        AlphaLowNegated "pe-alpha-low-negated" [List(AlphaLow, negate)];
+        AlphaLowNegated "pe-alpha-low-negated" [List(AlphaLow, negate_list)];
         AlphaLowNoQuadratic "pe-alpha-low-no-quadratic" [List(AlphaLow, keep_last::<2>)];
         AlphaLowHalfSlope "pe-alpha-low-half-slope" [Weight(AlphaLow, 1, &[1], 0.0)];
         AlphaLowIsHigh "pe-alpha-low-is-high" [Lists(|lists| lists[1] = lists[2].clone())];
@@ -122,14 +122,14 @@ rows! {
         AlphaLowMissing "pe-alpha-low-missing" [List(AlphaLow, replace_by_one)];
         AlphaHighIsLow "pe-alpha-high-is-low" [Lists(|lists| lists[2] = lists[1].clone())];
         AlphaHighUnscaled "pe-alpha-high-unscaled" [Named(&ONE_UNSCALED)];
-        AlphaHighNegated "pe-alpha-high-negated" [List(AlphaHigh, negate)];
+        AlphaHighNegated "pe-alpha-high-negated" [List(AlphaHigh, negate_list)];
         AlphaHighHalfSlope "pe-alpha-high-half-slope" [Weight(AlphaHigh, 1, &[2], 0.0)];
         AlphaHighSlopeSign "pe-alpha-high-slope-sign" [List(AlphaHigh, negate_at::<1>)];
         AlphaHighNoQuadratic "pe-alpha-high-no-quadratic" [List(AlphaHigh, keep_last::<2>)];
         AlphaHighAtStart "pe-alpha-high-at-start" [List(AlphaHigh, keep_last::<1>)];
         AlphaHighMissing "pe-alpha-high-missing" [List(AlphaHigh, replace_by_one)];
         QuinticConstantAlpha "pe-approach-constant-alpha" [Named(&CONSTANT_ALPHA)];
-        QuinticNegated "pe-approach-negated" [List(EdgeApproach, negate)];
+        QuinticNegated "pe-approach-negated" [List(EdgeApproach, negate_list)];
         QuinticMissing "pe-approach-missing" [List(EdgeApproach, replace_by_one)];
         QuinticLowestFirst "pe-approach-lowest-first" [List(EdgeApproach, |list| list.reverse())];
         QuinticNoConstant "pe-approach-no-constant" [List(EdgeApproach, |list| list[5] = 0.0)];
@@ -153,8 +153,8 @@ rows! {
         HalfPlaneQuadraticSign "ph-quadratic-sign" [Weight(HalfPlaneOverlap, 2, &[0, 0], -1.0)];
         HalfPlaneNoQuadratic "ph-no-quadratic" [Weight(HalfPlaneOverlap, 2, &[0, 0], 0.0)];
         HalfPlaneConstantSign "ph-constant-sign" [Weight(HalfPlaneOverlap, 0, &[1, 1], -1.0)];
-        HalfPlaneOffsetNotSquared "ph-offset-not-squared" [Formula(HalfPlaneOverlap, offset_not_squared)];
-        HalfPlaneOverlapNegated "ph-overlap-negated" [List(HalfPlaneOverlap, negate)];
+        HalfPlaneOffsetNotSquared "ph-offset-not-squared" [Formula(HalfPlaneOverlap, unsquared_offset)];
+        HalfPlaneOverlapNegated "ph-overlap-negated" [List(HalfPlaneOverlap, negate_list)];
         HalfPlaneOverlapSigned "ph-overlap-signed" [Named(&SIGNED_DISTANCE)];
         HalfPlaneOverlapToPoint "ph-overlap-to-point" [Formula(HalfPlaneOverlap, overlap_to_point)];
         HalfPlaneFirst "ph-first-half-plane";
@@ -166,12 +166,12 @@ rows! {
         HalfPlaneApproachNoSpeed "ph-approach-no-speed" [Named(&NO_SPEED_FACTOR)];
         HalfPlaneApproachConstantNoSpeed "ph-approach-constant-no-speed"
             [Formula(HalfPlaneApproach, constant_without_speed)];
-        HalfPlaneApproachNegated "ph-approach-negated" [List(HalfPlaneApproach, negate)];
+        HalfPlaneApproachNegated "ph-approach-negated" [List(HalfPlaneApproach, negate_list)];
         HalfPlaneApproachSlopeSign "ph-approach-slope-sign" [List(HalfPlaneApproach, negate_at::<0>)];
         HalfPlaneApproachSlopeTwice "ph-approach-slope-twice" [List(HalfPlaneApproach, |list| list[0] *= 2.0)];
         HalfPlaneApproachAtStart "ph-approach-at-start" [List(HalfPlaneApproach, keep_last::<1>)];
         HalfPlaneApproachSpeedOnly "ph-approach-speed-only" [Named(&SPEED_ONLY)];
-        HalfPlaneApproachClosingOnly "ph-approach-closing-only" [Formula(HalfPlaneApproach, closing_only)];
+        HalfPlaneApproachClosingOnly "ph-approach-closing-only" [Formula(HalfPlaneApproach, negative_normal_speed)];
         HalfPlaneNoApproach "ph-no-approach" [List(HalfPlaneApproach, replace_by_one)];
     }
     Wrong Handover "sentences/handover.txt" {

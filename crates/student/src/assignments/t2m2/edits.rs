@@ -74,7 +74,7 @@ impl FormulaEdit {
             }
             Self::Weight(subject, power, letters, factor) => replace(subject, &|list| {
                 let formula = formula(subject);
-                let quantities = formula.values(inputs);
+                let quantities = formula.letter_values(inputs);
                 let terms = formula.terms.iter().filter(|term| term.power == power);
                 let weight = |letters_of_term| if letters_of_term == letters { factor } else { 1.0 };
                 list[formula.degree - power] = terms
@@ -82,7 +82,7 @@ impl FormulaEdit {
                     .sum();
             }),
             Self::Letters(subject, change) => replace(subject, &|list| {
-                let mut quantities = formula(subject).values(inputs);
+                let mut quantities = formula(subject).letter_values(inputs);
                 change(&mut quantities, inputs);
                 *list = values(formula(subject).evaluate(&quantities));
             }),
@@ -94,7 +94,7 @@ impl FormulaEdit {
 }
 
 #[expect(clippy::ptr_arg, reason = "a change of a list may shorten it")]
-pub(super) fn negate(list: &mut Vec<f64>) {
+pub(super) fn negate_list(list: &mut Vec<f64>) {
     list.iter_mut().for_each(|coefficient| *coefficient = -*coefficient);
 }
 
@@ -112,18 +112,18 @@ pub(super) fn replace_by_one(list: &mut Vec<f64>) {
 }
 
 /// Omits the first particle's displacement in the overlap.
-pub(super) fn first_still(letters: &mut [BoundedValue], inputs: &Inputs) {
+pub(super) fn omit_first_displacement(letters: &mut [BoundedValue], inputs: &Inputs) {
     (letters[0], letters[1]) = (inputs.d[1].dot(inputs.d[1]), inputs.x21().dot(inputs.d[1]));
 }
 
 /// Uses end positions instead of displacements in the overlap.
-pub(super) fn ends_for_displacements(letters: &mut [BoundedValue], inputs: &Inputs) {
+pub(super) fn use_end_positions(letters: &mut [BoundedValue], inputs: &Inputs) {
     let end = inputs.x21() + inputs.d21();
     (letters[0], letters[1]) = (end.dot(end), inputs.x21().dot(end));
 }
 
 /// Omits the second component in the overlap's moving terms.
-pub(super) fn x_only(letters: &mut [BoundedValue], inputs: &Inputs) {
+pub(super) fn omit_second_component(letters: &mut [BoundedValue], inputs: &Inputs) {
     let (x, d) = (inputs.x21().x, inputs.d21().x);
     (letters[0], letters[1]) = (d * d, x * d);
 }

@@ -1,5 +1,5 @@
 //! Quantities from outside a formula that students may use in it.
-use super::{Inputs, Subject, formulas::Letter, inputs::root};
+use super::{Inputs, Subject, formulas::Letter, inputs::square_root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
 /// Returns letters that do not belong in the formulas of a polynomial, but may be used there.
@@ -14,7 +14,7 @@ pub fn extra_letters(subject: Subject) -> &'static [Letter] {
 }
 
 fn length(vector: BoundedVector) -> BoundedValue {
-    root(vector.dot(vector))
+    square_root(vector.dot(vector))
 }
 
 const fn letter(name: &'static str, order: u8, value: fn(&Inputs) -> BoundedValue) -> Letter {

@@ -41,7 +41,7 @@ pub struct Formula {
 
 impl Formula {
     /// Returns the values of the letters.
-    pub fn values(&self, inputs: &Inputs) -> Vec<BoundedValue> {
+    pub fn letter_values(&self, inputs: &Inputs) -> Vec<BoundedValue> {
         self.letters.iter().map(|letter| (letter.value)(inputs)).collect()
     }
 
@@ -57,7 +57,7 @@ impl Formula {
 
     /// Returns the coefficients from the inputs.
     pub fn polynomial(&self, inputs: &Inputs) -> Vec<BoundedValue> {
-        self.evaluate(&self.values(inputs))
+        self.evaluate(&self.letter_values(inputs))
     }
 }
 
@@ -72,14 +72,14 @@ pub fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
 /// Returns the readings of one polynomial, which are all right; the assignment's reading is first.
 pub fn readings(subject: Subject) -> &'static [Formula] {
     match subject {
-        Subject::ParticleOverlap => PARTICLE_OVERLAP,
-        Subject::ParticleApproach => PARTICLE_APPROACH,
+        Subject::ParticleOverlap => PARTICLE_OVERLAP_FORMULAS,
+        Subject::ParticleApproach => PARTICLE_APPROACH_FORMULAS,
         Subject::EdgeOverlap => QUARTIC_FORMULAS,
-        Subject::AlphaLow => ALPHA_LOW,
-        Subject::AlphaHigh => ALPHA_HIGH,
+        Subject::AlphaLow => ALPHA_LOW_FORMULAS,
+        Subject::AlphaHigh => ALPHA_HIGH_FORMULAS,
         Subject::EdgeApproach => &QUINTIC_FORMULAS,
-        Subject::HalfPlaneOverlap => HALF_PLANE_OVERLAP,
-        Subject::HalfPlaneApproach => HALF_PLANE_APPROACH,
+        Subject::HalfPlaneOverlap => HALF_PLANE_OVERLAP_FORMULAS,
+        Subject::HalfPlaneApproach => HALF_PLANE_APPROACH_FORMULAS,
     }
 }
 
@@ -98,30 +98,30 @@ const PARTICLE_LETTERS: [Letter; 4] = [
     letter("R^2", "", 0, |inputs| inputs.square),
 ];
 
-const PARTICLE_OVERLAP: &[Formula] = &[Formula {
+const PARTICLE_OVERLAP_FORMULAS: &[Formula] = &[Formula {
     letters: &PARTICLE_LETTERS,
     terms: &[term(2, -1.0, &[0]), term(1, -2.0, &[1]), term(0, 1.0, &[3]), term(0, -1.0, &[2])],
     degree: 2,
 }];
 
-const PARTICLE_APPROACH: &[Formula] =
+const PARTICLE_APPROACH_FORMULAS: &[Formula] =
     &[Formula { letters: &PARTICLE_LETTERS, terms: &[term(1, -1.0, &[0]), term(0, -1.0, &[1])], degree: 1 }];
 
-const HALF_PLANE: [Letter; 4] = [
+const HALF_PLANE_LETTERS: [Letter; 4] = [
     letter("(dx.n)", "", 1, |inputs| inputs.d[0].dot(inputs.normal())),
     letter("((p-x).n)", "", 0, |inputs| inputs.x21().dot(inputs.normal())),
     letter("(n.n)", "", 0, |inputs| inputs.normal_square),
     letter("r^2", "", 0, |inputs| inputs.square),
 ];
 
-const HALF_PLANE_OVERLAP: &[Formula] = &[Formula {
-    letters: &HALF_PLANE,
+const HALF_PLANE_OVERLAP_FORMULAS: &[Formula] = &[Formula {
+    letters: &HALF_PLANE_LETTERS,
     terms: &[term(2, -1.0, &[0, 0]), term(1, 2.0, &[0, 1]), term(0, -1.0, &[1, 1]), term(0, 1.0, &[2, 3])],
     degree: 2,
 }];
 
-const HALF_PLANE_APPROACH: &[Formula] =
-    &[Formula { letters: &HALF_PLANE, terms: &[term(1, -1.0, &[0, 0]), term(0, 1.0, &[0, 1])], degree: 1 }];
+const HALF_PLANE_APPROACH_FORMULAS: &[Formula] =
+    &[Formula { letters: &HALF_PLANE_LETTERS, terms: &[term(1, -1.0, &[0, 0]), term(0, 1.0, &[0, 1])], degree: 1 }];
 
 /// The letters `a..i` of the quartic, and the squared sum of the radii.
 const EDGE_LETTERS: [Letter; 10] = [
@@ -162,7 +162,7 @@ const QUARTIC_FORMULAS: &[Formula] = &[Formula {
     degree: 4,
 }];
 
-const ALPHA_LOW: &[Formula] = &[Formula {
+const ALPHA_LOW_FORMULAS: &[Formula] = &[Formula {
     letters: &[
         letter("x12.x32", "", 0, |inputs| inputs.x12().dot(inputs.x32())),
         letter("x12.d32", "", 1, |inputs| inputs.x12().dot(inputs.d32())),
@@ -173,7 +173,7 @@ const ALPHA_LOW: &[Formula] = &[Formula {
     degree: 2,
 }];
 
-const ALPHA_HIGH: &[Formula] = &[
+const ALPHA_HIGH_FORMULAS: &[Formula] = &[
     Formula {
         letters: &[
             letter("x13.x23", "", 0, |inputs| inputs.x13().dot(inputs.x23())),

@@ -44,7 +44,7 @@ const EDGE_VECTORS: &[Ingredient] = &[
     ingredient("(x32+d32)", 0.8, |inputs| inputs.x32() + inputs.d32()),
 ];
 
-const HALF_PLANE: &[Ingredient] = &[
+const HALF_PLANE_VECTORS: &[Ingredient] = &[
     ingredient("dx", 0.0, |inputs| inputs.d[0]),
     ingredient("n", 0.0, Inputs::normal),
     ingredient("(p-x)", 0.0, Inputs::x21),
@@ -58,6 +58,6 @@ pub const fn ingredients(kind: PairKind) -> &'static [Ingredient] {
     match kind {
         PairKind::ParticleParticle => PARTICLE_VECTORS,
         PairKind::ParticleEdge => EDGE_VECTORS,
-        PairKind::ParticleHalfPlane => HALF_PLANE,
+        PairKind::ParticleHalfPlane => HALF_PLANE_VECTORS,
     }
 }

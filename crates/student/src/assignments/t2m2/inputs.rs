@@ -46,7 +46,7 @@ impl Inputs {
 }
 
 /// Returns the square root of a nonnegative number.
-pub(super) fn root(square: BoundedValue) -> BoundedValue {
+pub(super) fn square_root(square: BoundedValue) -> BoundedValue {
     let value = square.value.sqrt();
     BoundedValue { value, bound: value + if value > 0.0 { square.bound / value } else { 0.0 } }
 }

@@ -5,15 +5,15 @@ pub mod extras;
 pub mod formulas;
 pub mod ingredients;
 mod inputs;
-mod named;
+mod named_edits;
 pub(super) mod probes;
 mod reading;
-mod specials;
+mod special_formulas;
 
 pub use catalogue::{CATALOGUE, Mistake, Row};
 pub use edits::{FormulaEdit, NamedEdit};
 pub use formulas::Letter;
 pub use fosssim_findings::explanation::{Input, Reading, Subject};
 pub use inputs::Inputs;
-pub use named::{NAMED_EDITS, find_edit};
+pub use named_edits::{NAMED_EDITS, find_edit};
 pub use reading::letter;

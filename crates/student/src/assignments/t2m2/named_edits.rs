@@ -6,8 +6,8 @@ use super::{
         FormulaEdit::{Formula, OtherInputs},
         NamedEdit,
     },
-    inputs::root,
-    specials::*,
+    inputs::square_root,
+    special_formulas::*,
 };
 use fosssim_model::sim::PairKind;
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
@@ -128,7 +128,9 @@ named_edits! {
         inputs.normal_square = BoundedValue::from_exact(1.0);
     })
         => "The radius term is right only for unit normals" => "r^2 is used instead of r^2 (n.n)";
-    NORMAL_LENGTH "normal-length" [PH] 2.7: OtherInputs(|inputs| inputs.normal_square = root(inputs.normal_square))
+    NORMAL_LENGTH "normal-length" [PH] 2.7: OtherInputs(|inputs| {
+        inputs.normal_square = square_root(inputs.normal_square);
+    })
         => "The radius term has the length of the normal instead of its square"
         => "r^2 |n| is used instead of r^2 (n.n)";
     REVERSED_OFFSET "reversed-offset" [PH] 4.1: OtherInputs(|inputs| inputs.x.swap(0, 1))
@@ -144,19 +146,19 @@ named_edits! {
     OVERLAP_CONSTANT_ALPHA "overlap-constant-alpha" [PE] 2.5: Formula(Subject::EdgeOverlap, overlap_constant_alpha)
         => "alpha is treated as constant in the overlap, so the point of the edge that is closest at the start counts"
         => "alpha is (x12.x32)/(x32.x32) at the start of the step and does not depend on t";
-    RADIUS_UNSCALED "radius-unscaled" [PE] 2.5: Formula(Subject::EdgeOverlap, radius_unscaled)
+    RADIUS_UNSCALED "radius-unscaled" [PE] 2.5: Formula(Subject::EdgeOverlap, unscaled_radius)
         => "The radii are not multiplied by the edge's squared length when the denominator is cleared"
         => "R^2 is used instead of R^2 (x32 + t d32).(x32 + t d32)";
-    ONE_UNSCALED "one-unscaled" [PE] 2.5: Formula(Subject::AlphaHigh, one_unscaled)
+    ONE_UNSCALED "one-unscaled" [PE] 2.5: Formula(Subject::AlphaHigh, unscaled_one)
         => "The constant in alpha < 1 is not multiplied by the edge's squared length when the denominator is cleared"
         => "1 is used instead of (x32 + t d32).(x32 + t d32)";
     SIGNED_DISTANCE "signed-distance" [PH] 2.5: Formula(Subject::HalfPlaneOverlap, signed_distance)
         => "The overlap is a signed distance, which is right only on one side of the boundary"
         => "the polynomial is -(dx.n) t + r |n| + (p-x).n, a difference of lengths, expected that of squares";
-    NO_SPEED_FACTOR "no-speed-factor" [PH] 2.5: Formula(Subject::HalfPlaneApproach, no_speed_factor)
+    NO_SPEED_FACTOR "no-speed-factor" [PH] 2.5: Formula(Subject::HalfPlaneApproach, approach_without_speed)
         => "The approach does not take the side of the half-plane into account: it is right only on one side"
         => "the factor (dx.n) is missing";
-    SPEED_ONLY "speed-only" [PH] 2.5: Formula(Subject::HalfPlaneApproach, speed_only)
+    SPEED_ONLY "speed-only" [PH] 2.5: Formula(Subject::HalfPlaneApproach, normal_speed)
         => "The approach uses only the velocity, not the side of the half-plane"
         => "the polynomial is (dx.n), a constant";
 }

@@ -12,7 +12,7 @@ use super::wire;
 pub enum SandboxError {
     /// The host lacks a required layer.
     #[error("this host cannot run programs safely:\n{missing}")]
-    Missing {
+    MissingLayers {
         /// One line for each missing layer, with its remedy.
         missing: String,
     },
@@ -48,7 +48,7 @@ pub enum SandboxError {
     },
     /// A path that the program should be able to read does not exist.
     #[error("cannot read {path}, which the program needs: {source}")]
-    Readable {
+    ReadablePath {
         /// The path that does not exist.
         path: String,
         /// The error that the system reported.
@@ -56,7 +56,7 @@ pub enum SandboxError {
     },
     /// The program was changed after the grader had copied it.
     #[error("{program} was changed or removed during grading by another program")]
-    Changed {
+    ChangedProgram {
         /// The path of the program.
         program: String,
     },

@@ -19,7 +19,7 @@ const FIRST_USER: u32 = 61_000;
 const USER_COUNT: u32 = 184;
 
 /// A user id that is reserved until the value is dropped.
-pub(super) struct Slot {
+pub(super) struct UserSlot {
     pub(super) user: u32,
     _lock: File,
 }
@@ -32,23 +32,23 @@ const MAX_WAIT: Duration = Duration::from_secs(3600);
 /// # Errors
 ///
 /// Fails if no id becomes free for an hour, the grader has ended, or the folder of locks has another owner.
-pub(super) fn take() -> io::Result<Slot> {
-    take_of(&folder()?, FIRST_USER..FIRST_USER + USER_COUNT, MAX_WAIT)
+pub(super) fn take_slot() -> io::Result<UserSlot> {
+    take_from_range(&lock_folder()?, FIRST_USER..FIRST_USER + USER_COUNT, MAX_WAIT)
 }
 
 /// Returns the id of a run whose supervisor was lost; `None` if another run has taken it. In that case, it had no
 /// processes any more.
-pub(super) fn retake(user: u32) -> Option<Slot> {
-    retake_in(&folder().ok()?, user)
+pub(super) fn retake_slot(user: u32) -> Option<UserSlot> {
+    retake_in(&lock_folder().ok()?, user)
 }
 
-fn retake_in(folder: &Path, user: u32) -> Option<Slot> {
+fn retake_in(folder: &Path, user: u32) -> Option<UserSlot> {
     let lock = OpenOptions::new().write(true).open(folder.join(user.to_string())).ok()?;
-    lock.try_lock().is_ok().then_some(Slot { user, _lock: lock })
+    lock.try_lock().is_ok().then_some(UserSlot { user, _lock: lock })
 }
 
 /// Takes an id in the range `users`. The locks are in `folder`.
-fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<Slot> {
+fn take_from_range(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<UserSlot> {
     const PAUSE: Duration = Duration::from_millis(20);
     let (start, grader) = (Instant::now(), std::os::unix::process::parent_id());
     loop {
@@ -56,7 +56,7 @@ fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<S
             let path = folder.join(user.to_string());
             let lock = OpenOptions::new().create(true).truncate(false).write(true).mode(0o600).open(path)?;
             if lock.try_lock().is_ok() && processes::find_by_user(user).is_empty() {
-                return Ok(Slot { user, _lock: lock });
+                return Ok(UserSlot { user, _lock: lock });
             }
         }
         if start.elapsed() >= patience || std::os::unix::process::parent_id() != grader {
@@ -68,10 +68,10 @@ fn take_of(folder: &Path, users: Range<u32>, patience: Duration) -> io::Result<S
 
 /// Returns the folder of the locks. It is created when it is first needed, in the first usual place that can be
 /// written.
-fn folder() -> io::Result<PathBuf> {
+fn lock_folder() -> io::Result<PathBuf> {
     let mut problem = io::Error::other("neither /run nor /tmp exists");
     for base in ["/run", "/var/tmp", "/tmp"] {
-        match folder_in(Path::new(base)) {
+        match lock_folder_in(Path::new(base)) {
             Ok(folder) => return Ok(folder),
             Err(error) => problem = error,
         }
@@ -79,7 +79,7 @@ fn folder() -> io::Result<PathBuf> {
     Err(problem)
 }
 
-fn folder_in(base: &Path) -> io::Result<PathBuf> {
+fn lock_folder_in(base: &Path) -> io::Result<PathBuf> {
     let folder = base.join("fosssim-oracle-users");
     match DirBuilder::new().mode(0o700).create(&folder) {
         Err(error) if error.kind() != io::ErrorKind::AlreadyExists => return Err(error),
@@ -103,7 +103,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         const NOBODY: u32 = 4_000_000_000;
         assert!(retake_in(folder.path(), NOBODY).is_none());
-        let next = take_of(folder.path(), NOBODY..NOBODY + 1, Duration::ZERO).unwrap();
+        let next = take_from_range(folder.path(), NOBODY..NOBODY + 1, Duration::ZERO).unwrap();
         assert!(retake_in(folder.path(), NOBODY).is_none());
         drop(next);
         assert_eq!(retake_in(folder.path(), NOBODY).unwrap().user, NOBODY);
@@ -113,7 +113,7 @@ mod tests {
     fn with_every_id_taken_a_run_waits_for_one() {
         let folder = tempfile::tempdir().unwrap();
         // An id that no user has.
-        let take = |patience| take_of(folder.path(), 4_000_000_000..4_000_000_001, patience);
+        let take = |patience| take_from_range(folder.path(), 4_000_000_000..4_000_000_001, patience);
         let first = take(Duration::ZERO).unwrap();
         assert!(take(Duration::ZERO).is_err(), "it is held");
         std::thread::scope(|scope| {

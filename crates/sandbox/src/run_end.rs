@@ -10,7 +10,7 @@ use super::{
 };
 
 /// The exit code of the dynamic loader if a library is missing.
-const LOADER_FAILED: i32 = 127;
+const LOADER_FAILURE_CODE: i32 = 127;
 
 /// Returns how the run of `order` ended, according to the supervisor's report and the program's standard error.
 pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> RunEnd {
@@ -22,7 +22,7 @@ pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ru
     }
     match &report.cause {
         Some(RunEnd::Cancelled) => return RunEnd::Cancelled,
-        _ if report.trace_over => return RunEnd::TraceLimit,
+        _ if report.exceeds_trace_limit => return RunEnd::TraceLimit,
         Some(cause) => return cause.clone(),
         None => {}
     }
@@ -40,27 +40,27 @@ pub(super) fn decide_end(order: &RunOrder, report: &Report, stderr: &[u8]) -> Ru
     if report.cpu > order.limits.cpu {
         return RunEnd::CpuLimit;
     }
-    if report.folder_over {
+    if report.exceeds_folder_limit {
         return RunEnd::FolderLimit;
     }
     let text = String::from_utf8_lossy(stderr);
-    if report.status != 0 && !order.sanitizers && wants_shadow(&text) {
+    if report.status != 0 && !order.sanitizers && lacks_shadow_memory(&text) {
         return RunEnd::CouldNotStart(StartProblem::Sanitized);
     }
     if let Some(signal) = signal {
-        let refused = signal == libc::SIGABRT && wants_memory(&text);
+        let refused = signal == libc::SIGABRT && lacks_memory(&text);
         return if refused { RunEnd::MemoryLimit } else { RunEnd::Signalled(signal) };
     }
     let code = libc::WEXITSTATUS(report.status);
-    if code != 0 && wants_memory(&text) {
+    if code != 0 && lacks_memory(&text) {
         return RunEnd::MemoryLimit;
     }
-    if code == LOADER_FAILED
+    if code == LOADER_FAILURE_CODE
         && let Some(library) = missing_library(&text)
     {
         return RunEnd::CouldNotStart(StartProblem::MissingLibrary { library });
     }
-    if code != 0 && wants_display(&text) {
+    if code != 0 && lacks_display(&text) {
         return RunEnd::CouldNotStart(StartProblem::NeedsDisplay);
     }
     RunEnd::Exited(code)
@@ -89,7 +89,7 @@ fn missing_library(stderr: &str) -> Option<String> {
 }
 
 /// Returns whether the runtime of a sanitizer reports that it did not get the terabytes of address space that it needs.
-fn wants_shadow(stderr: &str) -> bool {
+fn lacks_shadow_memory(stderr: &str) -> bool {
     const MESSAGES: [&str; 3] = [
         "ReserveShadowMemoryRange failed",
         "Sanitizer: CHECK failed: sanitizer_allocator",
@@ -100,7 +100,7 @@ fn wants_shadow(stderr: &str) -> bool {
 
 /// Returns whether the output ends with a runtime's message about a request for memory that was denied. If a single
 /// request exceeds the limit of address space, it fails before the memory is used, so no counter shows it.
-fn wants_memory(stderr: &str) -> bool {
+fn lacks_memory(stderr: &str) -> bool {
     // These are messages of C++, Rust, Python, Java, Node and the sanitizers.
     const MESSAGES: [&str; 6] = [
         "what():  std::bad_alloc",
@@ -115,7 +115,7 @@ fn wants_memory(stderr: &str) -> bool {
     { last }.any(|line| MESSAGES.iter().any(|complaint| line.contains(complaint)))
 }
 
-fn wants_display(stderr: &str) -> bool {
+fn lacks_display(stderr: &str) -> bool {
     let text = stderr.to_lowercase();
     ["cannot open display", "failed to open display", "can't open display", "could not open display"]
         .iter()
@@ -147,10 +147,10 @@ mod tests {
     #[test]
     fn a_trace_beyond_its_limit_outranks_all_but_a_cancellation() {
         for cause in [None, Some(RunEnd::FolderLimit), Some(RunEnd::WallLimit)] {
-            let report = Report { cause, trace_over: true, status: libc::SIGXFSZ, ..Report::default() };
+            let report = Report { cause, exceeds_trace_limit: true, status: libc::SIGXFSZ, ..Report::default() };
             assert_eq!(decide_end(&order(), &report, b""), RunEnd::TraceLimit);
         }
-        let report = Report { cause: Some(RunEnd::Cancelled), trace_over: true, ..Report::default() };
+        let report = Report { cause: Some(RunEnd::Cancelled), exceeds_trace_limit: true, ..Report::default() };
         assert_eq!(decide_end(&order(), &report, b""), RunEnd::Cancelled);
     }
 
@@ -172,7 +172,7 @@ mod tests {
             decide_end(&order(), &Report { cpu: Duration::from_micros(1_000_001), ..exit(0) }, b""),
             RunEnd::CpuLimit
         );
-        assert_eq!(decide_end(&order(), &Report { folder_over: true, ..exit(0) }, b""), RunEnd::FolderLimit);
+        assert_eq!(decide_end(&order(), &Report { exceeds_folder_limit: true, ..exit(0) }, b""), RunEnd::FolderLimit);
         assert_eq!(decide_end(&order(), &exit(0), b""), RunEnd::Exited(0));
     }
 

@@ -42,14 +42,14 @@ impl Slip {
             Self::Sign if of.id.starts_with("normal") => "points in exactly the opposite direction",
             Self::Sign if of.area() == Area::SimpleDetection => "is reversed",
             Self::Mass(-1) if of.id.ends_with("-mass") => "is taken as one for every particle",
-            Self::Mass(by) => return power(of.mass, by, "the mass"),
-            Self::Step(by) => return power(of.step, by, "the step size"),
+            Self::Mass(by) => return describe_power(of.mass, by, "the mass"),
+            Self::Step(by) => return describe_power(of.step, by, "the step size"),
             Self::Length(1) if of.length == 0 => "has a direction that is not normalized",
             Self::Length(2) if of.length == 0 => "has a direction that is not normalized in both places",
             Self::Length(1) if of.length < -1 => {
                 "lacks one division by the distance, or its direction is not normalized"
             }
-            Self::Length(by) => return power(of.length, by, "the distance"),
+            Self::Length(by) => return describe_power(of.length, by, "the distance"),
             Self::FirstOnly if of.area() == Area::SimpleDetection => {
                 "takes only the first of the two bodies into account"
             }
@@ -66,7 +66,7 @@ impl Slip {
     }
 
     /// Returns the exact form of the slip: the changed and the right formula of the quantity.
-    pub(super) fn exact(self, of: &TermRow) -> String {
+    pub(super) fn exact_form(self, of: &TermRow) -> String {
         let formula = of.formula;
         let with = |factor: &str| format!("{factor} ({formula}) is used instead of {formula}.");
         let times = |letter: &str, by: i8| match by {
@@ -94,7 +94,7 @@ impl Slip {
 }
 
 /// Returns the description of a further power `by` of a factor that has the power `has`.
-fn power(has: i8, by: i8, factor: &str) -> String {
+fn describe_power(has: i8, by: i8, factor: &str) -> String {
     match (has.signum(), (has + by).signum()) {
         (0, 1) => format!("is multiplied by {factor}"),
         (0, _) => format!("is divided by {factor}"),

@@ -17,7 +17,7 @@ use std::{
     path::{Component, Path, PathBuf},
 };
 
-use super::{memory_folder, walls};
+use super::{file_rules, memory_folder};
 use crate::{
     mounts::{self, NO_DEVICES, NO_SET_USER, READ_ONLY},
     sys,
@@ -50,16 +50,16 @@ enum Access {
 ///
 /// Fails with the name of the step that failed. The process then has an incomplete root and must end.
 pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
-    let view = begin(order)?;
-    let folder = wire::path(&order.folder);
-    if order.volatile {
+    let view = new_root(order)?;
+    let folder = wire::to_path(&order.folder);
+    if order.is_in_memory {
         let laid = view.resolve(&folder).and_then(|real| {
             let real = real.ok_or(io::ErrorKind::NotFound)?;
-            mount_copy(&real, &on_host(&real), order)
+            mount_copy(&real, &host_path(&real), order)
         });
         laid.map_err(failure_at("put the working folder into memory"))?;
     }
-    hide_own(order, Path::new("/"))?;
+    hide_own_files(order, Path::new("/"))?;
     add_processes(order)?;
     leave_host()?;
     close_root()
@@ -71,8 +71,8 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
 ///
 /// Fails like [`build`].
 pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
-    begin(order)?;
-    hide_own(order, Path::new("/"))?;
+    new_root(order)?;
+    hide_own_files(order, Path::new("/"))?;
     if sys::user_id() != 0 {
         // The kernel allows an ordinary user to show processes only if processes are already visible elsewhere.
         std::fs::create_dir(PROC_PLACEHOLDER).map_err(failure_at("make /proc"))?;
@@ -87,23 +87,27 @@ pub(super) fn prepare(order: &RunOrder) -> Result<(), Failure> {
 /// # Errors
 ///
 /// Fails like [`build`].
-pub(super) fn complete(order: &RunOrder, folder: BorrowedFd<'_>, files: &[(RawBytes, Vec<u8>)]) -> Result<(), Failure> {
+pub(super) fn complete_view(
+    order: &RunOrder,
+    folder: BorrowedFd<'_>,
+    files: &[(RawBytes, Vec<u8>)],
+) -> Result<(), Failure> {
     add_processes(order)?;
     if sys::user_id() != 0 {
         mounts::detach(&text(Path::new(PROC_PLACEHOLDER))?).map_err(failure_at("leave other processes"))?;
     }
-    let real = wire::path(&order.folder);
+    let real = wire::to_path(&order.folder);
     let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
     mount_copy(&real, &from, order)
-        .and_then(|()| memory_folder::add(&real, files))
+        .and_then(|()| memory_folder::add_files(&real, files))
         .map_err(failure_at("put the working folder into memory"))?;
-    hide_own(order, &real)?;
+    hide_own_files(order, &real)?;
     close_root()
 }
 
 /// Returns a new root with all visible files outside of the working folder. It also contains the working folder, unless
 /// that is in memory.
-fn begin(order: &RunOrder) -> Result<FileView, Failure> {
+fn new_root(order: &RunOrder) -> Result<FileView, Failure> {
     sys::set_file_mask(0o022);
     mounts::make_mounts_private().map_err(failure_at("keep mounts to itself"))?;
     let (site, room) = (text(Path::new(BUILD_ROOT))?, text(Path::new(ROOT_OPTIONS))?);
@@ -111,20 +115,20 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
     let old = PathBuf::from(format!("{BUILD_ROOT}{OLD_ROOT_NAME}"));
     std::fs::create_dir(&old).map_err(failure_at("make a root folder"))?;
     mounts::change_root(&site, &text(&old)?).map_err(failure_at("change the root folder"))?;
-    let mut view = FileView { placed: Vec::new() };
-    let mut readable = walls::visible_paths(order);
+    let mut view = FileView { mounted_places: Vec::new() };
+    let mut readable = file_rules::visible_paths(order);
     readable.sort_by_key(|path| path.as_os_str().len());
     for (path, access) in readable
         .into_iter()
         .map(|path| (path, Access::Read))
-        .chain(walls::DEVICE_FILES.map(|path| (path.into(), Access::Device)))
-        .chain((!order.volatile).then(|| (wire::path(&order.folder), Access::Write)))
+        .chain(file_rules::DEVICE_FILES.map(|path| (path.into(), Access::Device)))
+        .chain((!order.is_in_memory).then(|| (wire::to_path(&order.folder), Access::Write)))
     {
         view.mount_place(&path, access)
             .map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
     }
-    let folders = walls::LIBRARY_FOLDERS.map(PathBuf::from);
-    for path in folders.into_iter().chain(order.named.iter().map(wire::path)) {
+    let folders = file_rules::LIBRARY_FOLDERS.map(PathBuf::from);
+    for path in folders.into_iter().chain(order.named_paths.iter().map(wire::to_path)) {
         // Only the links on the path are created. The targets of links are among the executable files, or were
         // replaced.
         view.resolve(&path).map_err(|error| Failure::new(format!("bring {} into sight", path.display()), &error))?;
@@ -137,13 +141,14 @@ fn begin(order: &RunOrder) -> Result<FileView, Failure> {
 }
 
 /// Covers those of the grader's own files and folders that are visible below `beneath` with empty ones.
-fn hide_own(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
-    let own: Vec<PathBuf> = order.own.iter().map(wire::path).filter(|path| path.starts_with(beneath)).collect();
+fn hide_own_files(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
+    let own: Vec<PathBuf> =
+        order.own_files.iter().map(wire::to_path).filter(|path| path.starts_with(beneath)).collect();
     if own.is_empty() {
         return Ok(());
     }
     // The sample program may be graded at its own path, to demonstrate grading.
-    let program = wire::path(&order.program).canonicalize().map_err(failure_at("look at the program"))?;
+    let program = wire::to_path(&order.program).canonicalize().map_err(failure_at("look at the program"))?;
     for path in own.iter().filter(|path| **path != program) {
         hide(path).map_err(failure_at("hide the grader's own files"))?;
     }
@@ -156,14 +161,14 @@ fn hide(path: &Path) -> io::Result<()> {
     if metadata.is_dir() {
         return mounts::mount(c"tmpfs", &c_string(path)?, c"mode=0,size=4k,nr_inodes=1", false);
     }
-    let nothing = mounts::copy_of(c"/dev/null")?;
+    let nothing = mounts::copy_mounts(c"/dev/null")?;
     mounts::restrict(nothing.as_fd(), READ_ONLY | NO_SET_USER | NO_DEVICES)?;
     mounts::attach(nothing.as_fd(), &c_string(path)?)
 }
 
 /// Makes the processes of the run visible.
 fn add_processes(order: &RunOrder) -> Result<(), Failure> {
-    let shown = if order.tools { c"" } else { c"subset=pid" };
+    let shown = if order.allows_tools { c"" } else { c"subset=pid" };
     mounts::mount(c"proc", c"/proc", shown, false).map_err(failure_at("mount /proc"))
 }
 
@@ -175,10 +180,10 @@ pub(super) fn leave_processes(order: &RunOrder) -> Result<(), Failure> {
     let place = Path::new("/proc").join(&own);
     let leave = || -> io::Result<()> {
         mounts::unshare(libc::CLONE_NEWNS)?;
-        let copy = |path: PathBuf| Ok((mounts::copy_of(&c_string(&path)?)?, path));
-        let parts: Vec<(OwnedFd, PathBuf)> = match order.walls.landlock {
+        let copy = |path: PathBuf| Ok((mounts::copy_mounts(&c_string(&path)?)?, path));
+        let parts: Vec<(OwnedFd, PathBuf)> = match order.layers.landlock {
             true => vec![copy(place.clone())?],
-            false => walls::unguarded_entry().map(|name| copy(place.join(name))).collect::<io::Result<_>>()?,
+            false => file_rules::visible_entry_parts().map(|name| copy(place.join(name))).collect::<io::Result<_>>()?,
         };
         mounts::mount(c"tmpfs", c"/proc", c"mode=555,size=4k,nr_inodes=20", false)?;
         std::fs::create_dir(&place)?;
@@ -208,8 +213,8 @@ fn close_root() -> Result<(), Failure> {
 /// Mounts a file system in memory at the path `folder`, and copies the contents of another folder into it.
 fn mount_copy(folder: &Path, from: &Path, order: &RunOrder) -> io::Result<()> {
     std::fs::create_dir_all(folder)?;
-    let options = CString::new(memory_folder::options(order)).map_err(io::Error::other)?;
-    mounts::mount(c"tmpfs", &c_string(folder)?, &options, order.tools)?;
+    let options = CString::new(memory_folder::mount_options(order)).map_err(io::Error::other)?;
+    mounts::mount(c"tmpfs", &c_string(folder)?, &options, order.allows_tools)?;
     memory_folder::copy(from, folder)
 }
 
@@ -222,7 +227,7 @@ fn c_string(path: &Path) -> io::Result<CString> {
 }
 
 /// Returns the path by which a file of the host is reached while the new root is built.
-fn on_host(path: &Path) -> PathBuf {
+fn host_path(path: &Path) -> PathBuf {
     let mut host = OsString::from(OLD_ROOT_NAME);
     host.push(path);
     host.into()
@@ -230,7 +235,7 @@ fn on_host(path: &Path) -> PathBuf {
 
 /// The new root, while it is built.
 struct FileView {
-    placed: Vec<(PathBuf, Access)>,
+    mounted_places: Vec<(PathBuf, Access)>,
 }
 
 impl FileView {
@@ -244,7 +249,7 @@ impl FileView {
         if real.starts_with("/proc") || self.is_visible(&real, access) {
             return Ok(());
         }
-        let source = on_host(&real);
+        let source = host_path(&real);
         if source.is_dir() {
             std::fs::create_dir_all(&real)?;
         } else {
@@ -254,7 +259,7 @@ impl FileView {
                 File::create(&real)?;
             }
         }
-        let tree = mounts::copy_of(&c_string(&source)?)?;
+        let tree = mounts::copy_mounts(&c_string(&source)?)?;
         let attributes = match access {
             Access::Read => READ_ONLY | NO_SET_USER | NO_DEVICES,
             Access::Device => READ_ONLY | NO_SET_USER,
@@ -262,20 +267,20 @@ impl FileView {
         };
         mounts::restrict(tree.as_fd(), attributes)?;
         mounts::attach(tree.as_fd(), &c_string(&real)?)?;
-        self.placed.push((real, access));
+        self.mounted_places.push((real, access));
         Ok(())
     }
 
     /// Returns whether the path is already visible, and with the same access.
     fn is_visible(&self, path: &Path, access: Access) -> bool {
-        self.placed.iter().any(|(shown, granted)| path.starts_with(shown) && *granted == access)
+        self.mounted_places.iter().any(|(shown, granted)| path.starts_with(shown) && *granted == access)
     }
 
     /// Returns the path without links. Each link on the path is also created in the new root. Returns `None` if the
     /// host has no accessible file at the path.
     fn resolve(&self, path: &Path) -> io::Result<Option<PathBuf>> {
         let mut real = PathBuf::from("/");
-        let mut left: VecDeque<OsString> = names(path);
+        let mut left: VecDeque<OsString> = path_components(path);
         let mut links = 0;
         while let Some(name) = left.pop_front() {
             if name == ".." {
@@ -283,13 +288,13 @@ impl FileView {
                 continue;
             }
             let next = real.join(&name);
-            let Ok(metadata) = on_host(&next).symlink_metadata() else { return Ok(None) };
+            let Ok(metadata) = host_path(&next).symlink_metadata() else { return Ok(None) };
             if !metadata.is_symlink() {
                 real = next;
                 continue;
             }
             links += 1;
-            let Ok(target) = std::fs::read_link(on_host(&next)) else { return Ok(None) };
+            let Ok(target) = std::fs::read_link(host_path(&next)) else { return Ok(None) };
             if links > MAX_LINKS {
                 return Ok(None);
             }
@@ -300,7 +305,7 @@ impl FileView {
             if target.is_absolute() {
                 real = PathBuf::from("/");
             }
-            for name in names(&target).into_iter().rev() {
+            for name in path_components(&target).into_iter().rev() {
                 left.push_front(name);
             }
         }
@@ -309,7 +314,7 @@ impl FileView {
 }
 
 /// Returns the components of a path. Empty components and `.` are left out.
-fn names(path: &Path) -> VecDeque<OsString> {
+fn path_components(path: &Path) -> VecDeque<OsString> {
     path.components()
         .filter_map(|part| match part {
             Component::Normal(name) => Some(name.into()),

@@ -51,7 +51,7 @@ const OWN_FILES: [&CStr; 9] =
 /// count, and its descriptors.
 const OWN_FOLDERS: [&CStr; 2] = [c"task", c"fd"];
 /// Returns the parts of a process's own entry in `/proc` that are visible if no file rules protect the entry.
-pub(super) fn unguarded_entry() -> impl Iterator<Item = &'static str> {
+pub(super) fn visible_entry_parts() -> impl Iterator<Item = &'static str> {
     OWN_FILES.into_iter().chain([c"fd"]).filter_map(|name| name.to_str().ok())
 }
 
@@ -74,22 +74,22 @@ const SETTINGS_FILES: [&str; 8] = [
 /// Returns every path outside of the working folder that must be visible to the program of an order, except for
 /// devices.
 pub(super) fn visible_paths(order: &RunOrder) -> Vec<PathBuf> {
-    let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::path);
-    let tools = if order.tools { [&TOOL_FOLDERS[..], &SETTINGS_FILES[..]] } else { [&[][..], &[]] };
+    let named = order.readable.iter().chain(&order.executable).chain([&order.program]).map(wire::to_path);
+    let tools = if order.allows_tools { [&TOOL_FOLDERS[..], &SETTINGS_FILES[..]] } else { [&[][..], &[]] };
     let fixed = LIBRARY_FOLDERS.into_iter().chain(MACHINE_FILES).chain(tools.concat()).map(PathBuf::from);
     fixed.chain(named).collect()
 }
 
 /// The places outside of the working folder that the program may access. Each is open, and has the program's rights
 /// there.
-pub(super) struct Places(Vec<(OwnedFd, BitFlags<AccessFs>)>);
+pub(super) struct AllowedPlaces(Vec<(OwnedFd, BitFlags<AccessFs>)>);
 
-impl Places {
+impl AllowedPlaces {
     /// Opens the places for an order. Paths that do not exist are left out.
     pub(super) fn for_order(order: &RunOrder) -> Self {
         let read = AccessFs::ReadFile | AccessFs::ReadDir;
         let execute = read | AccessFs::Execute;
-        let own: Vec<PathBuf> = order.own.iter().map(wire::path).collect();
+        let own: Vec<PathBuf> = order.own_files.iter().map(wire::to_path).collect();
         let own = own.as_slice();
         let mut places = Self(Vec::new());
         for path in MACHINE_FILES {
@@ -107,12 +107,12 @@ impl Places {
             places.add(Path::new(path), access | AccessFs::ReadFile);
         }
         for raw in &order.readable {
-            places.add_around(&wire::path(raw), read, own);
+            places.add_around(&wire::to_path(raw), read, own);
         }
         for raw in order.executable.iter().chain([&order.program]) {
-            places.add(&wire::path(raw), execute);
+            places.add(&wire::to_path(raw), execute);
         }
-        if order.tools {
+        if order.allows_tools {
             for path in TOOL_FOLDERS {
                 places.add_around(Path::new(path), execute, own);
             }
@@ -136,7 +136,7 @@ impl Places {
 
     /// Adds a place, with the part of the access that applies to it.
     fn add(&mut self, path: &Path, access: BitFlags<AccessFs>) {
-        let Ok(opened) = at_place(path) else { return };
+        let Ok(opened) = open_path(path) else { return };
         let is_folder = opened.metadata().is_ok_and(|metadata| metadata.is_dir());
         let access = if is_folder { access } else { access & AccessFs::from_file(NEWEST_ABI) };
         self.0.push((opened.into(), access));
@@ -154,18 +154,22 @@ impl Places {
 }
 
 /// Opens the file at a path only as a reference (`O_PATH`).
-fn at_place(path: &Path) -> io::Result<File> {
+fn open_path(path: &Path) -> io::Result<File> {
     File::options().read(true).custom_flags(libc::O_PATH).open(path)
 }
 
 /// Prepares the rules for an order. Its working folder is open as `folder`.
-pub(super) fn build_ruleset(order: &RunOrder, places: &Places, folder: BorrowedFd<'_>) -> io::Result<RulesetCreated> {
-    let version = to_abi(order.walls.landlock_version);
-    let mut ruleset = begin_ruleset(order.walls.scopes, version)?;
+pub(super) fn build_ruleset(
+    order: &RunOrder,
+    places: &AllowedPlaces,
+    folder: BorrowedFd<'_>,
+) -> io::Result<RulesetCreated> {
+    let version = to_abi(order.layers.landlock_version);
+    let mut ruleset = begin_ruleset(order.layers.scopes, version)?;
     for (opened, access) in &places.0 {
         ruleset = ruleset.add_rule(PathBeneath::new(opened.as_fd(), *access)).map_err(from_ruleset_error)?;
     }
-    let inside = in_folder(order.tools) & AccessFs::from_all(version);
+    let inside = folder_rights(order.allows_tools) & AccessFs::from_all(version);
     ruleset.add_rule(PathBeneath::new(folder, inside)).map_err(from_ruleset_error)
 }
 
@@ -173,7 +177,7 @@ pub(super) fn build_ruleset(order: &RunOrder, places: &Places, folder: BorrowedF
 /// also shows sockets, mounts and groups of the host, and which pages of a file are in memory. Only the child itself
 /// can do this.
 pub(super) fn add_own_entry(mut ruleset: RulesetCreated) -> io::Result<RulesetCreated> {
-    let Ok(own) = at_place(Path::new("/proc/self")) else { return Ok(ruleset) };
+    let Ok(own) = open_path(Path::new("/proc/self")) else { return Ok(ruleset) };
     let files = OWN_FILES.map(|name| (name, AccessFs::ReadFile));
     for (name, access) in files.into_iter().chain(OWN_FOLDERS.map(|name| (name, AccessFs::ReadDir))) {
         if let Ok(opened) = sys::open_beneath(own.as_fd(), name, OFlags::PATH) {
@@ -224,7 +228,7 @@ fn begin_ruleset(scopes: bool, version: ABI) -> io::Result<RulesetCreated> {
 
 /// Returns the rights in the program's working folder. They include creating, changing and removing files and folders.
 /// Only build tools may also link to other places, create special files, and execute files.
-fn in_folder(tools: bool) -> BitFlags<AccessFs> {
+fn folder_rights(tools: bool) -> BitFlags<AccessFs> {
     let submission = AccessFs::ReadFile
         | AccessFs::ReadDir
         | AccessFs::WriteFile

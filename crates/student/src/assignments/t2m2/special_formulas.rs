@@ -1,5 +1,5 @@
 //! Wrong formulas that are not edits of a correct one.
-use super::{Inputs, Subject, formulas::readings, inputs::root};
+use super::{Inputs, Subject, formulas::readings, inputs::square_root};
 use fosssim_num::bounded::{BoundedValue, BoundedVector};
 
 /// Returns the approach of the particle to the point of the edge that was closest at the start.
@@ -23,7 +23,7 @@ fn closest_at_start(inputs: &Inputs) -> (BoundedVector, BoundedVector) {
 }
 
 /// Returns the overlap without the edge's squared length as a factor of the radii.
-pub(super) fn radius_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
+pub(super) fn unscaled_radius(inputs: &Inputs) -> Vec<BoundedValue> {
     let quartic = &readings(Subject::EdgeOverlap)[0];
     let mut list = quartic.polynomial(&Inputs { square: BoundedValue::from_exact(0.0), ..*inputs });
     list[quartic.degree] = list[quartic.degree] + inputs.square;
@@ -31,7 +31,7 @@ pub(super) fn radius_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
 }
 
 /// Returns the polynomial alpha < 1 without the edge's squared length as a factor.
-pub(super) fn one_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
+pub(super) fn unscaled_one(inputs: &Inputs) -> Vec<BoundedValue> {
     let (w0, w1, e0, e1) = (inputs.x12(), inputs.d12(), inputs.x32(), inputs.d32());
     vec![-w1.dot(e1), -(w0.dot(e1) + w1.dot(e0)), BoundedValue::from_exact(1.0) - w0.dot(e0)]
 }
@@ -39,7 +39,7 @@ pub(super) fn one_unscaled(inputs: &Inputs) -> Vec<BoundedValue> {
 /// Returns the overlap with a half-plane as a difference of lengths.
 pub(super) fn signed_distance(inputs: &Inputs) -> Vec<BoundedValue> {
     let n = inputs.normal();
-    vec![-inputs.d[0].dot(n), inputs.radii[0] * root(n.dot(n)) + inputs.x21().dot(n)]
+    vec![-inputs.d[0].dot(n), inputs.radii[0] * square_root(n.dot(n)) + inputs.x21().dot(n)]
 }
 
 /// Returns the overlap with the half-plane's point, as if it were a particle without a radius.
@@ -49,18 +49,18 @@ pub(super) fn overlap_to_point(inputs: &Inputs) -> Vec<BoundedValue> {
 }
 
 /// Returns the approach to a half-plane without the speed as a factor.
-pub(super) fn no_speed_factor(inputs: &Inputs) -> Vec<BoundedValue> {
+pub(super) fn approach_without_speed(inputs: &Inputs) -> Vec<BoundedValue> {
     let n = inputs.normal();
     vec![-inputs.d[0].dot(n), inputs.x21().dot(n)]
 }
 
 /// Returns only the speed along the normal.
-pub(super) fn speed_only(inputs: &Inputs) -> Vec<BoundedValue> {
+pub(super) fn normal_speed(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![inputs.d[0].dot(inputs.normal())]
 }
 
 /// Returns the overlap with a half-plane whose distance is not squared.
-pub(super) fn offset_not_squared(inputs: &Inputs) -> Vec<BoundedValue> {
+pub(super) fn unsquared_offset(inputs: &Inputs) -> Vec<BoundedValue> {
     let (speed, offset) = (inputs.d[0].dot(inputs.normal()), inputs.x21().dot(inputs.normal()));
     vec![-(speed * speed), 2.0 * (speed * offset), inputs.square * inputs.normal_square - offset]
 }
@@ -72,6 +72,6 @@ pub(super) fn constant_without_speed(inputs: &Inputs) -> Vec<BoundedValue> {
 }
 
 /// Returns only the negative speed along the normal.
-pub(super) fn closing_only(inputs: &Inputs) -> Vec<BoundedValue> {
+pub(super) fn negative_normal_speed(inputs: &Inputs) -> Vec<BoundedValue> {
     vec![-inputs.d[0].dot(inputs.normal())]
 }

@@ -18,9 +18,9 @@ const SHARED_MEMORY: [&[u8]; 3] = [b"/dev/zero", b"/memfd:", b"/SYSV"];
 
 /// The files and the memory that several processes hold together.
 #[derive(Debug, Clone, Copy, Default, PartialEq, Eq)]
-pub(super) struct Holdings {
+pub(super) struct HiddenUsage {
     /// The number of bytes of files without a name.
-    pub(super) nameless: u64,
+    pub(super) nameless_bytes: u64,
     /// The number of bytes of memory that may be resident for no process.
     pub(super) memory: u64,
 }
@@ -29,15 +29,15 @@ pub(super) struct Holdings {
 /// working folder, the only place in which they can create files. With `executed`, files that they execute are
 /// included. With `page_tables`, the kernel's tables for their memory are included, which matter if address space is
 /// not limited.
-pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> Holdings {
-    let mut holdings = Holdings::default();
+pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_tables: bool) -> HiddenUsage {
+    let mut holdings = HiddenUsage::default();
     let mut seen = BTreeSet::new();
     let mut mapped = Vec::new();
     for (pid, thread) in members {
         let task = format!("/proc/{pid}/task/{thread}");
         let mut count = |metadata: &Metadata| {
             if metadata.is_file() && metadata.nlink() == 0 && seen.insert(metadata.ino()) {
-                holdings.nameless += metadata.blocks() * BLOCK_BYTES;
+                holdings.nameless_bytes += metadata.blocks() * BLOCK_BYTES;
             }
         };
         for entry in read_dir(format!("{task}/fd")).into_iter().flatten().flatten() {
@@ -51,17 +51,17 @@ pub(super) fn measure(members: &[(i32, i32)], root: &Path, executed: bool, page_
         mapped.extend(maps.split(|byte| *byte == b'\n').filter_map(Mapping::parse));
         if page_tables {
             let status = std::fs::read_to_string(format!("{task}/status")).unwrap_or_default();
-            holdings.memory += machine::bytes_of(&status, "VmPTE:").unwrap_or(0);
+            holdings.memory += machine::read_byte_count(&status, "VmPTE:").unwrap_or(0);
         }
     }
     let shown = path_in_maps(root);
     // Only root can find out how much of a mapped file is on disk, so the size of the whole mapping counts.
     mapped.sort_unstable_by_key(|mapping| (mapping.inode, std::cmp::Reverse(mapping.end)));
     for mapping in mapped {
-        let memory = mapping.shared && SHARED_MEMORY.iter().any(|name| mapping.name.starts_with(name));
+        let memory = mapping.is_shared && SHARED_MEMORY.iter().any(|name| mapping.name.starts_with(name));
         let file = mapping.name.starts_with(&shown);
         if (memory || file) && seen.insert(mapping.inode) {
-            *(if memory { &mut holdings.memory } else { &mut holdings.nameless }) += mapping.end;
+            *(if memory { &mut holdings.memory } else { &mut holdings.nameless_bytes }) += mapping.end;
         }
     }
     holdings
@@ -75,7 +75,7 @@ fn path_in_maps(path: &Path) -> Vec<u8> {
 
 /// A mapping of a file that no longer has a name.
 struct Mapping {
-    shared: bool,
+    is_shared: bool,
     /// The offset in the file at which the mapping ends.
     end: u64,
     inode: u64,
@@ -93,7 +93,7 @@ impl Mapping {
         let shared = words.next()?.ends_with('s');
         let end = number(words.next()?)?.saturating_add(number(to)?.saturating_sub(number(from)?));
         let inode = words.nth(1)?.parse().ok()?;
-        Some(Self { shared, end, inode, name: line[start..].to_vec() })
+        Some(Self { is_shared: shared, end, inode, name: line[start..].to_vec() })
     }
 }
 
@@ -112,7 +112,7 @@ mod tests {
         file.sync_all().unwrap();
         std::fs::remove_file(&path).unwrap();
         let own = std::process::id() as i32;
-        assert!(measure(&[(own, own)], folder.path(), false, false).nameless >= 1 << 20);
+        assert!(measure(&[(own, own)], folder.path(), false, false).nameless_bytes >= 1 << 20);
     }
 
     #[test]
@@ -120,8 +120,8 @@ mod tests {
         let parse = |line: &str| Mapping::parse(line.as_bytes());
         let mapping = parse("7f0000001000-7f0000003000 rw-s 00004000 00:01 1042                /dev/zero (deleted)");
         let mapping = mapping.unwrap();
-        assert!(mapping.shared && mapping.end == 0x6000 && mapping.inode == 1042 && mapping.name == b"/dev/zero");
-        assert!(parse("7f0000001000-7f0000003000 r--p 00000000 fe:00 7  /x/a (deleted)").is_some_and(|m| !m.shared));
+        assert!(mapping.is_shared && mapping.end == 0x6000 && mapping.inode == 1042 && mapping.name == b"/dev/zero");
+        assert!(parse("7f0000001000-7f0000003000 r--p 00000000 fe:00 7  /x/a (deleted)").is_some_and(|m| !m.is_shared));
         assert!(parse("7f0000001000-7f0000003000 r--p 00000000 fe:00 7  /x/a").is_none());
         assert!(parse("7f0000001000-7f0000003000 rw-p 00000000 00:00 0").is_none());
     }

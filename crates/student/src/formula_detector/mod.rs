@@ -9,7 +9,7 @@ const POLYNOMIAL_NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
 /// Returns the first part of a formula in a sentence: a number, an operator, a product with a dot, a function's
 /// argument, or a letter of a quantity. `None` if there are only words; `alpha > 0` and `alpha < 1` count as names.
 #[must_use]
-pub fn formula_in(sentence: &str) -> Option<String> {
+pub fn find_formula(sentence: &str) -> Option<String> {
     let text = POLYNOMIAL_NAMES.iter().fold(sentence.to_owned(), |text, name| text.replace(name, "alpha"));
     let letters: Vec<char> = text.chars().collect();
     let at = |index: Option<usize>| index.and_then(|index| letters.get(index)).copied().unwrap_or(' ');
@@ -21,7 +21,7 @@ pub fn formula_in(sentence: &str) -> Option<String> {
             '-' => !(before.is_alphabetic() && after.is_alphabetic()),
             '.' => before.is_alphanumeric() && after.is_alphanumeric(),
             '(' => before.is_alphanumeric(),
-            _ => letter.is_ascii_digit() && !is_of_step(&letters[..index]),
+            _ => letter.is_ascii_digit() && !belongs_to_step_number(&letters[..index]),
         };
         if is_formula {
             return Some(format!("{before}{letter}{after}"));
@@ -29,17 +29,17 @@ pub fn formula_in(sentence: &str) -> Option<String> {
     }
     let is_word = |letter: char| letter.is_alphanumeric() || letter == '\'';
     text.split(|letter| !is_word(letter))
-        .find(|word| word.chars().count() == 1 && !word.starts_with(is_plain_alone))
+        .find(|word| word.chars().count() == 1 && !word.starts_with(is_plain_letter))
         .map(str::to_owned)
 }
 
 /// Returns whether a letter means nothing by itself; digits are checked before.
-const fn is_plain_alone(letter: char) -> bool {
+const fn is_plain_letter(letter: char) -> bool {
     matches!(letter, 'a' | 'A' | '\'' | '0'..='9')
 }
 
 /// Returns whether a digit at this point belongs to a step's number, which is a place.
-fn is_of_step(before: &[char]) -> bool {
+fn belongs_to_step_number(before: &[char]) -> bool {
     let number = before.iter().rev().take_while(|letter| letter.is_ascii_digit()).count();
     before[..before.len() - number].ends_with(&[' ', 's', 't', 'e', 'p', ' '])
 }
@@ -67,7 +67,7 @@ mod tests {
             "A step of 2 is taken.",
             "x(t) is taken.",
         ] {
-            assert!(formula_in(text).is_some(), "{text}");
+            assert!(find_formula(text).is_some(), "{text}");
         }
     }
 
@@ -79,7 +79,7 @@ mod tests {
             "Particle-edge: A product is missing.",
             "From step 60 on it is wrong.",
         ] {
-            assert_eq!(formula_in(text), None, "{text}");
+            assert_eq!(find_formula(text), None, "{text}");
         }
     }
 }
