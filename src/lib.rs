@@ -1,5 +1,6 @@
-//! **fosssim-oracle** re-simulates every step of a FOSSSim submission from the submission's own state, compares every
-//! polynomial that it logged with the one it should have logged, and reports what is right, what is wrong and where.
+//! **fosssim-oracle** simulates every step of a FOSSSim submission again, from the submission's own state. It compares
+//! every polynomial that the submission logged with the one that it should have logged, and reports what is right, what
+//! is wrong, and where.
 //!
 //! The crates of the workspace are re-exported under short names, from the lowest layer to the highest. Each crate uses
 //! only those above it in this list. `ARCHITECTURE.md` describes the whole flow.

@@ -1,4 +1,4 @@
-//! The terminal: standard output that survives a closed pipe, the choice of colors, line breaks, and progress bars that
+//! The terminal: standard output that accepts a closed pipe, the choice of colors, line breaks, and progress bars that
 //! other output does not overwrite.
 use super::{
     arguments::ColorChoice,
@@ -25,7 +25,7 @@ use terminal_size::{Width, terminal_size_of};
 /// The value of the option `--color`.
 static COLOR: OnceLock<ColorChoice> = OnceLock::new();
 
-/// Stores the value of `--color`; only the first call has an effect.
+/// Stores the value of `--color`. Only the first call has an effect.
 pub(super) fn choose_color(color: ColorChoice) {
     let _ = COLOR.set(color);
 }
@@ -42,8 +42,9 @@ fn is_quiet() -> bool {
     IS_QUIET.load(Ordering::Relaxed)
 }
 
-/// Returns the style of reports on standard output. Unless `--color` decides, colors are off with `NO_COLOR`, and on
-/// with `CLICOLOR_FORCE` or a terminal that shows them (not `TERM=dumb`, not `CLICOLOR=0`).
+/// Returns the style of reports on standard output. If `--color` is not given, colors are off with `NO_COLOR`.
+/// Otherwise they are on with `CLICOLOR_FORCE`, and on a terminal that shows them (not with `TERM=dumb` or
+/// `CLICOLOR=0`).
 pub(super) fn style() -> Style {
     let is = |name: &str, value: &str| std::env::var_os(name).is_some_and(|found| found == value);
     let is_set = |name: &str| std::env::var_os(name).is_some_and(|value| !value.is_empty());
@@ -61,17 +62,17 @@ pub(super) fn style() -> Style {
     }
 }
 
-/// Returns whether the locale's encoding is UTF-8, by the first of its variables that is set.
+/// Returns whether the locale uses UTF-8. The first of its environment variables that is set decides.
 fn shows_signs() -> bool {
     let mut set = ["LC_ALL", "LC_CTYPE", "LANG"].into_iter().filter_map(|name| std::env::var(name).ok());
     let name = set.find(|value| !value.is_empty()).unwrap_or_default().to_lowercase();
     name.contains("utf-8") || name.contains("utf8")
 }
 
-/// The minimum width for line breaks; a terminal that reports less does not know its size.
+/// The minimum width for line breaks. If a terminal reports less, it does not know its size.
 const MIN_WIDTH: u16 = 20;
 
-/// Returns the width of standard output's terminal in columns, if it is one.
+/// Returns the width of the terminal in columns; `None` if standard output is not a terminal.
 pub(super) fn width() -> Option<usize> {
     match terminal_size_of(io::stdout()) {
         Some((Width(width), _)) if width >= MIN_WIDTH => Some(width.into()),
@@ -79,7 +80,7 @@ pub(super) fn width() -> Option<usize> {
     }
 }
 
-/// Prints a report for people. On a terminal, lines are broken between words.
+/// Prints a report for people. On a terminal, long lines are broken between words.
 ///
 /// # Errors
 ///
@@ -103,11 +104,12 @@ pub(super) fn show(format: TextOrJson, text: impl FnOnce() -> String, json: impl
     }
 }
 
-/// Prints to standard output. A closed pipe is not an error, because the verdict is in the exit code.
+/// Prints to standard output. If the reader has closed the pipe, that is not an error, because the exit code contains
+/// the verdict.
 ///
 /// # Errors
 ///
-/// Fails with other errors, such as a full disk.
+/// Fails if there is another error, such as a full disk.
 pub(super) fn print(text: impl AsRef<[u8]>) -> Result<()> {
     if is_quiet() {
         return Ok(());
@@ -117,19 +119,19 @@ pub(super) fn print(text: impl AsRef<[u8]>) -> Result<()> {
         .context("cannot write to standard output")
 }
 
-/// Prints to standard error, above the bars; its own errors cannot be reported.
+/// Prints to standard error, above the progress bars. Its own errors cannot be reported.
 pub(super) fn print_error(text: impl AsRef<[u8]>) {
     write_above_bars(text.as_ref());
 }
 
-/// Prints a remark that is not an error to standard error.
+/// Prints a remark to standard error. A remark is not an error, and is left out with `--quiet`.
 pub(super) fn print_remark(text: impl AsRef<[u8]>) {
     if !is_quiet() {
         print_error(text);
     }
 }
 
-/// Turns the error of a closed pipe into success.
+/// Turns the error that a pipe was closed into success.
 pub(super) fn ignore_closed_pipe(result: io::Result<()>) -> io::Result<()> {
     match result {
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
@@ -137,19 +139,19 @@ pub(super) fn ignore_closed_pipe(result: io::Result<()>) -> io::Result<()> {
     }
 }
 
-/// Returns whether bars are useful, because standard error is a terminal and they are not switched off.
+/// Returns whether progress bars are useful: standard error is a terminal, and they are not switched off.
 pub(super) fn wants_bars() -> bool {
     io::stderr().is_terminal() && !is_quiet()
 }
 
-/// Returns a place for bars on standard error. Until [`clear_bars`], all other output appears above them, and an
-/// interrupt removes them.
+/// Returns a place for progress bars on standard error. Until [`clear_bars`] is called, all other output appears above
+/// them, and an interrupt removes them.
 pub(super) fn show_bars() -> MultiProgress {
     interrupt::clean_up_when_interrupted();
     on_screen().get_or_insert_with(MultiProgress::new).clone()
 }
 
-/// Adds a bar with a length and a template.
+/// Adds a progress bar with this length and this template.
 pub(super) fn add_bar(bars: &MultiProgress, length: u64, template: &str) -> ProgressBar {
     let bar = bars.add(ProgressBar::new(length));
     if let Ok(style) = ProgressStyle::with_template(template) {
@@ -158,13 +160,14 @@ pub(super) fn add_bar(bars: &MultiProgress, length: u64, template: &str) -> Prog
     bar
 }
 
-/// The time that a command may take before a bar appears.
+/// The time after which a progress bar appears, if the command still runs.
 const BAR_DELAY: Duration = Duration::from_secs(1);
 
 /// The time between two movements of a bar.
 const BAR_INTERVAL: Duration = Duration::from_millis(200);
 
-/// A bar on standard error, if that is a terminal and the command takes longer than a second.
+/// A progress bar on standard error. It is shown only on a terminal, and only if the command runs for more than a
+/// second.
 pub(super) struct Bar {
     steps: u64,
     begun: Option<Instant>,
@@ -172,12 +175,12 @@ pub(super) struct Bar {
 }
 
 impl Bar {
-    /// Creates a bar for a number of steps.
+    /// Creates a progress bar for a number of steps.
     pub(super) fn new(steps: u32) -> Self {
         Self { steps: u64::from(steps), begun: wants_bars().then(Instant::now), shown: None }
     }
 
-    /// Creates a bar for a number of runs of a program, each of which may take long. It is shown immediately, with the
+    /// Creates a progress bar for a number of runs, each of which may take long. The bar is shown immediately, with the
     /// elapsed time.
     pub(super) fn for_runs(runs: u64) -> Self {
         let bar = |runs| {
@@ -188,7 +191,7 @@ impl Bar {
         Self { steps: runs, begun: None, shown: wants_bars().then(|| bar(runs)) }
     }
 
-    /// Shows that a run begins.
+    /// Shows on the bar that a run begins.
     pub(super) fn next_run(&self, name: &str) {
         if let Some(bar) = &self.shown {
             bar.inc(1);
@@ -196,7 +199,7 @@ impl Bar {
         }
     }
 
-    /// Shows the number of finished steps.
+    /// Shows on the bar how many steps are finished.
     pub(super) fn show_step(&mut self, step: u32) {
         if self.shown.is_none() && self.begun.is_some_and(|begun| begun.elapsed() >= BAR_DELAY) {
             self.shown = Some(add_bar(&show_bars(), self.steps, "{wide_bar} step {pos} of {len}, {eta} left"));

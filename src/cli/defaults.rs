@@ -1,4 +1,5 @@
-//! Defaults of `grade`: `fosssim.toml` in the working folder, or in the nearest folder above it.
+//! The defaults for the options of `grade`. They are in the file `fosssim.toml` in the working folder, or in the
+//! nearest folder above it.
 use crate::files::{FileError, Place};
 use anyhow::{Context, Result};
 use clap::Command;
@@ -10,7 +11,7 @@ const DEFAULTS_FILE: &str = "fosssim.toml";
 /// The maximum size of the file, in bytes.
 const MAX_BYTES: u64 = 1 << 16;
 
-/// The contents of the file, with paths relative to its folder.
+/// The contents of the file. Paths in it are relative to the file's folder.
 #[derive(Debug, Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Defaults {
@@ -20,11 +21,12 @@ struct Defaults {
     jobs: Option<u16>,
 }
 
-/// Adds the defaults in a working folder to the options of `grade`. Typed options have precedence.
+/// Sets the defaults of `grade` to those that the file for a working folder contains. Options that the user types have
+/// precedence.
 ///
 /// # Errors
 ///
-/// Fails if the file can't be read, or has an invalid content.
+/// Fails if the file can't be read, or if its contents are invalid.
 pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
     for folder in working.ancestors() {
         let text = match Place::new(folder, DEFAULTS_FILE).read(MAX_BYTES) {
@@ -51,15 +53,15 @@ pub(super) fn add(command: Command, working: &Path) -> Result<Command> {
         let all = [("suite", suite), ("output", output), ("hints", read.hints), ("jobs", jobs)];
         return Ok(command.mut_subcommand("grade", |grade| {
             let given = all.into_iter().filter_map(|(name, value)| Some((name, value?)));
-            // The value is leaked, because help texts must live as long as the program.
+            // The value is never freed, because help texts must exist as long as the program runs.
             given.fold(grade, |grade, (name, value)| grade.mut_arg(name, |arg| arg.default_value(&*value.leak())))
         }));
     }
     Ok(command)
 }
 
-/// Returns whether a file belongs to this user or the system; in a folder that all users may write to, another user may
-/// have written it.
+/// Returns whether a file belongs to this user or to the system. In a folder into which all users may write, another
+/// user may have written it.
 fn is_trusted(file: &Path) -> bool {
     let owner = |path: &Path| fs::metadata(path).map(|data| data.uid()).ok();
     let found = owner(file);

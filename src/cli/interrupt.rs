@@ -1,7 +1,7 @@
-//! Cleans up after the user interrupts the program, and ensures that it ends.
+//! Cleans up when the user interrupts the program, and makes sure that the program ends.
 //!
-//! After the first signal a grading finishes: programs are ended, and known results are written. After a few seconds
-//! without progress, the program ends anyway.
+//! After the first signal, a grading ends its programs and writes the results that are known. If there is no progress
+//! for a few seconds, the program ends anyway.
 use super::{exit, screen};
 use crate::suite::Cancellation;
 use std::{
@@ -15,7 +15,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The maximum time without progress after the first signal.
+/// The maximum time without progress after the first signal, after which the program ends.
 const IDLE_LIMIT: Duration = Duration::from_secs(5);
 
 /// Returns the temporary files that an interrupt has to remove.
@@ -24,24 +24,24 @@ pub(super) fn pending() -> std::sync::MutexGuard<'static, Vec<PathBuf>> {
     PENDING_FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the temporary files and the bars, and ends the program, on SIGINT and SIGTERM. Does nothing if a command
-/// handles these signals itself.
+/// Removes the temporary files and the progress bars on SIGINT and SIGTERM, and ends the program. Does nothing if a
+/// command handles these signals itself.
 pub(super) fn clean_up_when_interrupted() {
     static HANDLER_INSTALLED: OnceLock<()> = OnceLock::new();
     HANDLER_INSTALLED.get_or_init(|| {
-        // Without a handler, an interrupt only leaves a temporary file behind, so the error is ignored.
+        // Without a handler, an interrupt only leaves a temporary file behind, so this error is ignored.
         drop(ctrlc::set_handler(|| end()));
     });
 }
 
-/// Ends the program, and removes incomplete outputs.
+/// Removes incomplete outputs, and ends the program.
 fn end() -> ! {
-    // The following code could block as well: on a lock, or on a reader of the output.
+    // The code below could also block, on a lock or on a reader of the output.
     thread::spawn(|| {
         thread::sleep(Duration::from_secs(1));
         std::process::exit(exit::INTERRUPTED.into());
     });
-    // The lock is held until the end, so that no file is renamed or created in between.
+    // The lock is held until the end, so that in the meantime no file is renamed or created.
     let pending = pending();
     for path in pending.iter() {
         drop(fs::remove_file(path));
@@ -50,16 +50,16 @@ fn end() -> ! {
     std::process::exit(exit::INTERRUPTED.into());
 }
 
-/// The number of signs of progress.
+/// The number of times that progress was recorded.
 static ACTIVITY_COUNT: AtomicU64 = AtomicU64::new(0);
 
-/// Records progress, so that the wait continues.
+/// Records that there is progress, so that the program is not ended.
 pub(super) fn show_activity() {
     ACTIVITY_COUNT.fetch_add(1, Ordering::Relaxed);
 }
 
-/// Returns a cancellation that SIGINT and SIGTERM trigger. A second signal ends the program immediately, and so does a
-/// grading that does not finish.
+/// Returns a cancellation that SIGINT and SIGTERM trigger. The program ends immediately after a second signal, and also
+/// if a grading does not finish.
 pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
     static CANCELLATION: OnceLock<Arc<Cancellation>> = OnceLock::new();
     CANCELLATION
@@ -67,9 +67,9 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
             let cancellation = Arc::new(Cancellation::default());
             let signalled = cancellation.clone();
             let mut first = None;
-            // Without a handler a signal ends the program, and the sandbox ends with it.
+            // Without a handler, a signal ends the program, and the sandbox with it.
             drop(ctrlc::set_handler(move || {
-                // `timeout` and a terminal may send one signal twice.
+                // `timeout` and a terminal may each send the same signal.
                 let first = *first.get_or_insert_with(Instant::now);
                 if signalled.is_cancelled() {
                     if first.elapsed() > Duration::from_secs(1) {
@@ -77,7 +77,7 @@ pub(super) fn cancelled_by_signals() -> Arc<Cancellation> {
                     }
                     return;
                 }
-                // Start this thread first, because the following calls could block, too.
+                // This thread is started first, because the calls below could block as well.
                 thread::spawn(end_when_nothing_moves);
                 signalled.cancel();
                 screen::write_above_bars(b"\nstopping (press Ctrl-C again to stop immediately)\n");

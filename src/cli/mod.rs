@@ -1,4 +1,5 @@
-//! The command line: arguments, files, the terminal. Only this module opens files; all others use bytes.
+//! The command line, with its arguments, its files and the terminal. Only this module opens files; the other modules
+//! use bytes.
 
 mod arguments;
 mod commands;
@@ -17,20 +18,20 @@ use anyhow::Result;
 use clap::{CommandFactory, FromArgMatches};
 use std::{ffi::OsString, os::unix::ffi::OsStrExt, process::ExitCode};
 
-/// Runs the command in the program's arguments.
+/// Runs the command that the program's arguments name.
 #[must_use]
 pub fn main() -> ExitCode {
-    // A copy with a pinned mistake is only a submission.
+    // A copy of this program with a pinned mistake is nothing but a submission.
     if let Some(mistake) = sample::pin::pinned_mistake() {
         return sample::main(std::env::args_os(), Some(mistake));
     }
-    // This is checked before all other commands, because it is called most often and must start fast.
+    // This is checked before the other commands, because it is called most often and must start quickly.
     crate::original::run_if_meant(&original::Program).unwrap_or_else(run)
 }
 
-/// Runs any other command.
+/// Runs any command except for the drop-in for the original.
 fn run(words: Vec<OsString>) -> ExitCode {
-    // This must come before everything else and before any thread: the process may be a sandbox's supervisor.
+    // This must come first, before a thread is started, because the process may be a sandbox's supervisor.
     if let Some(code) = crate::sandbox::supervisor_main(words.iter().cloned()) {
         return code;
     }
@@ -38,7 +39,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
     if words.get(1).is_some_and(|word| word == "sample") {
         return sample::main(words.into_iter().skip(1), None);
     }
-    // A failed write then removes the incomplete output, like any other error.
+    // If a write then fails, the incomplete output is removed, as after any other error.
     crate::sandbox::let_large_writes_fail();
     let program = words.first().cloned().unwrap_or_default();
     let command = match parse_command(&words) {
@@ -49,13 +50,13 @@ fn run(words: Vec<OsString>) -> ExitCode {
     let arguments = match parsed.and_then(|mut found| arguments::Arguments::from_arg_matches_mut(&mut found)) {
         Ok(arguments) => arguments,
         Err(error) => {
-            // Help and version are reported here, too. A closed pipe does not change the exit code.
+            // Help and version are printed here as well. A closed pipe does not change the exit code.
             drop(error.print());
             return ExitCode::from(if error.use_stderr() { exit::FAULT } else { exit::ACCEPTED });
         }
     };
     console::choose_color(arguments.color);
-    // With options before it, the command was not recognized above.
+    // If options precede the command, it was not recognized above.
     if let arguments::Command::Original(original) = &arguments.command {
         let name = [program.as_bytes(), b" original"].concat();
         return crate::original::main(&name, &original.words, &original::Program);
@@ -63,7 +64,7 @@ fn run(words: Vec<OsString>) -> ExitCode {
     commands::run(&arguments.command).map_or_else(|error| report_fault(&error), ExitCode::from)
 }
 
-/// Returns the command line, with the defaults in the working folder.
+/// Returns the command line, with the defaults of the working folder.
 fn parse_command(words: &[OsString]) -> Result<clap::Command> {
     let command = arguments::Arguments::command();
     match std::env::current_dir() {
@@ -72,9 +73,9 @@ fn parse_command(words: &[OsString]) -> Result<clap::Command> {
     }
 }
 
-/// Prints an error.
+/// Prints an error, and returns the exit code for it.
 fn report_fault(error: &anyhow::Error) -> ExitCode {
-    // File names in the message are untrusted text.
+    // The message may contain file names, which are untrusted text.
     console::print_error(strip_control_characters(&format!("error: {error:#}\n")));
     ExitCode::from(exit::FAULT)
 }

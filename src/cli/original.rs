@@ -1,4 +1,4 @@
-//! The part of this program that the drop-in for the original needs: pictures.
+//! The part of this program that the drop-in for the original needs. It draws the pictures.
 use crate::original::{NO_PICTURE_FOLDER, Pictures, Services};
 use crate::{
     cli::output::Folder,
@@ -9,13 +9,13 @@ use crate::{
 use anyhow::Result;
 use std::path::Path;
 
-/// The folder for the pictures of `-g 1`.
+/// The folder for the pictures that `-g 1` requests.
 const FOLDER: &str = "pngs";
 
 /// The width and the height of the pictures, in pixels.
 const PICTURE_SIDE: u32 = 512;
 
-/// The implementation of pictures by this program.
+/// The part of the drop-in that this program implements.
 pub(super) struct Program;
 
 impl Services for Program {
@@ -26,7 +26,7 @@ impl Services for Program {
     fn pictures(&self, png: bool, svg: Option<&Path>, scene: &Scene) -> Result<Box<dyn Pictures>, String> {
         let png = match Folder::open_existing(Path::new(FOLDER)) {
             _ if !png => None,
-            // In this case the original aborts.
+            // The original aborts in this case.
             None => {
                 return Err(format!(
                     "Error opening {FOLDER}/frame00001.png: there is no folder {FOLDER}; make it first\n"
@@ -45,7 +45,8 @@ impl Services for Program {
     }
 }
 
-/// The pictures of `-g 1` and `-m DIR`: one per step, as PNG in the folder `pngs`, or as SVG in a chosen folder.
+/// The folders for the pictures of `-g 1` and `-m DIR`, with one picture per step. `-g 1` writes PNG into the folder
+/// `pngs`, and `-m` writes SVG into the given folder.
 struct PictureFolders {
     painter: Painter,
     raster: Raster,

@@ -1,10 +1,12 @@
-//! Output files, which are written atomically, by renaming a finished temporary file next to the target.
+//! Writes output files. A file is first written under a temporary name in the same folder, and renamed when it is
+//! complete.
 //!
-//! An error, SIGINT and SIGTERM remove the temporary file. Standard output and character devices such as `/dev/null`
-//! are written directly. Pipes, sockets and block devices are rejected: a pipe without a reader would block forever.
+//! If there is an error, or after SIGINT or SIGTERM, the temporary file is removed. Standard output and character
+//! devices such as `/dev/null` are written directly. Pipes, sockets and block devices are rejected: a pipe without a
+//! reader would block forever.
 //!
 //! If a file that the user names is a link, its target is replaced. In a folder for many files, an existing entry with
-//! the same name is replaced, even a link.
+//! the same name is replaced, even if it is a link.
 use super::{
     console,
     interrupt::{clean_up_when_interrupted, pending, show_activity},
@@ -22,21 +24,21 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// An output while it is written.
+/// An output that is being written.
 #[derive(Debug)]
 pub(super) enum Output {
     /// The output is discarded.
     Nowhere,
-    /// Standard output (`-`).
+    /// The output is standard output (`-`).
     Stdout,
-    /// A character device.
+    /// The output is a character device.
     Device(File, PathBuf),
-    /// A file, which has a temporary name until it is finished.
+    /// The output is a file, which has a temporary name until it is complete.
     File(Replacement),
 }
 
 impl Output {
-    /// Prepares an output. Its name does not appear before [`Output::finish`].
+    /// Prepares an output. The file does not appear under its name before [`Output::finish`] is called.
     ///
     /// # Errors
     ///
@@ -63,9 +65,9 @@ impl Output {
                 } else if !kind.is_file() {
                     bail!("it is a pipe, socket or block device; use `-` for standard output");
                 }
-                // Renaming would replace even a protected file, so check first whether the file may be written.
+                // Renaming would replace even a protected file, so it is checked first whether the file may be written.
                 OpenOptions::new().write(true).open(name)?;
-                // Replace the target of a symbolic link, not the link.
+                // The target of a symbolic link is replaced, and not the link.
                 target = name.canonicalize()?;
                 mode = Some(existing.permissions().mode() & 0o777);
             }
@@ -88,12 +90,12 @@ impl Output {
         Ok(Self::File(begin_file(begin).with_context(|| format!("cannot create a file in {}", folder.display()))?))
     }
 
-    /// Returns whether this is standard output, so that nothing else may be printed there.
+    /// Returns whether the output is standard output. Nothing else may then be printed there.
     pub(super) const fn is_stdout(&self) -> bool {
         matches!(self, Self::Stdout)
     }
 
-    /// Returns the path of the temporary file, for a program that writes to it.
+    /// Returns the path of the temporary file, for a program that writes it.
     pub(super) fn temporary_path(&self) -> Option<PathBuf> {
         match self {
             Self::File(file) => Some(file.unfinished_path()),
@@ -101,22 +103,22 @@ impl Output {
         }
     }
 
-    /// Writes all bytes, and moves the file to its final name.
+    /// Writes all bytes, and gives the file its final name.
     ///
     /// # Errors
     ///
-    /// Fails if it can't be written.
+    /// Fails if the output can't be written.
     pub(super) fn finish_with(mut self, bytes: &[u8]) -> Result<()> {
         let name = self.name();
         self.write_all(bytes).with_context(|| format!("cannot write {name}"))?;
         self.finish()
     }
 
-    /// Finishes like [`Output::finish_with`], and prints the file's name.
+    /// Finishes the output as [`Output::finish_with`] does, and prints the file's name.
     ///
     /// # Errors
     ///
-    /// Fails if it can't be written.
+    /// Fails if the output can't be written.
     pub(super) fn finish_and_tell(self, bytes: &[u8], is_page: bool) -> Result<()> {
         let file = match &self {
             Self::File(file) => Some(file.target()),
@@ -138,11 +140,11 @@ impl Output {
         }
     }
 
-    /// Moves the file to its final name.
+    /// Gives the file its final name.
     ///
     /// # Errors
     ///
-    /// Fails if the last bytes or the rename fail; the target is unchanged then.
+    /// Fails if the last bytes can't be written, or if the file can't be renamed. An existing file is then unchanged.
     pub(super) fn finish(mut self) -> Result<()> {
         console::ignore_closed_pipe(self.flush())?;
         match self {
@@ -155,15 +157,15 @@ impl Output {
     }
 }
 
-/// Prints the path of an output; a page is to be opened in a browser.
+/// Prints the path of an output. If it is a page, the text says to open it in a browser.
 pub(super) fn print_path(file: &Path, is_page: bool) {
     let what = if is_page { "to look at" } else { "written" };
     console::print_remark(format!("{what}: {}\n", one_line(&file.display().to_string())));
 }
 
 impl Output {
-    /// Calls `act` with the writer. If the reader has closed the pipe, the result is `taken` instead of an error, so
-    /// that the command can finish.
+    /// Calls `act` with the writer. If the reader has closed the pipe, returns `taken` instead of an error, so that the
+    /// command can finish.
     fn write_through<T>(&mut self, taken: T, act: impl FnOnce(&mut dyn Write) -> io::Result<T>) -> io::Result<T> {
         match self {
             Self::Nowhere => Ok(taken),
@@ -191,35 +193,36 @@ impl Write for Output {
     }
 }
 
-/// Writes a file atomically.
+/// Writes a file. It appears only when it is complete.
 ///
 /// # Errors
 ///
-/// Fails if it can't be written; an old file is unchanged then.
+/// Fails if the file can't be written. An existing file is then unchanged.
 pub(super) fn write(name: &Path, bytes: &[u8]) -> Result<()> {
     Output::create(name, &[])?.finish_with(bytes)
 }
 
-/// Writes a file atomically, below a folder for results: missing folders are created, and no link is followed.
+/// Writes a file below a folder for results. It appears only when it is complete. Missing folders are created, and no
+/// link is followed.
 ///
 /// # Errors
 ///
-/// Fails if it can't be written; an old file is unchanged then.
+/// Fails if the file can't be written. An existing file is then unchanged.
 pub(super) fn write_at(place: &Place, bytes: &[u8]) -> Result<()> {
     write_whole(|| place.replacement(), |file| file.write_all(bytes))
         .with_context(|| format!("cannot write {}", place.path().display()))
 }
 
-/// Writes the content of a reader, like [`write_at`].
+/// Writes everything that a reader returns into a file, as [`write_at`] does.
 ///
 /// # Errors
 ///
-/// Fails like [`write_at`], and if the reader fails.
+/// Fails like [`write_at`]. Also fails if the reader fails.
 pub(super) fn copy_at(place: &Place, from: &mut impl io::Read) -> io::Result<()> {
     write_whole(|| place.replacement(), |file| io::copy(from, file).map(drop))
 }
 
-/// Writes a whole file in one call, replacing an old one.
+/// Writes a whole file at once. An existing file is replaced.
 fn write_whole(
     begin: impl FnOnce() -> io::Result<Replacement>,
     fill: impl FnOnce(&mut Replacement) -> io::Result<()>,
@@ -229,7 +232,7 @@ fn write_whole(
     finish_file(file)
 }
 
-/// Begins a file that an interrupt removes.
+/// Begins to write a file. If the user interrupts the program, the file is removed.
 fn begin_file(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Replacement> {
     clean_up_when_interrupted();
     show_activity();
@@ -239,7 +242,7 @@ fn begin_file(begin: impl FnOnce() -> io::Result<Replacement>) -> io::Result<Rep
     Ok(file)
 }
 
-/// Moves a finished file to its final name.
+/// Gives a complete file its final name.
 fn finish_file(file: Replacement) -> io::Result<()> {
     let mut pending = pending();
     let path = file.unfinished_path();
@@ -249,8 +252,8 @@ fn finish_file(file: Replacement) -> io::Result<()> {
     finished
 }
 
-/// A folder for many files, each of which is written atomically. Existing files with the same names are replaced, and
-/// links are not followed, so that a user who prepares a folder can't redirect the output.
+/// A folder for many files. Each file appears only when it is complete. Existing files with the same names are
+/// replaced, and links are not followed, so that nobody can redirect the output by preparing the folder.
 #[derive(Debug)]
 pub(super) struct Folder(files::Folder);
 
@@ -273,12 +276,12 @@ impl Folder {
         Ok(Self(opened))
     }
 
-    /// Opens an existing folder.
+    /// Opens a folder that exists; `None` if it does not exist.
     pub(super) fn open_existing(name: &Path) -> Option<Self> {
         files::Folder::to_write(name).ok().map(Self)
     }
 
-    /// Returns the output's name as typed, in printable form.
+    /// Returns the name of the output as the user typed it, in printable form.
     pub(super) fn name(&self) -> String {
         self.0.given_path().display().to_string()
     }
@@ -288,18 +291,18 @@ impl Folder {
         self.0.contains(OsStr::new(name))
     }
 
-    /// Writes a file atomically.
+    /// Writes a file in the folder. It appears only when it is complete.
     ///
     /// # Errors
     ///
-    /// Fails if it can't be written.
+    /// Fails if the file can't be written.
     pub(super) fn write(&self, name: &str, bytes: &[u8]) -> Result<()> {
         write_whole(|| self.0.replacement(OsStr::new(name), None), |file| file.write_all(bytes))
             .with_context(|| format!("cannot write {}", self.0.given_path().join(name).display()))
     }
 }
 
-/// Returns whether a name has an extension, ignoring case.
+/// Returns whether a file name has this ending. Upper and lower case are the same.
 pub(super) fn has_extension(name: &Path, extension: &str) -> bool {
     name.extension().and_then(OsStr::to_str).is_some_and(|found| found.eq_ignore_ascii_case(extension))
 }

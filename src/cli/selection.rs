@@ -1,16 +1,16 @@
-//! Scenes that are selected by name, for `grade --scene` and `scene list`.
+//! Selects scenes by name, for `grade --scene` and `scene list`.
 use crate::suite::{library, near};
 use anyhow::{Context, Result, bail};
 use glob::Pattern;
 
-/// Patterns of scene names; an empty list selects everything.
+/// Patterns for the names of scenes. An empty list selects all scenes.
 #[derive(Debug, Default)]
 pub(super) struct Selection {
     patterns: Vec<Pattern>,
 }
 
 impl Selection {
-    /// Creates a selection among names.
+    /// Creates a selection of some of these names.
     ///
     /// # Errors
     ///
@@ -35,16 +35,16 @@ impl Selection {
     }
 }
 
-/// Returns whether a pattern matches a name. It is compared with the full name (like [`library::matches_pattern`]), and
-/// with the name without its group.
+/// Returns whether a pattern matches a name. It is compared with the full name (as in [`library::matches_pattern`]),
+/// and with the name without its group.
 fn matches_pattern(pattern: &Pattern, name: &str) -> bool {
     library::matches_pattern(pattern, name) || name.rsplit('/').next().is_some_and(|last| pattern.matches(last))
 }
 
-/// The number of names that are given as examples.
+/// The maximum number of names that a message gives as examples.
 const MAX_EXAMPLES: usize = 3;
 
-/// Returns the names that are most similar to a typed one, as text.
+/// Returns the names that are most similar to a typed one, as words for a message.
 fn nearest_names(typed: &str, names: &[&str]) -> String {
     let shown = near::nearest(typed, names.iter().copied(), MAX_EXAMPLES).join(", ");
     if names.len() > MAX_EXAMPLES { format!("{shown} and {} more", names.len() - MAX_EXAMPLES) } else { shown }

@@ -1,4 +1,4 @@
-//! The command line of the sample: the course's arguments, and additional ones.
+//! The command line of the sample. It has the course's arguments, and some more.
 use super::pin;
 use crate::{
     student::{self, Mistake, Student, all_rows},
@@ -10,16 +10,16 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The environment variable that names a mistake.
+/// The environment variable that names a mistake for the sample to make.
 const MISTAKE_VARIABLE: &str = "FOSSSIM_SAMPLE_MISTAKE";
 
-/// A copy or link named PREFIX plus a mistake's id makes that mistake.
+/// The prefix of a name. If the program is called by this prefix and the id of a mistake, it makes that mistake.
 const NAME_PREFIX: &str = "fosssim-sample.";
 
-/// The maximum number of mistakes in one program.
+/// The maximum number of mistakes that one program makes.
 const MAX_COUNT: usize = Student::MAX_MISTAKES;
 
-/// A sample submission: simulates a scene like a student's program, with documented mistakes on request.
+/// A sample submission. It simulates a scene as a student's program does, and makes documented mistakes on request.
 #[derive(Debug, Parser)]
 #[command(
     name = "fosssim-sample",
@@ -58,18 +58,18 @@ pub struct Options {
 }
 
 impl Options {
-    /// Returns the student who wrote the program.
+    /// Returns a student who makes the selected mistakes.
     ///
     /// # Errors
     ///
-    /// Fails if there is no such mistake, with a sentence about it.
+    /// Fails if there is no such mistake. The error says so in a sentence.
     pub fn student(&self, pinned: Option<&str>, program: Option<&OsString>) -> Result<Student, String> {
         student(pinned, self.mistake.clone(), program.map(Path::new))
     }
 }
 
-/// Returns the student with the pinned mistakes, or with those that the command line, the program's name or the
-/// environment selects.
+/// Returns a student who makes the pinned mistakes. If there are none, the mistakes are those that the command line,
+/// the program's name, or the environment selects.
 fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>) -> Result<Student, String> {
     let (source, ids) = if let Some(id) = pinned {
         if id == pin::RIGHT_ID {

@@ -1,5 +1,5 @@
-//! The actions of hostile programs in addition to simulating. They are limited where they could harm a machine without
-//! a sandbox; only the endless loop and the sleep last forever.
+//! The actions of hostile programs, in addition to simulating. Their actions are limited, so that they cannot harm a
+//! machine without a sandbox. Only the endless loop and the sleep last forever.
 use std::{
     fs::File,
     hint::black_box,
@@ -12,17 +12,17 @@ use std::{
 
 use crate::student::{Area, Mistake, Student};
 
-/// The number of bytes of a flood after the trace, or on standard output or error.
+/// The number of bytes that a program writes too much, after the trace or on standard output or error.
 const FLOOD_BYTES: usize = 256 << 20;
 const PRINTED_BYTES: usize = 16 << 20;
 
 /// The number of bytes of memory that a memory hog allocates.
 const HOG_BYTES: usize = 4 << 30;
 
-/// The environment variable with the names of hostile child programs.
+/// The environment variable that tells a hostile child program what to do.
 const CHILD_VARIABLE: &str = "FOSSSIM_SAMPLE_CHILD";
 
-/// The output of the original oracle after a run without faults.
+/// The text that the original oracle prints after a run without faults.
 const FORGED_VERDICT: &str = "\
 Accumulated Position Residual: 0   Passed.
 Accumulated Velocity Residual: 0   Passed.
@@ -34,12 +34,13 @@ Overall success: Passed.
 {\"score\": 100, \"output\": \"accepted\"}
 ";
 
-/// Text that attacks a log without escaping: colors, the window's title, markup, a formula, control characters.
+/// Text that attacks a log in which text is not escaped. It contains colors, the window's title, markup, a formula and
+/// control characters.
 const ESCAPES: &str = "\u{1b}[2J\u{1b}[31;1mred\u{1b}[m \u{1b}]0;title\u{7} <script>alert(1)</script> \
     <b onmouseover='x'>&amp;</b> | `code` **bold** ::error::no \r\n=HYPERLINK(\"http://example.invalid\",\"x\")\n\
     ]]> \u{202e}reversed\u{202c} \u{0}\u{8}\u{c}\n";
 
-/// Runs the actions at the start: of programs that do nothing else, and of children that only wait.
+/// Runs the actions at the start. Some programs do nothing else, and children only wait.
 pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8>> {
     if std::env::var_os(CHILD_VARIABLE).is_some() {
         sleep(Duration::from_secs(60));
@@ -55,7 +56,7 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
         }
         Some(Mistake::HostileChildren) => {
             for _ in 0..3 {
-                // No process waits for the child, which is left behind on purpose.
+                // Nothing waits for this child process, which is left behind on purpose.
                 let _child = Command::new(std::env::current_exe()?)
                     .env(CHILD_VARIABLE, "1")
                     .args(["--list"])
@@ -70,17 +71,17 @@ pub fn at_start(student: Student, output: Option<&Path>) -> io::Result<Option<u8
     Ok(None)
 }
 
-/// A hostile act in the middle of a run.
+/// The action of a hostile program in the middle of a run.
 pub enum MidwayAct {
     /// The program continues the simulation.
     GoOn,
-    /// The program stops writing and exits with this status.
+    /// The program stops writing, and exits with this status.
     Leave(u8),
-    /// The program writes part of a record and exits with this status.
+    /// The program writes a part of a record, and exits with this status.
     LeaveInsideRecord(u8),
 }
 
-/// Runs the hostile action in the middle of the run, which is before step `steps / 2 + 1`.
+/// Runs the hostile action in the middle of the run, before step `steps / 2 + 1`.
 pub fn act_midway(student: Student) -> io::Result<MidwayAct> {
     match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileExitMidway) => return Ok(MidwayAct::Leave(3)),
@@ -103,7 +104,7 @@ pub fn act_midway(student: Student) -> io::Result<MidwayAct> {
     Ok(MidwayAct::GoOn)
 }
 
-/// Writes the bytes after the last record.
+/// Writes the bytes that the program adds after the last record.
 pub fn write_after_trace(student: Student, output: &mut impl Write) -> io::Result<()> {
     match student.mistake_in(&[Area::Process]) {
         Some(Mistake::HostileTrailingBytes) => output.write_all(&[0; 8]),
@@ -112,7 +113,7 @@ pub fn write_after_trace(student: Student, output: &mut impl Write) -> io::Resul
     }
 }
 
-/// Returns the exit status of the program.
+/// Returns the status with which the program exits.
 pub fn exit_status(student: Student) -> u8 {
     u8::from(student.makes(Mistake::HostileExitOne))
 }

@@ -1,4 +1,4 @@
-//! The catalogue as a table or as JSON.
+//! Prints the catalogue of mistakes as a table or as JSON.
 use std::io::{self, Write};
 
 use crate::student::{Area, Row, RowKind, all_rows};
@@ -10,7 +10,7 @@ struct Listing {
     mistakes: Vec<Entry>,
 }
 
-/// A row of the listing.
+/// A mistake as the listing shows it.
 #[derive(Serialize)]
 struct Entry {
     id: &'static str,
@@ -35,7 +35,7 @@ pub fn print(json: bool) -> anyhow::Result<u8> {
         render_table()
     };
     match io::stdout().write_all(text.as_bytes()) {
-        // A closed pipe is not an error.
+        // It is not an error if the reader has closed the pipe.
         Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(0),
         result => Ok(result.map(|()| 0)?),
     }

@@ -1,8 +1,8 @@
-//! The sample: plays a student's submission.
+//! The sample, which acts as a student's submission.
 //!
-//! It implements the course's protocol (`-s scene.xml -d 0 -o trace.bin`) and can make documented mistakes. Its physics
-//! is the second simulator, `student`; it never uses the one that judges, `sim`. `fosssim-oracle sample` runs it, and
-//! so does every copy of the program with a [pinned](pin) mistake.
+//! It implements the course's protocol (`-s scene.xml -d 0 -o trace.bin`) and can make documented mistakes. It
+//! simulates with the second simulator, `student`. It never uses `sim`, which judges. `fosssim-oracle sample` runs it,
+//! and so does every copy of the program with a [pinned](pin) mistake.
 #![expect(
     clippy::disallowed_methods,
     clippy::disallowed_types,
@@ -20,11 +20,12 @@ use arguments::Options;
 use clap::Parser;
 use std::{ffi::OsString, process::ExitCode};
 
-/// Runs the sample with the words of a command line, the program's name first, and with its pinned mistake.
+/// Runs the sample. `words` is the command line, which begins with the program's name, and `pinned` is the mistake that
+/// is pinned to this program.
 #[must_use]
 pub fn main(words: impl Iterator<Item = OsString>, pinned: Option<&str>) -> ExitCode {
     let words: Vec<OsString> = words.collect();
-    // A syntax error ends the program with status 2.
+    // If the command line is wrong, this ends the program with the status 2.
     let options = Options::parse_from(&words);
     let outcome = match options.student(pinned, words.first()) {
         _ if options.list => listing::print(options.json),

@@ -1,20 +1,20 @@
-//! A mistake that is pinned to a copy of this program. Under every name the copy is the sample, and makes this mistake,
-//! so it can be submitted like a student's program.
+//! Pins a mistake to a copy of this program. Whatever its name is, the copy acts as the sample and makes this mistake.
+//! It can therefore be submitted like a student's program.
 //!
-//! The program has a reserved place for the mistake's id, which is filled in the copy. The copy therefore need not read
-//! any file, which the sandbox might not allow.
+//! The program has a reserved place for the mistake's id, which is filled in the copy. The copy therefore does not need
+//! to read a file, which the sandbox might not allow.
 
 use crate::sandbox::MARK_BACKWARDS;
 
-/// The id in a copy that makes no mistake. Only the demo creates such a copy, and removes it.
+/// The id in a copy that makes no mistake. Only the demo creates such a copy, and the demo removes it again.
 pub const RIGHT_ID: &str = "right";
 
-/// The number of bytes for the id, or for several ids separated by commas; the rest is zero.
+/// The number of bytes that are reserved for the id, or for several ids separated by commas. Unused bytes are zero.
 const ID_BYTES: usize = 256;
-/// The number of bytes of the place.
+/// The number of bytes of the reserved place.
 const PLACE_BYTES: usize = MARK_BACKWARDS.len() + ID_BYTES;
 
-/// The place for the id in the program.
+/// The reserved place for the id in the program.
 type Place = [u8; PLACE_BYTES];
 
 static PINNED_ID: Place = empty();
@@ -25,7 +25,7 @@ pub fn pinned_mistake() -> Option<&'static str> {
     read(&PINNED_ID)
 }
 
-/// Returns a place without a mistake.
+/// Returns a reserved place that contains no mistake.
 const fn empty() -> Place {
     let mut place = [0; PLACE_BYTES];
     let mut at = 0;
@@ -36,15 +36,16 @@ const fn empty() -> Place {
     place
 }
 
-/// Reads the mistake in a place, if there is one.
+/// Reads the mistake in a reserved place, if it contains one.
 fn read(place: &Place) -> Option<&str> {
-    // The compiler must not know the content of the place, because it is overwritten later.
+    // The compiler must not assume the content of the place, because it is overwritten later.
     let id = &std::hint::black_box(place)[MARK_BACKWARDS.len()..];
     let end = id.iter().position(|byte| *byte == 0).unwrap_or(id.len());
     std::str::from_utf8(&id[..end]).ok().filter(|id| !id.is_empty())
 }
 
-/// Writes a mistake's id into a copy of this program; `None` if the program has no place, or the id is too long.
+/// Writes a mistake's id into a copy of this program. Returns `None` if the program has no reserved place, or if the id
+/// is too long.
 #[must_use]
 pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let mut mark = std::hint::black_box(MARK_BACKWARDS);
@@ -53,7 +54,7 @@ pub fn write(program: &[u8], id: &str) -> Option<Vec<u8>> {
     let (Some(at), None) = (found.next(), found.next()) else { return None };
     let mut copy = program.to_vec();
     let room = copy.get_mut(at + mark.len()..at + PLACE_BYTES)?;
-    // One byte stays zero, as the end of the id.
+    // One byte must remain zero, to mark the end of the id.
     if id.is_empty() || id.len() >= room.len() {
         return None;
     }

@@ -1,4 +1,4 @@
-//! One run of the sample: load the scene, step, write the trace.
+//! One run of the sample: it loads the scene, simulates the steps, and writes the trace.
 use std::{
     fs::File,
     hint::black_box,
@@ -13,12 +13,12 @@ use super::{
 use crate::student::{self, StepLog, Student, World};
 use anyhow::Context;
 
-/// The exit status of a run that the course's program would never have ended.
+/// The exit status for a run that would never end in the course's program.
 const ENDLESS_STATUS: u8 = 3;
 
 type Output = Trace<Box<dyn Write>>;
 
-/// Simulates a scene and returns the program's exit status.
+/// Simulates a scene, and returns the exit status of the program.
 pub fn run(options: &Options, student: Student) -> anyhow::Result<u8> {
     if let Some(code) = hostile::at_start(student, options.output.as_deref())? {
         return Ok(code);

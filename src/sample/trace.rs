@@ -1,5 +1,5 @@
-//! The trace: positions, velocities, impulses and polynomials, record after record. It is written sequentially, so that
-//! a pipe is sufficient (trace-format.md).
+//! Writes the trace, which consists of positions, velocities, impulses and polynomials, record after record. It is
+//! written from the beginning to the end, so it can be written to a pipe (trace-format.md).
 use std::io::{self, Write};
 
 use crate::{
@@ -9,18 +9,18 @@ use crate::{
 
 use super::hostile;
 
-/// The writer of the records of one run.
+/// Writes the records of one run.
 pub struct Trace<W> {
     output: W,
     student: Student,
     collision: Collision,
     records: u64,
-    /// The buffer for one record.
+    /// The bytes of the record that is being written.
     bytes: Vec<u8>,
 }
 
 impl<W: Write> Trace<W> {
-    /// Creates a trace for scenes with a collision type.
+    /// Creates a writer for the trace of a scene with this collision handling.
     pub fn new(output: W, collision: &Collision, student: Student) -> Self {
         Self { output, student, collision: *collision, records: 0, bytes: Vec::new() }
     }
@@ -52,12 +52,12 @@ impl<W: Write> Trace<W> {
         self.output.flush()
     }
 
-    /// Ensures that all recorded bytes are written.
+    /// Makes sure that all bytes so far are written.
     pub fn flush(&mut self) -> io::Result<()> {
         self.output.flush()
     }
 
-    /// Writes raw bytes, which no correct program does.
+    /// Writes other bytes, which no correct program does.
     pub fn write_raw(&mut self, bytes: &[u8]) -> io::Result<()> {
         self.output.write_all(bytes)
     }

@@ -1,14 +1,14 @@
-// Checks a trace. The report is the same file that the command line writes, shown in a frame. The list holds the
-// reader's choice; as long as its first entry is chosen, the scene of each trace is recognized. `given` is the name of
-// the scene that comes with a trace.
+// Checks a trace. The report is the same file that the command line writes, and is shown in a frame. The reader chooses
+// the scene in the list. As long as the first entry is chosen, the scene of each trace is recognized. `given` is the
+// name of the scene that was given together with a trace.
 const check = { oracle: new Oracle(), trace: null, given: null, others: [], own: null, report: null, run: 0 };
-// The strict reader marks a place in its excerpt, which needs a monospaced font.
+// The strict reader points at a place in its excerpt, so a monospaced font is needed.
 const say = (words, look = "") => {
   $("said").textContent = words;
   $("said").className = words.includes("\n") ? `${look} excerpt` : look;
 };
 
-// A dropped file that can be read again later. Its handle provides the current contents. Browsers unpack gzip
+// A dropped file that can be read again later. The file's handle returns the current contents. Browsers unpack gzip
 // themselves.
 async function freshFile(item) {
   const file = item.handle?.getFile ? await item.handle.getFile() : item.file;
@@ -41,7 +41,7 @@ async function takeFiles(items, scene = null) {
   if (check.own) say("Now drop the trace.");
 }
 
-// Reads a scene when it is dropped, and shows its errors immediately.
+// Reads a scene that was dropped, and shows its errors immediately.
 async function takeScene({ file }) {
   check.own = { name: file.name, xml: new Uint8Array(await file.arrayBuffer()) };
   let own = $("scene").querySelector("option.own");
@@ -52,14 +52,14 @@ async function takeScene({ file }) {
   await check.oracle.ask({ do: "read", name: file.name }, { blobs: [check.own.xml] });
 }
 
-// Returns a scene for a request. Scenes of a course and dropped scenes include their XML.
+// Returns a scene for a request. The XML of dropped scenes and of a course's scenes is included.
 function sceneOf(value) {
   const own = ownScene(value);
   if (own) return { name: own.name, xml: bytesOf(own.xml) };
   return value === "own" ? check.own : { name: `asset:${value}` };
 }
 
-// Returns the scene of a trace if none is chosen. A trace begins with the state of its scene.
+// Recognizes the scene of a trace if the reader chose none. A trace begins with the state at the start of its scene.
 async function recognized(file) {
   const name = bare(file.name);
   const own =
@@ -88,7 +88,7 @@ async function recognized(file) {
   );
 }
 
-// Removes the previous report, which belongs to another trace.
+// Removes the report, which belongs to an earlier trace.
 function failed(error) {
   $("frame").hidden = $("save-html").hidden = $("save-json").hidden = true;
   $("doing").hidden = !check.trace;
@@ -193,7 +193,7 @@ function readsAgain(event) {
 async function dropped(event) {
   event.preventDefault();
   document.body.classList.remove("drops");
-  // Handles must be requested before the first await.
+  // Handles must be requested before the first `await`.
   const items = [...event.dataTransfer.items].filter((item) => item.kind === "file");
   const handles = items.map((item) => item.getAsFileSystemHandle?.().catch(() => null));
   const entries = items.map((item, number) => ({
@@ -219,7 +219,7 @@ async function dropped(event) {
   takeFiles(files);
 }
 
-// Accept drops and the shortcut key everywhere, including in the report's own document.
+// Accepts drops and the shortcut key everywhere, including in the report's own document.
 function listens(target) {
   target.addEventListener("keydown", readsAgain);
   target.addEventListener("dragover", (event) => {

@@ -1,4 +1,4 @@
-// Shows one pair and the reference's result for it, redrawn after each change.
+// Shows a pair and the reference's result for it. Both are drawn again after each change.
 const PAIRS = {
   pe: {
     points: [
@@ -127,7 +127,7 @@ function sketch() {
   if (plane) all.push([plane[0], plane[1]]);
   const low = [0, 1].map((axis) => Math.min(...all.map((one) => one[axis]))),
     high = [0, 1].map((axis) => Math.max(...all.map((one) => one[axis])));
-  // The view does not move while a point is held.
+  // The view does not move while the reader holds a point.
   pair.view = pair.held
     ? pair.view
     : {
@@ -182,7 +182,7 @@ function sketch() {
         svg("line", { class: "way", x1: X(x), y1: Y(y), x2: X(x + dx), y2: Y(y + dy), "marker-end": "url(#tip)" }),
       );
   points.forEach(([x, y, dx, dy], point) => {
-    // A name is next to its arrow.
+    // The name of a point is next to its arrow.
     const length = Math.hypot(dx, dy);
     const [along, up] = length ? [dx / length, dy / length] : [0.7, 0.7];
     const label = svg("text", { x: X(x) - 14 * up, y: Y(y) - 14 * along + 4, "text-anchor": "middle" });
@@ -198,7 +198,8 @@ function sketch() {
   $("sketch").replaceChildren(...shapes);
 }
 
-// Returns the places that can be dragged: the tips of displacements, and above them the points, which are found first.
+// Returns the places that can be dragged: the tips of displacements, and the points. If a tip and a point are at the
+// same place, the point is found first.
 function handles() {
   const { points, plane } = pair.now;
   const of = (list, from, base) => ({
@@ -216,7 +217,8 @@ function handles() {
   ];
 }
 
-// Moves a point by mouse, finger or pen to places with few digits. Fields and sliders do the same by keyboard.
+// Moves a point by mouse, finger or pen to positions with few digits. With the keyboard, readers use the fields and the
+// sliders.
 function drags(paper) {
   paper.addEventListener("pointerdown", (event) => {
     const handle = event.target.dataset.handle;
@@ -265,7 +267,7 @@ function asked() {
   return { do: "detect", kind, center: points[0], radius: radii[0], point: plane.slice(0, 2), normal: plane.slice(2) };
 }
 
-// Requests one answer at a time; of several pending requests, only the last is sent.
+// Requests one answer at a time. If several requests are pending, only the last one is sent.
 async function look() {
   sketch();
   $("command").textContent = command();

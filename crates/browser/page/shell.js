@@ -1,4 +1,4 @@
-// Code shared by the parts of the page: the worker, tabs, and files to save.
+// Code that all parts of the page share: the worker, the tabs, and files to save.
 const $ = (id) => document.getElementById(id);
 const text = (bytes) => new TextDecoder().decode(bytes);
 const bytesOf = (words) => new TextEncoder().encode(words);
@@ -10,8 +10,8 @@ const unpacked = (async () => {
   return WebAssembly.compile(await new Response(stream).arrayBuffer());
 })();
 
-// A worker that handles one request at a time. Later requests wait; `stop` terminates the worker and resolves pending
-// requests with nothing.
+// A worker that answers one request at a time. Later requests wait. `stop` terminates the worker, and the pending
+// requests get no answer.
 class Oracle {
   #worker = null;
   #waiting = new Map();
@@ -64,7 +64,7 @@ function save(name, bytes, type) {
   setTimeout(() => URL.revokeObjectURL(url), 60_000);
 }
 
-// Tabs that follow the ARIA practices: arrow keys move from one tab to the next.
+// Tabs that follow the ARIA practices: the arrow keys move from one tab to the next.
 const tabs = [...document.querySelectorAll("[role=tab]")];
 const shown = new Map();
 function open(name, focus) {
@@ -89,7 +89,7 @@ tabs.forEach((tab, number) => {
 });
 const current = () => tabs.find((tab) => tab.getAttribute("aria-selected") === "true").dataset.panel;
 
-// The embedded scenes, as the options of a list.
+// The embedded scenes, as options of the list.
 const inside = (async () => {
   const { value } = await new Oracle().ask({ do: "scenes" });
   $("suite").append(...value.suites.map((name) => el("option", { value: name }, name)));
@@ -99,7 +99,7 @@ const inside = (async () => {
   }
   return value.assignments;
 })();
-// The suite of the page's course, and the course's own scenes.
+// The suite of the course for which the page was made, and the course's own scenes.
 const course = $("course") && JSON.parse($("course").textContent);
 const ownScene = (value) => {
   const [, number] = value.match(/^course:(\d+)$/) ?? [];

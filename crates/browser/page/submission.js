@@ -1,5 +1,5 @@
-// Grades a submission's traces: a folder with Group/name.bin, points by a suite, a row per scene, and the changes since
-// the last drop.
+// Grades the traces of a submission, which is a folder with Group/name.bin. The result has the points by a suite, a row
+// for each scene, and the changes since the last drop.
 const courseSuite = course && {
   name: "",
   isForStudents: course.isForStudents,
@@ -29,7 +29,7 @@ async function walk(entry, handle, path, found) {
   return found;
 }
 
-// A dropped suite includes its scenes: XML files next to it or below. All other files are the submission.
+// If a suite is dropped, its scenes are the XML files next to it or below. All other files belong to the submission.
 async function takeFolder(name, found) {
   const suite = found.find(({ path }) => /(^|\/)[^/]*\.toml$/i.test(path));
   if (suite) {
@@ -46,7 +46,7 @@ async function takeFolder(name, found) {
   const traces = found.filter(({ path }) => /\.bin(\.(zst|gz))?$/i.test(path));
   if (traces.length) {
     marks.name = name;
-    // If a trace is also there unpacked, the unpacked file is newer.
+    // If a trace is there both compressed and decompressed, the decompressed file is newer.
     marks.files = new Map(
       traces
         .sort((a, b) => b.path.length - a.path.length)
@@ -60,8 +60,8 @@ async function takeFolder(name, found) {
     : "There is no trace in that folder. Traces are called Group/name.bin.";
 }
 
-// Returns the trace of a scene, by its full name or the name without its group. If the first group is in a subfolder,
-// that folder is searched.
+// Returns the trace of a scene. Its file has the full name, or the name without the group. If the first group is in a
+// subfolder, that folder is searched.
 function traceOf(scene, below) {
   const paths = [`${below}${scene}.bin`, `${below}${scene.split("/").pop()}.bin`];
   return paths.find((path) => marks.files.has(path)) ?? null;
@@ -156,7 +156,7 @@ function showMarks(suite, grade, rows, strange) {
     : [];
   const look = ({ scene, file }, words) =>
     file ? el("button", { type: "button", class: "plain", onclick: () => lookAt(scene, file) }, words) : words;
-  // The scene that shows a cause best is first.
+  // The scene that shows a cause best is the first.
   const causes = grade.causes
     .map(({ words, scenes }) => [words, scenes.map((scene) => rows.find((row) => row.scene === scene))])
     .filter(([, own]) => !own[0].isMissing);
@@ -181,7 +181,7 @@ function showMarks(suite, grade, rows, strange) {
         el("td", { class: "num", "data-label": "points" }, `${points} of ${of}`),
         el("td", { class: "words" }, accepted || isMissing ? "" : why),
       );
-    // Wrong scenes come first; right ones are shown on request.
+    // Wrong scenes come first. Right scenes are shown on request.
     const wrong = own.filter((row) => !row.accepted && !row.isMissing),
       missing = own.filter((row) => row.isMissing);
     const folded = (list, words) =>
@@ -251,7 +251,8 @@ function showMarks(suite, grade, rows, strange) {
   if (hadFocus) $("marks-again").focus();
 }
 
-// Opens the full report on one scene. Only this trace uses the scene; the scene of the next trace is recognized.
+// Opens the full report on one scene. The choice of the scene applies to this trace only; the scene of the next trace
+// is recognized.
 function lookAt(scene, file) {
   open("check");
   $("scene").value = "";
@@ -262,7 +263,7 @@ function lookAt(scene, file) {
   );
 }
 
-// Requests the chosen suite.
+// Requests the suite that the reader chose.
 function askSuite() {
   const { suite } = marks;
   return marks.oracle.ask(
@@ -273,7 +274,7 @@ function askSuite() {
   );
 }
 
-// Returns a scene's XML: that of a dropped scene, of a course's scene, or of an embedded one.
+// Returns the XML of a scene, which is a dropped scene, a scene of the course, or an embedded scene.
 async function xmlOf(scene) {
   const number = marks.suite?.scenes.findIndex((name) => name.replace(/\.xml$/i, "") === scene) ?? -1;
   if (number >= 0) return marks.suite.xml[number];
@@ -306,8 +307,8 @@ run() {
 $("save-script").addEventListener("click", () =>
   saveScript().catch(({ message }) => ($("marks-said").textContent = message)),
 );
-// A wrong trace, and right traces of scenes of the same group. The mistake is one of edges, so the right scenes have
-// none.
+// The example has a wrong trace, and right traces of scenes in the same group. The mistake concerns edges, and the
+// right scenes have no edges.
 $("example-all").addEventListener("click", async () => {
   const flawed = await marks.oracle.ask({ do: "example" });
   if (!flawed) return;

@@ -1,4 +1,5 @@
-// Edits a scene, with the strict reader's messages at their places and the reference's motion next to it.
+// Edits a scene. The messages of the strict reader are shown at their places, and the reference's motion next to the
+// text.
 const film = { oracle: new Oracle(), now: null, step: 0, plays: false, round: 0 };
 const SIZE = { width: 800, height: 500 };
 const STARTER = `<scene>
@@ -22,7 +23,7 @@ function tryScene(words, name) {
   $("source").value = words;
   changed();
 }
-// The smallest scenes of a report become options of the list.
+// The smallest scenes of a dropped report become options of the list.
 async function tryFile(file) {
   if (!file) return;
   const words = await file.text();
@@ -36,7 +37,7 @@ async function tryFile(file) {
   tryScene(scenes[0], "small.xml");
 }
 
-// The marks are behind the text, in a transparent copy of it with the same letters at the same places.
+// The marks are behind the text. They are in a transparent copy of the text, with the same letters at the same places.
 function mark(problems) {
   const source = bytesOf($("source").value),
     nodes = [];
@@ -57,7 +58,7 @@ async function changed() {
   const round = ++film.round;
   await new Promise((wait) => setTimeout(wait, 250));
   if (round !== film.round) return;
-  // Cancel the simulation in progress, because its result is outdated.
+  // A simulation that is still running is stopped, because its result is outdated.
   if (film.oracle.isBusy) film.oracle.stop();
   $("try-said").textContent = "Reading the scene ...";
   const source = bytesOf($("source").value);
@@ -105,7 +106,7 @@ function told(value) {
   draw();
 }
 
-// Selects the text of a message.
+// Selects the text that a message is about.
 function show(from, to) {
   const source = bytesOf($("source").value);
   const [first, last] = [from, to].map((at) => text(source.slice(0, at)).length);
@@ -113,7 +114,7 @@ function show(from, to) {
   $("source").setSelectionRange(first, Math.max(last, first + 1));
 }
 
-// Requests one picture at a time; of several pending requests, only the last is sent.
+// Requests one picture at a time. If several requests are pending, only the last one is sent.
 async function draw() {
   $("step").value = film.step;
   $("at").textContent =

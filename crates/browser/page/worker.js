@@ -1,4 +1,4 @@
-// The worker handles requests one after the other, each with the files that it may read.
+// The worker answers the requests one after the other. Each has the files that it may read.
 let files = [],
   ask = null,
   id = 0,
@@ -31,7 +31,7 @@ onmessage = ({ data }) => {
       parts.map((part) => part.buffer),
     );
   } catch (error) {
-    // After a trap the module's memory is in an unknown state.
+    // After a trap, the state of the module's memory is unknown.
     if (!error.isAnswer) ask = null;
     postMessage({ id, error: error.message });
   }

@@ -1,4 +1,4 @@
-//! Answers `check` with the same reports as the command.
+//! Answers the request `check` with the same reports as the command.
 use crate::{
     dropped::{PageHost, PageProgress, ReadFault, open},
     parts::PageAnswer,
@@ -18,30 +18,30 @@ use serde::Deserialize;
 use serde_json::json;
 use std::io::{Cursor, Read};
 
-/// A trace to be judged.
+/// A request to judge a trace.
 #[derive(Debug, Deserialize)]
 pub(crate) struct CheckRequest {
-    /// The scene's name: `asset:Group/name` for an embedded scene, otherwise that of its file.
+    /// The name of the scene. For an embedded scene it is `asset:Group/name`, otherwise the name of the scene's file.
     scene: String,
-    /// The name of the trace's file.
+    /// The name of the file with the trace.
     trace: String,
-    /// The number of the dropped file.
+    /// The number of the file among the dropped files.
     #[serde(default)]
     file: u32,
     #[serde(default)]
     rules: Rules,
-    /// Whether the HTML page is requested in addition to the JSON.
+    /// Whether the answer contains the HTML page as well as the JSON.
     #[serde(default)]
     html: bool,
 }
 
-/// Judges a trace. The second part of the answer is the output of `check --format json`, the third that of `check
-/// --format html`.
+/// Judges a trace. The second part of the answer is what `check --format json` prints, and the third what `check
+/// --format html` prints.
 pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn PageHost) -> PageAnswer {
     let scene = read_scene(&request.scene, xml)?;
     let fault = ReadFault::new();
     let (mut trace, mut start) = (open(host, request.file, &fault), Vec::new());
-    // Bytes that can't be read are noticed below.
+    // If bytes can't be read, this is noticed below.
     let _ = trace.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = looks_like(&start);
     let options = Options { threads: 1, uses_fair_rules: request.rules.ask_fair(), ..Options::default() };
@@ -49,7 +49,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     let heard = &mut ObserverPair(&mut told, &mut wrong);
     let examined = examine(&scene, Cursor::new(start).chain(trace), KeptPart::All, &options, heard);
     let outcome = &examined.outcome;
-    // Report judging as complete, because the search for the mistake, which follows, may take as long.
+    // Judging is reported as complete here. The search for the mistake follows, and may take as long.
     host.progress(scene.step_count(), scene.step_count());
     if let Some(why) = describe_no_verdict(outcome, &request.scene) {
         return Err(why);
@@ -81,7 +81,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     Ok((value, parts))
 }
 
-/// Reads a dropped or an embedded scene.
+/// Reads a scene that was dropped or is embedded.
 pub(crate) fn read_scene(name: &str, xml: Option<&[u8]>) -> Result<Scene, String> {
     let xml = match (xml, name.strip_prefix("asset:")) {
         (Some(xml), _) => xml,

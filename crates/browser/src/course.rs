@@ -1,4 +1,4 @@
-//! The suite of a course on the page.
+//! The suite of a course, which is part of the page.
 use fosssim_grading::{
     SceneTask,
     config::Visibility,
@@ -9,12 +9,12 @@ use fosssim_report::page::Audience;
 use serde_json::{Value, json};
 use std::fmt::Write;
 
-/// A suite and its own scenes, in the form of dropped files.
+/// A suite and its own scenes, as if they had been dropped.
 #[derive(Debug)]
 pub struct CourseSuite(Value);
 
 impl CourseSuite {
-    /// Returns the groups of a plan that readers of the page may see, without any data of the other groups.
+    /// Returns the groups of a plan that the page's readers may see. Nothing about the other groups is included.
     ///
     /// # Errors
     /// Fails if there is no visible group, or if a name cannot be written into a suite.
@@ -45,23 +45,23 @@ impl CourseSuite {
         Ok(Self(json!({ "name": plan.name, "suite": text, "scenes": scenes, "isForStudents": is_for_students })))
     }
 
-    /// Returns the course for a data block of a page, escaped so that it cannot end the element.
+    /// Returns the course as JSON for a data block of a page. It is escaped, so that it cannot end the block.
     pub(crate) fn data(&self) -> String {
         self.0.to_string().replace('<', "\\u003c")
     }
 }
 
-/// Returns whether every page embeds the scene.
+/// Returns whether every page contains the scene anyway.
 fn is_inside(task: &SceneTask) -> bool {
     library::scene(&task.name).is_some_and(|xml| xml == task.xml)
 }
 
-/// Returns the file name of a scene, next to the suite.
+/// Returns the file name of a scene, as the suite names it.
 fn file(task: &SceneTask) -> String {
     format!("{}.xml", task.name)
 }
 
-/// Returns the text of the suite, without settings that only grading needs.
+/// Returns the text of the suite, without the settings that only grading needs.
 fn text(plan: &Plan, groups: &[&PlannedGroup]) -> String {
     // A JSON string is also a TOML string.
     let string = |text: &str| Value::from(text).to_string();

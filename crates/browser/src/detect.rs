@@ -1,4 +1,4 @@
-//! Answers `detect` for one pair.
+//! Answers the request `detect` for one pair.
 use crate::parts::PageAnswer;
 use fosssim_judge::study::Study;
 use fosssim_model::sim::{PairMotion, PointMotion};
@@ -8,7 +8,7 @@ use fosssim_report::{detect::Detect, style::Style};
 use serde::Deserialize;
 use serde_json::json;
 
-/// A pair with its motion. A moving point is `[x, y, dx, dy]`.
+/// A request to examine a pair. Each moving point is `[x, y, dx, dy]`: a position and a displacement.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "kind")]
 pub(crate) enum PairRequest {
@@ -52,8 +52,8 @@ impl PairRequest {
     }
 }
 
-/// Examines a pair. The parts after the first are the outputs of `detect --format text`, `json` and `svg`, followed by
-/// the picture for a page with the style sheet of plots.
+/// Examines a pair. The second to fourth parts of the answer are what `detect --format text`, `json` and `svg` print.
+/// The last part is the picture for a page that has the style sheet of plots.
 pub(crate) fn answer(request: &PairRequest) -> PageAnswer {
     let study = Study::for_motion(&request.motion()?)
         .map_err(|_| "no result: the numbers are too large or too small, and the original would hang")?;

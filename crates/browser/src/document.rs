@@ -1,13 +1,13 @@
-//! The page, one HTML file with the embedded module, which loads nothing else.
+//! The page. It is a single HTML file with the module embedded, and loads nothing else.
 //!
-//! Its policy allows its script, its style and those of the embedded reports by their digests. It also allows the
-//! module, and a worker created by the page; no address is among the sources.
+//! The policy of the page allows its script and its style, and those of reports in it, by their digests. It also allows
+//! the module, and a worker that the page creates. It does not allow any address.
 use crate::CourseSuite;
 use base64::{Engine, engine::general_purpose::STANDARD};
 use fosssim_report::page::{ELEMENTS, digest, framed_digests, style};
 use miniz_oxide::deflate::compress_to_vec;
 
-/// The parts of the page's script, in the order of their dependencies.
+/// The parts of the page's script. A part uses only the parts before it.
 const SCRIPT_PARTS: [&str; 6] = [
     ELEMENTS,
     include_str!("../page/shell.js"),
@@ -23,7 +23,8 @@ const WORKER_PARTS: [&str; 2] = [include_str!("../page/engine.js"), include_str!
 const BODY: &str = include_str!("../page/body.html");
 const STYLE: &str = include_str!("../page/page.css");
 
-/// Returns the page with the module (WebAssembly, not compressed), and with the suite of a course if one is given.
+/// Returns the page. `module` is the WebAssembly module, not compressed. If a course is given, the page contains its
+/// suite.
 #[must_use]
 pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     let script = format!("\"use strict\";\n(() => {{\n{}}})();\n", lines(&SCRIPT_PARTS));
@@ -51,8 +52,8 @@ pub fn page(module: &[u8], course: Option<&CourseSuite>) -> String {
     )
 }
 
-/// Returns a script without indentation and comment lines, which only its authors need. Except in scenes, no text in it
-/// spans several lines.
+/// Returns a script without indentation and without comment lines. Except in scenes, no text in a script spans several
+/// lines.
 fn lines(parts: &[&str]) -> String {
     let lines = parts.iter().flat_map(|part| part.lines());
     lines

@@ -1,4 +1,4 @@
-//! Dropped files, which are read piece by piece; compressed traces are decompressed.
+//! Reads dropped files piece by piece. Compressed traces are decompressed.
 use fosssim_judge::replay::{Progress, Remark};
 use ruzstd::decoding::{FrameDecoder, StreamingDecoder};
 use std::{
@@ -7,26 +7,26 @@ use std::{
     sync::OnceLock,
 };
 
-/// The number of bytes that are requested from the browser in one call; each call takes about 0.1 ms.
+/// The number of bytes that are requested from the browser in one call. Each call takes about 0.1 ms.
 const PIECE_BYTES: usize = 1 << 20;
 
-/// The first bytes of every zstd frame.
+/// The first bytes of each frame in a zstd file.
 const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// The reason why a file cannot be read to its end, and the remedy.
+/// The reason why a file cannot be read to its end, and what the user can do.
 pub(crate) type ReadFault = OnceLock<&'static str>;
 
-/// The functions of the page that requests use.
+/// The functions of the page that requests may call.
 pub trait PageHost: Sync {
-    /// Reads bytes of a dropped file from an offset on. Returns the number of bytes; 0 at the end of the file, `None`
-    /// if it cannot be read.
+    /// Reads bytes of a dropped file, beginning at an offset. Returns the number of bytes that were read, which is 0 at
+    /// the end of the file; `None` if the file cannot be read.
     fn read(&self, file: u32, offset: u64, into: &mut [u8]) -> Option<usize>;
 
-    /// Reports the progress of a request, as the number of completed steps and of all steps.
+    /// Reports the progress of a request: the number of completed steps, and the number of all steps.
     fn progress(&self, done: u32, all: u32);
 }
 
-/// Forwards the progress of judging to the page.
+/// Passes the progress of judging on to the page.
 pub(crate) struct PageProgress<'a> {
     pub(crate) host: &'a dyn PageHost,
     pub(crate) all: u32,
@@ -38,17 +38,17 @@ impl Progress for PageProgress<'_> {
     }
 }
 
-/// Returns a reader of a dropped trace, decompressed if it is a zstd file.
+/// Returns a reader of a dropped trace. If the file is compressed with zstd, it is decompressed.
 pub(crate) fn open<'a>(host: &'a dyn PageHost, file: u32, fault: &'a ReadFault) -> Box<dyn Read + Send + 'a> {
     let mut bytes = BufReader::with_capacity(PIECE_BYTES, DroppedFile { host, file, offset: 0, fault });
-    // An unreadable file is reported when it is read.
+    // If a file cannot be read, this is reported when it is read.
     match bytes.fill_buf() {
         Ok(start) if start.starts_with(&ZSTD_MAGIC) => Box::new(ZstdContent { frames: Frames::Next(bytes), fault }),
         _ => Box::new(bytes),
     }
 }
 
-/// A sequential reader of a dropped file.
+/// Reads a dropped file from its beginning to its end.
 struct DroppedFile<'a> {
     host: &'a dyn PageHost,
     file: u32,
@@ -67,26 +67,26 @@ impl Read for DroppedFile<'_> {
     }
 }
 
-/// The decompressed content of a zstd file. A damaged copy proves nothing about the trace.
+/// Decompresses a zstd file. If the file is damaged, the copy is at fault, and nothing is known about the trace.
 struct ZstdContent<'a> {
     frames: Frames<BufReader<DroppedFile<'a>>>,
     fault: &'a ReadFault,
 }
 
-/// The frames of a zstd file, one after the other.
+/// A zstd file as a sequence of frames, and the position in it.
 enum Frames<R: Read> {
-    /// The position before the next frame.
+    /// The position is before the next frame.
     Next(R),
-    /// The position within a frame.
+    /// The position is within a frame.
     Within(Box<StreamingDecoder<R, FrameDecoder>>),
-    /// The position after the last byte.
+    /// The position is after the last byte.
     End,
 }
 
 impl Read for ZstdContent<'_> {
     fn read(&mut self, into: &mut [u8]) -> io::Result<usize> {
         self.frames.read(into).inspect_err(|_| {
-            // A missing file has already been reported, and is the better explanation.
+            // If the file cannot be read, this has been reported already, and explains more.
             let _ = self.fault.set("the zstd data is cut short or damaged; copy it again");
         })
     }

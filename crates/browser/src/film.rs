@@ -1,4 +1,4 @@
-//! A scene in the editor: the problems found by the strict reader, and the reference's motion.
+//! A scene in the editor: the problems that the strict reader finds, and the reference's motion.
 use crate::{dropped::PageHost, parts::PageAnswer};
 use fosssim_model::{
     scene::{self, LoadedScene, Problem, Scene, Severity},
@@ -15,22 +15,22 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use std::io::{self, Write};
 
-/// The maximum number of numbers that are kept of a motion; the largest course scene has 70,444.
+/// The maximum number of values of a motion that are kept. The largest course scene has 70,444 values.
 const MAX_NUMBERS: usize = 1 << 24;
 
-/// The maximum size of a trace that is created at once, in bytes.
+/// The maximum size of a trace that is created as a whole, in bytes.
 const MAX_TRACE_BYTES: usize = 1 << 30;
 
-/// The number of pictures above which a film omits some, like films of the command line.
+/// The number of pictures from which a film leaves some out. It is the same as for films of the command line.
 const MAX_PICTURES: u32 = 1500;
 
-/// The pictures per second of a film.
+/// The number of pictures per second in a film.
 const PICTURES_PER_SECOND: u16 = 25;
 
-/// The number of steps between two reports of progress.
+/// The number of steps after which progress is reported again.
 const STEPS_PER_REPORT: u32 = 64;
 
-/// A request for a picture of the motion.
+/// A request for one picture of the motion.
 #[derive(Debug, Deserialize)]
 pub(crate) struct PictureRequest {
     step: u32,
@@ -39,37 +39,37 @@ pub(crate) struct PictureRequest {
     form: PictureForm,
 }
 
-/// The form of a picture.
+/// The form in which a picture is returned.
 #[derive(Debug, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 enum PictureForm {
-    /// Four bytes per pixel, for a canvas.
+    /// The picture as four bytes per pixel, for a canvas.
     Pixels,
     Png,
     Svg,
 }
 
-/// The kind of a film.
+/// The format and the size of a film.
 #[derive(Debug, Deserialize)]
 pub(crate) struct FilmKind {
     width: u32,
     height: u32,
 }
 
-/// The motion of a scene.
+/// The motion of the scene in the editor.
 #[derive(Debug)]
 pub(crate) struct Film {
     scene: Scene,
-    /// The positions after each step, with the start first.
+    /// The positions of all particles after each step, beginning with the start of the scene.
     positions: Vec<f64>,
     steps: u32,
     extent: Extent,
-    /// The painter, the step of its next picture, and whether pictures have labels. Particles have trails, so pictures
-    /// must be painted in order.
+    /// The painter, the step of its next picture, and whether its pictures have labels. Pictures must be painted in
+    /// order, because particles have trails.
     painter: Option<(Painter, u32, bool)>,
 }
 
-/// Reads a scene and, if it has no errors, simulates it.
+/// Reads a scene. If it has no errors, it is also simulated.
 pub(crate) fn simulate(name: &str, xml: &[u8], host: &dyn PageHost) -> (Value, Option<Film>) {
     let (scene, problems, more) = match scene::read(name, xml) {
         Ok(LoadedScene { scene, warnings, .. }) => (Some(scene), warnings, 0),
@@ -102,7 +102,7 @@ fn view(problem: &Problem) -> Value {
 }
 
 impl Film {
-    /// Returns the motion, and the reason if it ends before the scene does.
+    /// Simulates a scene. If the motion ends before the scene does, the reason is returned as well.
     fn for_scene(scene: Scene, host: &dyn PageHost) -> (Self, Option<String>) {
         let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
         let mut positions = simulation.state().positions.clone();
@@ -137,11 +137,11 @@ impl Film {
         Painter::new(&self.scene, &self.extent, PictureOptions { size, label })
     }
 
-    /// Returns one picture, as the only part after the first.
+    /// Returns one picture, as the second part of the answer.
     pub(crate) fn draw_picture(&mut self, asked: &PictureRequest) -> PageAnswer {
         let size = Size::new(asked.width, asked.height).map_err(|error| error.to_string())?;
         let step = asked.step.min(self.steps);
-        // The page itself shows the step and the time.
+        // The page itself shows the step and the time, so the picture does not.
         let label = !matches!(asked.form, PictureForm::Pixels);
         let follows =
             |(painter, next, has): &(Painter, u32, bool)| *next <= step && painter.size() == size && *has == label;
@@ -173,7 +173,7 @@ impl Film {
         Ok((json!({ "step": step }), vec![bytes]))
     }
 
-    /// Returns all pictures as a film, like `render`.
+    /// Returns all pictures as a film, as `render` draws them.
     pub(crate) fn draw_film(&self, kind: &FilmKind, host: &dyn PageHost) -> PageAnswer {
         let size = Size::new(kind.width, kind.height).map_err(|error| error.to_string())?;
         let rate = Rate::new(PICTURES_PER_SECOND).ok_or("no such rate")?;
@@ -198,7 +198,7 @@ impl Film {
         Ok((json!({ "pictures": pictures }), vec![bytes]))
     }
 
-    /// Returns the reference's trace, byte for byte the output of `simulate`.
+    /// Returns the reference's trace. It has the same bytes as the output of `simulate`.
     pub(crate) fn trace(&self, host: &dyn PageHost) -> Result<Vec<u8>, String> {
         let mut simulation = Simulation::new(&self.scene, RootSearch::OnDemand);
         let kept = TraceRoom(Vec::new());
@@ -221,7 +221,7 @@ impl Film {
     }
 }
 
-/// A memory buffer for one trace.
+/// The buffer in memory for one trace.
 struct TraceRoom(Vec<u8>);
 
 impl Write for TraceRoom {

@@ -1,8 +1,8 @@
-//! The program for browsers, which runs `check`, `simulate`, `detect` and `grade --traces` of the command line on
+//! The program for browsers. It runs the commands `check`, `simulate`, `detect` and `grade --traces`, but receives
 //! messages instead of arguments.
 //!
-//! A [`PageSession`] answers one request after the other. A request is a list of byte strings, of which the first is
-//! JSON; an answer has the same form ([`parts`]). Dropped files are not in the request; they are read piece by piece
+//! A [`PageSession`] answers one request after the other. A request is a list of byte strings, and the first one is
+//! JSON. Answers have the same form ([`parts`]). Requests do not contain dropped files. These are read piece by piece
 //! from the [`PageHost`], so a trace of any size can be judged. Compiled to WebAssembly, this crate is the module of
 //! the page (`document`); compiled natively, tests compare its answers with the program's.
 #![deny(unsafe_code)]

@@ -1,11 +1,11 @@
-//! Encodes lists of byte strings as one byte string. Each string follows its length, which is four bytes with the
+//! Encodes a list of byte strings as one byte string. The length of each string precedes it, as four bytes with the
 //! lowest first.
 use serde_json::Value;
 
-/// An answer: a value, and the byte strings that belong to it.
+/// An answer: a value that becomes JSON, and the byte strings that follow it.
 pub(crate) type PageAnswer = Result<(Value, Vec<Vec<u8>>), String>;
 
-/// Returns a list as one byte string.
+/// Joins a list of byte strings into one byte string.
 ///
 /// # Panics
 /// Panics if a part has 4 GiB or more, which the memory of a browser page cannot contain.
@@ -20,7 +20,7 @@ pub fn join_parts(parts: &[&[u8]]) -> Vec<u8> {
     bytes
 }
 
-/// Returns the parts of a joined list; `None` if the bytes are truncated.
+/// Returns the byte strings in a joined list; `None` if bytes are missing at the end.
 #[must_use]
 pub fn split(mut bytes: &[u8]) -> Option<Vec<&[u8]>> {
     let mut parts = Vec::new();

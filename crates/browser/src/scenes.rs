@@ -1,4 +1,4 @@
-//! The embedded scenes.
+//! Answers requests about the embedded scenes.
 use crate::{
     dropped::{PageHost, ReadFault, open},
     parts::PageAnswer,
@@ -14,10 +14,10 @@ use fosssim_report::check::{SNIFFED_BYTES, looks_like};
 use serde_json::{Value, json};
 use std::{collections::BTreeMap, io::Read};
 
-/// The length of the longest first record, except in scenes that are too large to be dropped.
+/// The length of the longest first record in bytes, except for scenes that are too large to be dropped.
 const MAX_RECORD_BYTES: u64 = 1 << 16;
 
-/// Lists the scenes' names by assignment and group, in alphabetical order.
+/// Lists the names of the scenes by assignment and group, in alphabetical order.
 pub(crate) fn list() -> Value {
     let of = |assignment: Assignment| {
         let mut groups = BTreeMap::<&str, Vec<&str>>::new();
@@ -31,7 +31,7 @@ pub(crate) fn list() -> Value {
     Assignment::list_default_first().into_iter().map(of).collect()
 }
 
-/// Returns the XML of the scene named `Group/name`.
+/// Returns the XML of a scene. The name is `Group/name`.
 pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
     library::scene(name).ok_or_else(|| {
         let near = near::nearest(name, library::all_names(), 3).join(", asset:");
@@ -39,11 +39,11 @@ pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
     })
 }
 
-/// Returns the names of the scenes whose first record begins a dropped trace, and, if the file cannot be a trace, the
-/// kind of file that it seems to be.
+/// Returns the names of the scenes to which a dropped trace may belong, according to its first record. If the file
+/// cannot be a trace, also returns the kind of file that it probably is.
 pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
     let (fault, mut start) = (ReadFault::new(), Vec::new());
-    // The message of an error is in `fault`.
+    // If there is an error, its message is in `fault`.
     let _ = open(host, file, &fault).take(MAX_RECORD_BYTES).read_to_end(&mut start);
     if let Some(why) = fault.get() {
         return Err(format!("cannot read the trace: {why}"));
@@ -54,7 +54,7 @@ pub(crate) fn beginning(file: u32, host: &dyn PageHost) -> PageAnswer {
     Ok((json!({ "scenes": scenes, "looks_like": kind }), Vec::new()))
 }
 
-/// Returns whether a trace with the given beginning may belong to the scene.
+/// Returns whether a trace that begins with these bytes may belong to the scene.
 fn is_beginning(xml: &[u8], start: &[u8]) -> bool {
     let Ok(loaded) = scene::read("", xml) else { return false };
     let simulation = Simulation::new(&loaded.scene, RootSearch::OnDemand);

@@ -1,4 +1,4 @@
-//! Answers one request after the other.
+//! Answers requests, one after the other.
 use crate::{
     check, detect,
     dropped::PageHost,
@@ -11,7 +11,7 @@ use fosssim_grading::{library, plan};
 use serde::Deserialize;
 use serde_json::json;
 
-/// A request of the page. The parts after the first are described for each request.
+/// A request from the page. For some requests, the parts after the first one are described here.
 #[derive(Debug, Deserialize)]
 #[serde(tag = "do", rename_all = "kebab-case")]
 enum PageRequest {
@@ -19,37 +19,38 @@ enum PageRequest {
     Scenes,
     /// Returns the XML of an embedded scene.
     Scene { name: String },
-    /// Returns a wrong trace as an example, with its scene.
+    /// Returns a wrong trace and its scene, as an example.
     Example,
-    /// Reads the scene in the second part, and returns whether the strict reader accepts it.
+    /// Reads the scene in the second part. Returns whether the strict reader accepts it.
     Read { name: String },
-    /// Finds the embedded scenes whose start begins the dropped trace, or otherwise the kind of file that it seems to
-    /// be.
+    /// Finds the embedded scenes to which the dropped trace may belong. If it cannot be a trace, finds the kind of file
+    /// that it probably is.
     Recognize {
         #[serde(default)]
         file: u32,
     },
-    /// Judges a dropped trace. The second part is the scene's XML, unless the scene is embedded.
+    /// Judges a dropped trace. The second part is the XML of the scene, unless the scene is embedded.
     Check(check::CheckRequest),
-    /// Reads the scene in the second part, and simulates it if it has no errors.
+    /// Reads the scene in the second part. If it has no errors, it is simulated.
     Simulate { scene: String },
-    /// Returns the trace of the last simulated scene.
+    /// Returns the reference's trace of the scene that was last simulated.
     Trace,
-    /// Returns a picture of the last simulated motion.
+    /// Returns a picture of the motion that was last simulated.
     Picture(film::PictureRequest),
-    /// Returns the last simulated motion as a film.
+    /// Returns the motion that was last simulated as a film.
     Film(film::FilmKind),
-    /// Examines one pair.
+    /// Examines a pair.
     Detect(detect::PairRequest),
-    /// Begins to grade a submission's traces. Without a name the second part is the suite, followed by dropped scenes.
+    /// Begins to grade a submission that consists of traces. If no suite is named, the second part is the suite, and
+    /// the parts after it are dropped scenes.
     Suite(SuiteRequest),
-    /// Judges one of the suite's scenes.
+    /// Judges the trace for one of the suite's scenes.
     Judge(SceneRequest),
-    /// Combines the results under a name.
+    /// Combines the results of all scenes into a grade. `name` is the submission's name.
     Grade { name: String },
 }
 
-/// The state between requests: the motion of the last simulated scene, and the submission that is being graded.
+/// The state between requests: the motion that was last simulated, and the submission that is being graded.
 #[derive(Debug, Default)]
 pub struct PageSession {
     film: Option<Film>,
@@ -57,7 +58,7 @@ pub struct PageSession {
 }
 
 impl PageSession {
-    /// Answers a request. The first part of an answer is JSON: the requested result, or `{"error": "message"}`.
+    /// Answers a request. The first part of the answer is JSON. It contains the result, or `{"error": "message"}`.
     #[must_use]
     pub fn answer(&mut self, request: &[u8], host: &dyn PageHost) -> Vec<u8> {
         let (value, bytes) =

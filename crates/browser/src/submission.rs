@@ -1,4 +1,4 @@
-//! The traces of a submission, with points by a suite, as in `grade --traces`.
+//! Grades the traces of a submission with a suite, as `grade --traces` does.
 use crate::{
     dropped::{PageHost, PageProgress, ReadFault, open},
     parts::PageAnswer,
@@ -18,31 +18,31 @@ use serde::Deserialize;
 use serde_json::{Value, json};
 use std::io::{Read, empty};
 
-/// A suite for grading a submission. Scenes that the suite names by files were dropped with it. Their names, as the
-/// suite may write them, are in the order of the parts after the suite's text.
+/// The request to begin grading a submission with a suite. Scenes that the suite names as files were dropped together
+/// with it. `scenes` has their names as the suite may write them, in the order of the parts after the suite's text.
 #[derive(Debug, Deserialize)]
 pub(crate) struct SuiteRequest {
     /// The name of an embedded suite; `None` if its text was dropped.
     suite: Option<String>,
-    /// The names of dropped scenes.
+    /// The names of the dropped scenes.
     #[serde(default)]
     scenes: Vec<String>,
-    /// Whether the suite's hints limit the output, as in `grade --for student`; the course has created the page for
-    /// students.
+    /// Whether the suite's hints limit the output, as in `grade --for student`. This is so if the course made the page
+    /// for students.
     #[serde(default)]
     is_for_students: bool,
 }
 
-/// A request to judge one scene.
+/// The request to judge one scene.
 #[derive(Debug, Deserialize)]
 pub(crate) struct SceneRequest {
     /// The index of the scene among the suite's scenes.
     number: usize,
-    /// Whether there is a trace, which is dropped file 0.
+    /// Whether there is a trace. It is the dropped file with the number 0.
     has_trace: bool,
 }
 
-/// A submission that is being graded.
+/// A submission that is being graded, and its results so far.
 #[derive(Debug)]
 pub(crate) struct DroppedSubmission {
     plan: Plan,
@@ -51,7 +51,7 @@ pub(crate) struct DroppedSubmission {
 }
 
 impl DroppedSubmission {
-    /// Reads the suite, and returns its groups with the names of their scenes, in order.
+    /// Reads the suite. Returns its groups, and the names of their scenes, in order.
     pub(crate) fn begin(asked: &SuiteRequest, parts: &[&[u8]]) -> Result<(Value, Self), String> {
         let name = asked.suite.clone().unwrap_or_else(plan::default_name);
         let (text, dropped) = match (&asked.suite, parts.split_first()) {
@@ -105,7 +105,8 @@ impl DroppedSubmission {
         Ok((value, Vec::new()))
     }
 
-    /// Returns the grade of all scenes. The second part of the answer is the output of `grade --traces --format json`.
+    /// Computes the grade from the results of all scenes. The second part of the answer is what `grade --traces
+    /// --format json` prints.
     pub(crate) fn end(&self, name: &str) -> PageAnswer {
         let results: Option<Vec<SceneResult>> = self.results.iter().cloned().collect();
         let results = results.ok_or("not all scenes have been judged")?;
@@ -142,7 +143,7 @@ impl DroppedSubmission {
     }
 }
 
-/// Returns the dropped scenes that a pattern selects, by their paths next to the suite.
+/// Returns the dropped scenes that a pattern matches. It is compared with their paths relative to the suite.
 fn matching(pattern: &str, names: &[String], files: &[&[u8]]) -> Result<MatchingScenes, String> {
     let glob = glob::Pattern::new(pattern).map_err(|error| format!("pattern {pattern}: {error}"))?;
     let found: MatchingScenes = names

@@ -1,15 +1,15 @@
-//! The interface of the module: three functions that the page calls, and three that the page provides. Data for the
-//! other side are in the module's memory.
+//! The interface between the module and the page. The page calls three functions of the module, and provides three
+//! functions. Both sides exchange data in the module's memory.
 #![expect(unsafe_code, reason = "names of exported and imported functions")]
 use crate::{PageHost, PageSession};
 use std::{cell::RefCell, panic, sync::Once};
 
 #[link(wasm_import_module = "page")]
 unsafe extern "C" {
-    /// Reads bytes of a dropped file into `into`. Returns their number, or -1.
+    /// Reads bytes of a dropped file into `into`. Returns the number of bytes, or -1 if the file cannot be read.
     safe fn read(file: u32, offset: f64, into: *mut u8, length: usize) -> i32;
     safe fn progress(done: u32, all: u32);
-    /// Receives the message of a panic before the module traps.
+    /// Receives the message of a panic. The module traps afterwards.
     safe fn panicked(words: *const u8, length: usize);
 }
 
@@ -31,7 +31,7 @@ thread_local! {
     static MESSAGE: RefCell<Vec<u8>> = const { RefCell::new(Vec::new()) };
 }
 
-/// Reserves memory for the bytes of a request, and returns its address.
+/// Reserves memory for the bytes of a request. Returns its address.
 #[unsafe(no_mangle)]
 extern "C" fn room(length: usize) -> *mut u8 {
     MESSAGE.with_borrow_mut(|message| {
@@ -41,7 +41,7 @@ extern "C" fn room(length: usize) -> *mut u8 {
     })
 }
 
-/// Answers the request, and returns the address of the answer.
+/// Answers the request. Returns the address of the answer.
 #[unsafe(no_mangle)]
 extern "C" fn answer() -> *const u8 {
     static HOOK: Once = Once::new();

@@ -1,4 +1,4 @@
-//! The way the run of a program ended, as a value. The sandbox creates it, grades store it, and reports describe it.
+//! Describes how the run of a program ended. The sandbox creates it, grades store it, and reports describe it.
 //!
 //! ```
 //! use fosssim_ended::RunEnd;
@@ -12,20 +12,21 @@
 use serde::{Deserialize, Serialize};
 use std::{borrow::Cow, fmt};
 
-/// The way a run ended. Every variant except [`RunEnd::Exited`] and [`RunEnd::Signalled`] is a decision of the sandbox.
+/// The way in which a run ended. Except for [`RunEnd::Exited`] and [`RunEnd::Signalled`], each is a decision of the
+/// sandbox.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum RunEnd {
-    /// The program ended by itself with this exit code.
+    /// The program exited by itself with this exit code.
     Exited(i32),
-    /// The program was killed by this signal, which it caused itself (a crash, an abort).
+    /// A signal with this number ended the program. The program itself was the cause, as in a crash or an abort.
     Signalled(i32),
     /// The program used up its processor time.
     CpuLimit,
     /// The program used up its wall time.
     WallLimit,
-    /// The program used more memory than allowed, or stopped because memory was denied.
+    /// The program used more memory than allowed, or ended because it did not get more memory.
     MemoryLimit,
-    /// The program's trace is longer than allowed.
+    /// The trace that the program wrote is longer than allowed.
     TraceLimit,
     /// The program had more threads and processes than allowed.
     ProcessLimit,
@@ -33,17 +34,18 @@ pub enum RunEnd {
     FolderLimit,
     /// The program used a system call that no submission needs.
     Violation {
-        /// The call's usual name (`ptrace`), or a description if the name is unknown.
+        /// The usual name of the call, such as `ptrace`, or a description if it has no name.
         call: String,
     },
     /// The program could not be started.
     CouldNotStart(StartProblem),
-    /// The grader stopped the run.
+    /// The grader stopped the program.
     Cancelled,
 }
 
 impl RunEnd {
-    /// Returns the variant's name for machines and for the attack suite, such as `exited`, `cpu` or `violation`.
+    /// Returns a name for the way in which the run ended, for programs and for the attack suite. Examples are `exited`,
+    /// `cpu` and `violation`.
     #[must_use]
     pub fn kind(&self) -> &'static str {
         match self {
@@ -80,7 +82,7 @@ impl fmt::Display for RunEnd {
     }
 }
 
-/// Returns the usual name and meaning of a signal that ends programs, given its number in Linux.
+/// Returns the usual name and the meaning of a signal that ends programs. `signal` is its number on Linux.
 #[must_use]
 pub fn signal_name(signal: i32) -> &'static str {
     match signal {
@@ -103,95 +105,95 @@ pub fn signal_name(signal: i32) -> &'static str {
     }
 }
 
-/// The reason why a program could not be started. The text describes the fault and the remedy.
+/// The reason why a program could not be started. The text describes what is wrong and what to do.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error, Serialize, Deserialize)]
 pub enum StartProblem {
     /// The file does not exist.
     #[error("the program does not exist; check the path and build the program first")]
     NotFound,
-    /// The path is that of a folder.
+    /// The path leads to a folder.
     #[error("this is a folder, not a program; give the path of the program inside it")]
     IsFolder,
-    /// The path is neither a file nor a folder.
+    /// The path leads to something that is neither a file nor a folder.
     #[error("this is not a regular file")]
     NotAFile,
-    /// The file has no execute permission.
+    /// The file may not be executed, according to its permissions.
     #[error("the file is not executable; if it is the program, run chmod +x on it")]
     NotExecutable,
-    /// The user of the run has no access to the file.
+    /// The user of the run may not access the file.
     #[error("permission denied; put the program where every user may read and execute it")]
     NotPermitted,
     /// The file is neither an ELF program nor a script.
     #[error("the file is not a program: neither ELF nor a script that begins with #!; upload the linker's output")]
     NotAProgram,
-    /// The file is an ELF file but not a program, for example an object file or a core dump.
+    /// The file is an ELF file, but not a program. It may be an object file or a core dump.
     #[error("the file is {what}, not a linked program; upload the linker's output")]
     NotLinked {
-        /// The kind of the file, as text.
+        /// The kind of the file, in words.
         what: Cow<'static, str>,
     },
     /// The file is a 32-bit program.
     #[error("this is a 32-bit program; build it for 64 bits (without -m32)")]
     ThirtyTwoBit,
-    /// The file is a program for another processor.
+    /// The file is a program for a different processor.
     #[error("this program was built for {machine}, but this machine is {here}; build it on the grading platform")]
     WrongMachine {
-        /// The machine for which it was built.
+        /// The processor for which it was built.
         machine: String,
         /// The processor of this machine.
         here: Cow<'static, str>,
     },
-    /// The file is a program for another operating system.
+    /// The file is a program for a different operating system.
     #[error("this program was built for {system}, but Linux is needed; build it on the grading platform")]
     WrongSystem {
         /// The operating system for which it was built.
         system: Cow<'static, str>,
     },
-    /// The program names a dynamic loader that this system does not have.
+    /// The program requires a dynamic loader that this system does not have.
     #[error("the program needs a dynamic loader that is not on this machine; build it on the grading platform")]
     MissingLoader {},
-    /// The program needs a shared library that is missing.
+    /// The program requires a shared library that is missing.
     #[error("the shared library {library} is missing; install it, or link it statically")]
     MissingLibrary {
-        /// The library's file name, as printed by the loader.
+        /// The file name of the library, as the loader prints it.
         library: String,
     },
-    /// The file is a script whose `#!` line is empty.
+    /// The file is a script, but its `#!` line names no interpreter.
     #[error("the script's first line names no interpreter; it must look like #!/bin/sh")]
     NoInterpreter,
-    /// The file is a script whose interpreter is missing.
+    /// The file is a script, but its interpreter is missing.
     #[error("the script's interpreter {interpreter} is not on this machine{hint}")]
     MissingInterpreter {
         /// The path of the interpreter.
         interpreter: String,
-        /// Advice for the remedy, or an empty text.
+        /// Advice about what to do, or an empty text.
         hint: Cow<'static, str>,
     },
-    /// The interpreter is not part of the system.
+    /// The interpreter of the script is not part of the system.
     #[error(
         "its interpreter {path} is not part of the system; \
          begin a script with #!/usr/bin/env NAME or #!/bin/sh"
     )]
     NotTheSystems {
-        /// The path of the interpreter that the program names.
+        /// The path of the interpreter that the script names.
         path: String,
     },
-    /// The program was built with a sanitizer, and such programs were not allowed.
+    /// The program was built with a sanitizer, which is not allowed in this run.
     #[error(
         "the program was built with a sanitizer (-fsanitize), for which memory can't be limited; build it without, \
          or allow it in the suite"
     )]
     Sanitized,
-    /// The file is the grader itself.
+    /// The file is the grader's own program.
     #[error("this is the grader's own program, not a submission; name the submission's program")]
     GradersOwn,
-    /// The file is open for writing in another process.
+    /// Another process has the file open for writing.
     #[error("the file is still being written (text file busy); wait for the build or the copy to end")]
     Busy,
-    /// The program tried to open a window.
+    /// The program tried to open a window, which is not possible.
     #[error("the program needs a display; run it without one: pass -d 0")]
     NeedsDisplay,
-    /// The kernel rejected the program for a different reason.
+    /// The kernel rejected the program for some other reason.
     #[error("the system refused to execute it: {0}")]
     Refused(String),
 }

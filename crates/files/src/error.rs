@@ -6,54 +6,53 @@ use std::{
     os::unix::fs::FileTypeExt,
 };
 
-/// The reason why a file was rejected. All of them except [`FileError::System`] are caused by the person who filled the
-/// folder.
+/// The reason why a file was rejected. Except for [`FileError::System`], the person who filled the folder is the cause.
 #[derive(Debug, thiserror::Error)]
 pub enum FileError {
     /// The file does not exist.
     #[error("the file {name} does not exist")]
     Missing {
-        /// The file's name, escaped.
+        /// The name of the file, with escapes.
         name: String,
     },
-    /// The name is that of a folder, link or device.
+    /// The name is the name of a folder, a link or a device, and not of a regular file.
     #[error("{name} is {what}, not a regular file")]
     NotRegular {
-        /// The file's name, escaped.
+        /// The name of the entry, with escapes.
         name: String,
-        /// The kind of entry that was found instead.
+        /// The kind of entry that has this name.
         what: &'static str,
     },
-    /// The file has several names, possibly outside the folder.
+    /// The file has several names. Some of them may be outside of the folder.
     #[error("{name} is a hard link: the file has {links} names")]
     Linked {
-        /// The file's name, escaped.
+        /// The name of the file, with escapes.
         name: String,
-        /// The number of the file's names.
+        /// The number of names that the file has.
         links: u64,
     },
     /// The file is too long.
     #[error("{name} is {length} bytes long, the limit is {limit}")]
     TooLong {
-        /// The file's name, escaped.
+        /// The name of the file, with escapes.
         name: String,
-        /// The file's length in bytes.
+        /// The length of the file in bytes.
         length: u64,
-        /// The limit in bytes.
+        /// The maximum length in bytes.
         limit: u64,
     },
     /// The folder or the file cannot be read.
     #[error("cannot read {name}: {source}")]
     System {
-        /// The file's name, escaped.
+        /// The name of the file or folder, with escapes.
         name: String,
-        /// The error of the operating system.
+        /// The error that the operating system reported.
         source: io::Error,
     },
 }
 
 impl FileError {
-    /// Converts the operating system's error from opening a file.
+    /// Converts the operating system's error after a file could not be opened.
     pub(crate) fn not_opened(name: String, error: io::Error) -> Self {
         match error.raw_os_error() {
             Some(libc::ENOENT | libc::ENOTDIR) => Self::Missing { name },
@@ -66,12 +65,12 @@ impl FileError {
     }
 }
 
-/// Returns a name escaped for messages.
+/// Returns a name for messages, in which unusual characters are replaced by escapes.
 pub(crate) fn escape(name: &OsStr) -> String {
     name.to_string_lossy().escape_debug().to_string()
 }
 
-/// Returns the metadata of an open file, and checks that it is a regular file.
+/// Returns the metadata of an open file. Fails if it is not a regular file.
 pub(crate) fn require_regular_file(file: &File, shown: impl Fn() -> String) -> Result<Metadata, FileError> {
     let metadata = file.metadata().map_err(|source| FileError::System { name: shown(), source })?;
     let kind = metadata.file_type();

@@ -1,4 +1,4 @@
-//! Accesses files below a folder that others may have filled, or may be filling.
+//! Accesses files below a folder that others may have filled, or may be filling at the same time.
 use super::{
     Identity,
     error::{FileError, escape, require_regular_file},
@@ -19,18 +19,19 @@ use std::{
     sync::Arc,
 };
 
-/// The flags for opening files: never through a link, never waiting, never inherited.
+/// The flags with which files are opened. A link is never followed, opening never waits, and child processes do not
+/// inherit the file.
 const SAFE_FLAGS: OFlags = OFlags::NOFOLLOW.union(OFlags::NONBLOCK).union(OFlags::CLOEXEC);
 
-/// The bits of a new folder's mode, before the mask.
+/// The permission bits of a new folder, before the process's mask is applied.
 const FOLDER_MODE: u32 = 0o777;
 
-/// An open folder. Entries are accessed only relative to the open folder, so no link and no exchanged path leads out of
-/// it.
+/// An open folder. Its entries are accessed only relative to the open folder, so that no link and no replaced path
+/// leads out of it.
 #[derive(Debug, Clone)]
 pub struct Folder {
     fd: Arc<OwnedFd>,
-    /// The path when the folder was opened, for messages.
+    /// The path by which the folder was opened, for messages.
     shown: PathBuf,
 }
 
@@ -39,9 +40,9 @@ pub struct Folder {
 pub enum FolderEntry {
     /// An open regular file.
     File(File),
-    /// An open folder.
+    /// A subfolder, which is open.
     Folder(Folder),
-    /// A link, a pipe, a socket or a device.
+    /// Anything else: a link, a pipe, a socket or a device.
     Other,
 }
 
@@ -61,7 +62,7 @@ impl Folder {
         Ok(Self { fd: Arc::new(folder.into()), shown: path.to_owned() })
     }
 
-    /// Opens a folder to write files into, which need not be readable.
+    /// Opens a folder in order to write files into it. The folder need not be readable.
     ///
     /// # Errors
     /// Fails if the folder does not exist, or access is denied.
@@ -70,22 +71,22 @@ impl Folder {
         Ok(Self { fd: Arc::new(openat(CWD, path, flags, Mode::empty())?), shown: path.to_owned() })
     }
 
-    /// Opens a folder like [`Folder::to_write`], and creates missing folders on the path.
+    /// Opens a folder as [`Folder::to_write`] does. Missing folders on the path are created.
     ///
     /// # Errors
-    /// Fails if it cannot be created or opened.
+    /// Fails if a folder cannot be created or opened.
     pub fn make(path: &Path) -> io::Result<Self> {
         std::fs::create_dir_all(path)?;
         Self::to_write(path)
     }
 
-    /// Returns the path under which the folder was opened.
+    /// Returns the path by which the folder was opened.
     #[must_use]
     pub fn given_path(&self) -> &Path {
         &self.shown
     }
 
-    /// Returns the names of the folder's entries.
+    /// Returns the names of all entries of the folder.
     ///
     /// # Errors
     /// Fails if the folder cannot be read.
@@ -102,10 +103,10 @@ impl Folder {
         Ok(names)
     }
 
-    /// Opens an entry once and returns it.
+    /// Opens an entry of the folder.
     ///
     /// # Errors
-    /// Fails if it cannot be opened; [`io::ErrorKind::NotFound`] if it was removed.
+    /// Fails if the entry cannot be opened. The error is [`io::ErrorKind::NotFound`] if it was removed.
     pub fn entry(&self, name: &OsStr) -> io::Result<FolderEntry> {
         let file = match openat(&*self.fd, check_single_component(name)?, OFlags::RDONLY | SAFE_FLAGS, Mode::empty()) {
             Ok(fd) => File::from(fd),
@@ -120,10 +121,10 @@ impl Folder {
         })
     }
 
-    /// Returns the subfolder `name`, to write into.
+    /// Opens the subfolder `name`, in order to write into it.
     ///
     /// # Errors
-    /// Fails if it does not exist, or is a link.
+    /// Fails if the subfolder does not exist, or is a link.
     pub fn open_folder(&self, name: &OsStr) -> io::Result<Self> {
         let inner =
             open_component(self.as_fd(), check_single_component(name)?).map_err(|error| match error.raw_os_error() {
@@ -133,10 +134,10 @@ impl Folder {
         Ok(self.inner(inner?, name))
     }
 
-    /// Opens a subfolder like [`Folder::open_folder`], and creates it if it does not exist.
+    /// Opens a subfolder as [`Folder::open_folder`] does. It is created if it does not exist.
     ///
     /// # Errors
-    /// Fails if it cannot be created, or another kind of entry has its name.
+    /// Fails if the subfolder cannot be created, or if an entry of another kind has its name.
     pub fn make_folder(&self, name: &OsStr) -> io::Result<Self> {
         match mkdirat(&*self.fd, check_single_component(name)?, Mode::from_raw_mode(FOLDER_MODE)) {
             Ok(()) | Err(Errno::EXIST) => self.open_folder(name),
@@ -144,11 +145,12 @@ impl Folder {
         }
     }
 
-    /// Returns the open regular file `name` (which may contain `/`, but does not leave the folder), with its length in
-    /// bytes.
+    /// Opens the regular file `name`, and returns its length in bytes. The name may contain `/`, but must not lead out
+    /// of the folder.
     ///
     /// # Errors
-    /// Fails if the file is missing, not a regular file, reached through a link, or longer than `max_bytes`.
+    /// Fails if the file does not exist, is not a regular file, is reached through a link, or is longer than
+    /// `max_bytes`.
     pub fn open_file(&self, name: &OsStr, max_bytes: u64) -> Result<(File, u64), FileError> {
         let shown = || escape(name);
         let file = self.open_beneath(name).map_err(|error| FileError::not_opened(shown(), error))?;
@@ -159,10 +161,10 @@ impl Folder {
         Ok((file, length))
     }
 
-    /// Opens a file like [`Folder::open_file`]; the file must have no other name.
+    /// Opens a file as [`Folder::open_file`] does. The file must not have another name.
     ///
     /// # Errors
-    /// Fails like [`Folder::open_file`], and if the file has a second name.
+    /// Fails like [`Folder::open_file`]. Also fails if the file has a second name.
     pub fn regular_file(&self, name: &str, max_bytes: u64) -> Result<(File, u64), FileError> {
         let (file, length) = self.open_file(OsStr::new(name), max_bytes)?;
         let links = require_regular_file(&file, || escape(OsStr::new(name)))?.nlink();
@@ -175,7 +177,7 @@ impl Folder {
     /// Reads the contents of a regular file.
     ///
     /// # Errors
-    /// Fails like [`Folder::open_file`], and if the file grows beyond `max_bytes` while it is read.
+    /// Fails like [`Folder::open_file`]. Also fails if the file becomes longer than `max_bytes` while it is read.
     pub fn read(&self, name: &OsStr, max_bytes: u64) -> Result<Vec<u8>, FileError> {
         let (file, length) = self.open_file(name, max_bytes)?;
         let mut bytes = Vec::with_capacity(usize::try_from(length).unwrap_or_default() + 1);
@@ -188,10 +190,10 @@ impl Folder {
         }
     }
 
-    /// Opens a file of the grader to read and write in place, and creates it if it does not exist.
+    /// Opens a file of the grader for reading and writing. It is created if it does not exist.
     ///
     /// # Errors
-    /// Fails if another kind of entry has its name.
+    /// Fails if an entry of another kind has its name.
     pub fn own_file(&self, name: &str) -> Result<File, FileError> {
         let flags = OFlags::RDWR | OFlags::CREATE | SAFE_FLAGS;
         let opened = openat(&*self.fd, name, flags, Mode::from_raw_mode(0o666));
@@ -201,10 +203,10 @@ impl Folder {
         Ok(file)
     }
 
-    /// Removes a file or link; does nothing if it does not exist.
+    /// Removes a file or a link. If it does not exist, nothing is done.
     ///
     /// # Errors
-    /// Fails if it cannot be removed.
+    /// Fails if the entry cannot be removed.
     pub fn remove(&self, name: &OsStr) -> io::Result<()> {
         match unlinkat(&*self.fd, check_single_component(name)?, AtFlags::empty()) {
             Ok(()) | Err(Errno::NOENT) => Ok(()),
@@ -218,7 +220,8 @@ impl Folder {
         statat(&*self.fd, name, AtFlags::SYMLINK_NOFOLLOW).is_ok()
     }
 
-    /// Returns the identity of a file without opening it; `None` for a link, and for anything except a regular file.
+    /// Returns the identity of a regular file and its number of names, without opening it. Returns `None` for links and
+    /// for anything else.
     #[must_use]
     pub fn identity(&self, name: &OsStr) -> Option<(Identity, u32)> {
         let (folder, last) = self.split_parent(Path::new(name)).ok()?;
@@ -227,13 +230,13 @@ impl Folder {
         Some((Identity::new(stat.st_dev, stat.st_ino), stat.st_uid))
     }
 
-    /// Returns a path that leads to this folder as long as it is open, even if it is moved.
+    /// Returns a path that leads to this folder while it is open, even if the folder is moved.
     #[must_use]
     pub fn path(&self) -> PathBuf {
         PathBuf::from(format!("/proc/self/fd/{}", self.fd.as_raw_fd()))
     }
 
-    /// Returns the folder at a path of names, to read it or to write into it.
+    /// Opens the folder at a path of names, in order to read it or to write into it.
     pub(crate) fn open_path(&self, path: &Path) -> Result<Self, FileError> {
         let open = || -> io::Result<Self> {
             let (above, Some(last)) = self.names_of(path)? else { return Ok(self.clone()) };
@@ -246,19 +249,19 @@ impl Folder {
         Self { fd: Arc::new(fd), shown: self.shown.join(name) }
     }
 
-    /// Opens the entry at a path of names; each name is looked up in the folder before it.
+    /// Opens the entry at a path of names. Each name is looked up in the folder before it.
     fn open_beneath(&self, name: &OsStr) -> io::Result<File> {
         let (above, last) = self.split_parent(Path::new(name))?;
         Ok(openat(&*above, last, OFlags::RDONLY | SAFE_FLAGS, Mode::empty())?.into())
     }
 
-    /// Returns the folder of a path's last name, and that name.
+    /// Returns the folder that contains the last name of a path, and this last name.
     fn split_parent<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, &'a OsStr)> {
         let (folder, last) = self.names_of(path)?;
         Ok((folder, last.ok_or_else(|| io::Error::from_raw_os_error(libc::EISDIR))?))
     }
 
-    /// Returns the parts like [`Folder::split_parent`], without a last name if the path has none.
+    /// Returns the same parts as [`Folder::split_parent`]. If the path has no last name, it is `None`.
     fn names_of<'a>(&self, path: &'a Path) -> io::Result<(Arc<OwnedFd>, Option<&'a OsStr>)> {
         let mut names = Vec::new();
         for component in path.components() {
@@ -292,7 +295,7 @@ fn open_component(above: BorrowedFd<'_>, name: &OsStr) -> io::Result<OwnedFd> {
     })
 }
 
-/// Returns the name if it is a single component, so that it does not lead out of its folder.
+/// Checks that a name is a single component, so that it does not lead out of its folder.
 pub(super) fn check_single_component(name: &OsStr) -> io::Result<&OsStr> {
     let mut components = Path::new(name).components();
     match (components.next(), components.next()) {
@@ -301,11 +304,11 @@ pub(super) fn check_single_component(name: &OsStr) -> io::Result<&OsStr> {
     }
 }
 
-/// Opens the regular file at `path` once, without waiting, and returns its length. A link at the end of the path is
-/// followed only with `follow`; the number of the file's names does not matter.
+/// Opens the regular file at `path`, and returns its length. Opening never waits. If the path ends with a link, it is
+/// followed only with `follow`. The file may have several names.
 ///
 /// # Errors
-/// Fails if it is missing, not a regular file, or access is denied.
+/// Fails if the file does not exist, is not a regular file, or cannot be accessed.
 pub fn open_file(path: &Path, follow: bool) -> Result<(File, u64), FileError> {
     let shown = || escape(path.as_os_str());
     let no_link = if follow { 0 } else { libc::O_NOFOLLOW };

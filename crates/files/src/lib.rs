@@ -1,12 +1,12 @@
-//! The only way to open files.
+//! The only crate that opens files.
 //!
-//! - **Nothing waits.** A program that opens a named pipe waits until another opens its other end. This crate reports
-//!   a pipe without a reader immediately, and a pipe without a writer after a few seconds, or immediately if a file is
+//! - **Nothing waits.** A program that opens a named pipe waits until another opens its other end. This crate reports a
+//!   pipe without a reader immediately, and a pipe without a writer after a few seconds, or immediately if a file is
 //!   expected.
 //! - **Nothing is read without a limit.** A device, a growing file, or a file full of holes is read only up to the
 //!   limit.
-//! - **No link is followed below a [`Folder`]**, neither to read nor to write, so a user who fills a folder cannot
-//!   redirect access, even at the same time.
+//! - **No link is followed below a [`Folder`]**, neither to read nor to write, so nobody who fills the folder, even at
+//!   the same time, can redirect the access.
 //! - **Written files appear whole** ([`Replacement`]), and replace files of the same name.
 //!
 //! ```
@@ -39,7 +39,7 @@ use std::{
     time::{Duration, Instant},
 };
 
-/// The identity of a file: its device and its inode.
+/// The identity of a file, which consists of its device and its inode. All names of a file have the same identity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Identity(u64, u64);
 
@@ -48,17 +48,17 @@ impl Identity {
         Self(device, inode)
     }
 
-    /// Returns the identity of an open or existing file.
+    /// Returns the identity of the file that has this metadata.
     #[must_use]
     pub fn from_metadata(metadata: &Metadata) -> Self {
         Self(metadata.dev(), metadata.ino())
     }
 }
 
-/// Opens a file, a directory or a pipe for reading, without waiting for a pipe's writer.
+/// Opens a file, a folder or a pipe for reading. If it is a pipe, the process that writes is not waited for.
 ///
 /// # Errors
-/// Fails if it cannot be opened.
+/// Fails if the entry cannot be opened.
 pub fn open_for_reading(name: &Path) -> io::Result<(File, Metadata)> {
     let file = OpenOptions::new().read(true).custom_flags(libc::O_NONBLOCK).open(name);
     let file = file.map_err(|error| match error.raw_os_error() {
@@ -69,26 +69,26 @@ pub fn open_for_reading(name: &Path) -> io::Result<(File, Metadata)> {
     Ok((file, metadata))
 }
 
-/// Opens for writing without waiting for a pipe's reader, whose absence is an error. Writing then waits until there is
-/// room.
+/// Opens a file or a pipe for writing. If a pipe has no reader, that is an error, and the reader is not waited for.
+/// Writing then waits until the pipe has space.
 ///
 /// # Errors
-/// Fails if it cannot be opened.
+/// Fails if the entry cannot be opened, or if a pipe has no reader.
 pub fn open_for_writing(options: &OpenOptions, name: &Path) -> io::Result<File> {
     let first = options.clone().custom_flags(libc::O_NONBLOCK).open(name)?;
     let kind = first.metadata()?.file_type();
     if kind.is_fifo() || kind.is_char_device() {
-        // The pipe has a reader. `first` never waits, so a full pipe would be an error; open the pipe again for writing
-        // that waits.
+        // The pipe has a reader. `first` never waits, so writing into a full pipe would fail. Therefore the pipe is
+        // opened again, and writing waits.
         return options.open(name);
     }
     Ok(first)
 }
 
-/// Reads a whole file that a user names, with at most `limit` bytes. Pipes are read and links are followed.
+/// Reads a whole file that a user names, of at most `limit` bytes. It may be a pipe, and links are followed.
 ///
 /// # Errors
-/// Fails if it cannot be read, is a folder, or is larger.
+/// Fails if the file cannot be read, is a folder, or is larger than `limit`.
 pub fn read(name: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let (file, metadata) = open_for_reading(name)?;
     if metadata.is_dir() {
@@ -97,10 +97,10 @@ pub fn read(name: &Path, limit: u64) -> io::Result<Vec<u8>> {
     read_limited(file, &metadata, limit)
 }
 
-/// Reads text like [`read`].
+/// Reads a whole file as text, as [`read`] does.
 ///
 /// # Errors
-/// Fails like [`read`], and if the bytes are not UTF-8.
+/// Fails like [`read`]. Also fails if the bytes are not UTF-8.
 pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
     String::from_utf8(read(name, limit)?)
         .map_err(|error| io::Error::new(io::ErrorKind::InvalidData, format!("it is not text: {}", error.utf8_error())))
@@ -109,9 +109,9 @@ pub fn read_text(name: &Path, limit: u64) -> io::Result<String> {
 /// Reads an open file of at most `limit` bytes.
 ///
 /// # Errors
-/// Fails if it cannot be read, or is larger.
+/// Fails if the file cannot be read, or is larger than `limit`.
 pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<Vec<u8>> {
-    // Read one byte more than allowed, to see whether the file is longer.
+    // One byte more than allowed is read, to find out whether the file is longer.
     let mut bytes = Vec::with_capacity(usize::try_from(metadata.len().min(limit)).unwrap_or_default() + 1);
     with_timeout(file, metadata)?.take(limit + 1).read_to_end(&mut bytes)?;
     if bytes.len() as u64 > limit {
@@ -121,13 +121,13 @@ pub fn read_limited(file: File, metadata: &Metadata, limit: u64) -> io::Result<V
     Ok(bytes)
 }
 
-/// The maximum time that a pipe may be without a writer.
+/// The maximum time for which a pipe may have no writer.
 const PIPE_PATIENCE: Duration = Duration::from_secs(5);
 
-/// Returns a reader that waits for the bytes of a pipe's writer, but not forever for a missing writer.
+/// Returns a reader that waits until a pipe's writer writes. If the pipe has no writer, it does not wait forever.
 ///
 /// # Errors
-/// Fails if nothing is written within five seconds, or the pipe cannot be read.
+/// Fails if no writer writes anything within five seconds, or if the pipe cannot be read.
 pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read + Send>> {
     if !metadata.file_type().is_fifo() {
         return Ok(Box::new(file));
@@ -137,7 +137,7 @@ pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read 
     let mut first = [0; 1];
     loop {
         match pipe.0.read(&mut first) {
-            // A pipe without a writer looks like the end of a file.
+            // If a pipe has no writer, reading looks like the end of a file.
             Ok(0) if begun.elapsed() < PIPE_PATIENCE => thread::sleep(Duration::from_millis(5)),
             Ok(0) => {
                 let text = "nothing wrote to the pipe for five seconds";
@@ -151,7 +151,7 @@ pub fn with_timeout(file: File, metadata: &Metadata) -> io::Result<Box<dyn Read 
     }
 }
 
-/// A pipe in non-blocking mode with a writer at its other end.
+/// A pipe that is opened without waiting, and has a writer.
 struct PatientPipe(File);
 
 impl Read for PatientPipe {

@@ -1,4 +1,4 @@
-//! Places in a folder of results. A user chooses the folder, and the grader the names of everything in it.
+//! Paths in a folder of results. A user chooses the folder, and the grader chooses the names of everything in it.
 use super::{FileError, Folder, Replacement, error::escape};
 use std::{
     ffi::OsStr,
@@ -16,7 +16,7 @@ pub struct Place {
 }
 
 impl Place {
-    /// Creates the place at `below`, a path of names, below the folder; an empty folder means the working folder.
+    /// Creates the place `below`, a path of names, in a folder. An empty folder means the working folder.
     pub fn new(folder: impl Into<PathBuf>, below: impl Into<PathBuf>) -> Self {
         Self { folder: folder.into(), below: below.into() }
     }
@@ -33,7 +33,7 @@ impl Place {
         if self.below.as_os_str().is_empty() { self.folder.clone() } else { self.folder.join(&self.below) }
     }
 
-    /// Returns the open regular file at this place, with its length.
+    /// Opens the regular file at this place, and returns its length.
     ///
     /// # Errors
     /// Fails like [`Folder::open_file`].
@@ -41,7 +41,7 @@ impl Place {
         self.base().and_then(|folder| folder.open_file(self.below.as_os_str(), most))
     }
 
-    /// Reads the contents of the regular file at this place.
+    /// Returns the contents of the regular file at this place.
     ///
     /// # Errors
     /// Fails like [`Folder::read`].
@@ -55,10 +55,10 @@ impl Place {
         self.base().is_ok_and(|folder| folder.identity(self.below.as_os_str()).is_some())
     }
 
-    /// Opens this place as a folder, and creates missing folders on the path.
+    /// Opens the folder at this place. Missing folders on the path, and the folder itself, are created.
     ///
     /// # Errors
-    /// Fails if it cannot be created, or another kind of entry (such as a link) has its name.
+    /// Fails if a folder cannot be created, or if an entry of another kind (such as a link) has its name.
     pub fn make_folder(&self) -> io::Result<Folder> {
         self.below.iter().try_fold(Folder::make(self.start())?, |folder, name| {
             let inner = folder.make_folder(name);
@@ -66,29 +66,29 @@ impl Place {
         })
     }
 
-    /// Returns a file that will appear at this place when it is finished. Missing folders on the path are created.
+    /// Begins a file that appears at this place when it is finished. Missing folders on the path are created.
     ///
     /// # Errors
-    /// Fails like [`Place::make_folder`], and if no file can be created there.
+    /// Fails like [`Place::make_folder`]. Also fails if no file can be created there.
     pub fn replacement(&self) -> io::Result<Replacement> {
         let above = Self::new(&self.folder, self.below.parent().unwrap_or(Path::new("")));
         above.make_folder()?.replacement(self.below.file_name().unwrap_or_default(), None)
     }
 
-    /// Writes a whole file by rename. Missing folders on the path are created.
+    /// Writes a file. It appears only when it is complete. Missing folders on the path are created.
     ///
     /// # Errors
-    /// Fails like [`Place::replacement`], and if the file cannot be written.
+    /// Fails like [`Place::replacement`]. Also fails if the file cannot be written.
     pub fn write(&self, bytes: &[u8]) -> io::Result<()> {
         let mut file = self.replacement()?;
         io::Write::write_all(&mut file, bytes)?;
         file.finish()
     }
 
-    /// Removes the file or link at this place; does nothing if it does not exist.
+    /// Removes the file or the link at this place. If it does not exist, nothing is done.
     ///
     /// # Errors
-    /// Fails if it cannot be removed.
+    /// Fails if the entry cannot be removed.
     pub fn remove(&self) -> io::Result<()> {
         let above = self.below.parent().unwrap_or(Path::new(""));
         match self.base().and_then(|folder| folder.open_path(above)) {
@@ -98,10 +98,10 @@ impl Place {
         }
     }
 
-    /// Returns the names of the entries; empty if the folder does not exist.
+    /// Returns the names of the entries in the folder at this place; empty if the folder does not exist.
     ///
     /// # Errors
-    /// Fails if it cannot be read, or is reached by a link.
+    /// Fails if the folder cannot be read, or is reached by a link.
     pub fn names(&self) -> io::Result<Vec<std::ffi::OsString>> {
         match self.open_folder() {
             Ok(folder) => folder.names(),
@@ -110,10 +110,10 @@ impl Place {
         }
     }
 
-    /// Returns the folder at this place.
+    /// Opens the folder at this place.
     ///
     /// # Errors
-    /// Fails if it does not exist, or is reached by a link.
+    /// Fails if the folder does not exist, or is reached by a link.
     pub fn open_folder(&self) -> Result<Folder, FileError> {
         self.base().and_then(|folder| folder.open_path(&self.below))
     }

@@ -1,4 +1,5 @@
-//! Files that appear whole: they are written under another name in the same folder, and then renamed.
+//! Writes files so that they appear only when they are complete. They are written under another name in the same
+//! folder, and then renamed.
 use super::folder::{Folder, check_single_component};
 use rustix::{
     fs::{AtFlags, Mode, OFlags, openat, renameat, unlinkat},
@@ -15,14 +16,14 @@ use std::{
     time::{SystemTime, UNIX_EPOCH},
 };
 
-/// The prefix of unfinished files' names.
+/// The prefix of the names of unfinished files.
 pub const UNFINISHED_PREFIX: &str = ".fosssim-oracle-";
 
-/// The number of names that are tried for an unfinished file.
+/// The maximum number of names that are tried for an unfinished file.
 const MAX_TRIES: u32 = 100;
 
-/// A file that is being written. [`Replacement::finish`] gives the file its name; if it is not called, the file is
-/// removed.
+/// A file that is being written. [`Replacement::finish`] gives the file its final name. If it is not called, the file
+/// is removed.
 #[derive(Debug)]
 pub struct Replacement {
     folder: Folder,
@@ -45,7 +46,8 @@ impl Replacement {
                 Ok(fd) => {
                     let made = Self { folder, file: fd.into(), unfinished, name: name.to_owned(), finished: false };
                     if let Some(mode) = mode {
-                        // The process's mask limits the mode of a new file, but a replaced file must keep its mode.
+                        // The process's mask limits the permission bits of a new file. If the file replaces another
+                        // one, it must have the same bits.
                         made.file.set_permissions(Permissions::from_mode(mode))?;
                     }
                     return Ok(made);
@@ -60,23 +62,23 @@ impl Replacement {
         Err(problem.into())
     }
 
-    /// Returns the path of the unfinished file, based on the folder's path when it was opened.
+    /// Returns the path of the unfinished file. It begins with the path by which the folder was opened.
     #[must_use]
     pub fn unfinished_path(&self) -> PathBuf {
         self.folder.given_path().join(&self.unfinished)
     }
 
-    /// Returns the path of the finished file.
+    /// Returns the path that the file has when it is finished.
     #[must_use]
     pub fn target(&self) -> PathBuf {
         self.folder.given_path().join(&self.name)
     }
 
-    /// Renames the temporary file to its final name. A file or link with that name is replaced, but not the file to
-    /// which the link leads.
+    /// Renames the temporary file to its final name. A file or a link with that name is replaced. If it is a link, the
+    /// file to which it leads does not change.
     ///
     /// # Errors
-    /// Fails if it cannot be renamed; a file with that name is then unchanged.
+    /// Fails if the file cannot be renamed. An existing file with that name is then unchanged.
     pub fn finish(mut self) -> io::Result<()> {
         self.file.flush()?;
         renameat(&self.folder, &self.unfinished, &self.folder, &self.name)?;
@@ -84,7 +86,7 @@ impl Replacement {
         Ok(())
     }
 
-    /// Finishes like [`Replacement::finish`], and returns the open file.
+    /// Finishes as [`Replacement::finish`] does, and returns the open file.
     ///
     /// # Errors
     /// Fails like [`Replacement::finish`].
@@ -96,18 +98,19 @@ impl Replacement {
 }
 
 impl Folder {
-    /// Returns a file that will get the name `name` when it is finished, and replace any entry with that name.
+    /// Begins a file that gets the name `name` when it is finished. Any entry with that name is then replaced.
     ///
     /// # Errors
-    /// Fails if no file can be created here.
+    /// Fails if no file can be created in the folder.
     pub fn replacement(&self, name: &OsStr, mode: Option<u32>) -> io::Result<Replacement> {
         Replacement::new(self.clone(), check_single_component(name)?, mode)
     }
 
-    /// Writes a file atomically by rename. A file with the same name is replaced, and no link is followed.
+    /// Writes a file in the folder. It appears only when it is complete. A file with the same name is replaced, and no
+    /// link is followed.
     ///
     /// # Errors
-    /// Fails if it cannot be written.
+    /// Fails if the file cannot be written.
     pub fn write(&self, name: &OsStr, bytes: &[u8]) -> io::Result<()> {
         let mut file = self.replacement(name, None)?;
         file.write_all(bytes)?;
@@ -118,7 +121,7 @@ impl Folder {
 impl Drop for Replacement {
     fn drop(&mut self) {
         if !self.finished {
-            // If the file cannot be removed, it stays as a hidden file, which does no harm.
+            // If the file cannot be removed, a hidden file remains, which does no harm.
             let _ = unlinkat(&self.folder, &self.unfinished, AtFlags::empty());
         }
     }

@@ -1,35 +1,35 @@
-//! Recognizes the kinds of files by their first bytes.
+//! Recognizes the kind of a file by its first bytes.
 
-/// The kind of a file, by its first bytes.
+/// The kind of a file, according to its first bytes.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum FileKind {
-    /// A program for Linux: ELF, or a script that names its interpreter.
+    /// A program for Linux: an ELF file, or a script that names its interpreter.
     Program,
-    /// An archive that is unpacked.
+    /// An archive of a kind that can be unpacked.
     Archive(ArchiveKind),
-    /// A file of another kind.
+    /// A file of any other kind.
     Other,
 }
 
-/// The archives that can be unpacked.
+/// The kind of an archive that can be unpacked.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum ArchiveKind {
     /// A zip file.
     Zip,
     /// A tar file.
     Tar,
-    /// A tar file compressed by gzip.
+    /// A tar file that is compressed with gzip.
     TarGz,
 }
 
-/// The names of the archives that can be unpacked.
+/// The endings of archives that can be unpacked, as words for messages.
 pub const KNOWN_EXTENSIONS: &str = ".zip, .tar.gz, .tar";
 
-/// The number of first bytes that determine the kind of a file.
+/// The number of bytes from which the kind of a file is recognized.
 pub const START_BYTES: usize = 512;
 
 impl FileKind {
-    /// Returns the kind of a file that begins with `start`, which has at most [`START_BYTES`] bytes.
+    /// Returns the kind of a file that begins with `start`. At most [`START_BYTES`] bytes are used.
     #[must_use]
     pub fn from_start(start: &[u8]) -> Self {
         match start {
@@ -42,7 +42,7 @@ impl FileKind {
     }
 }
 
-/// Returns a description of a file that begins with `start`, for messages.
+/// Describes a file that begins with `start`, for messages.
 #[must_use]
 pub fn describe(start: &[u8]) -> String {
     let known: [(&[u8], &str); 17] = [

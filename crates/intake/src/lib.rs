@@ -1,4 +1,5 @@
-//! Accepts files for the command line and the service: archives of sources and of suites, and the kinds of files.
+//! Checks files that the command line and the service receive. It recognizes kinds of files, and unpacks archives of
+//! sources and of suites.
 //!
 //! Archives are rejected if they contain entries that usual packers do not create: paths that leave the folder, links,
 //! devices, two files with the same name, or more bytes than allowed. Files that file managers and build tools create
@@ -29,42 +30,43 @@ use std::{
 };
 use thiserror::Error;
 
-/// The maximum size of unpacked files.
+/// The limits on what an archive may contain.
 #[derive(Debug, Clone, Copy)]
 pub struct ArchiveLimits {
-    /// The total number of bytes.
+    /// The maximum number of bytes of all files together.
     pub bytes: u64,
-    /// The number of files and folders.
+    /// The maximum number of files and folders.
     pub entries: usize,
 }
 
-/// The maximum depth of folders.
+/// The maximum depth to which folders may be nested.
 const MAX_DEPTH: usize = 64;
 
 /// The maximum size of an archive's list of files, in bytes. A list of 20,000 usual names has 4 MiB.
 const MAX_LIST_BYTES: u64 = 16 << 20;
-/// The maximum size of an archive's header data for one file, in bytes.
+/// The maximum size of the header data for one file, in bytes.
 const MAX_HEADER_BYTES: u64 = 1 << 20;
 
-/// The number of bytes that may be read for a file in addition to its contents: headers, padding, and read-ahead.
+/// The number of bytes that may be read for a file in addition to its contents. They are headers, padding, and data
+/// that are read ahead.
 const READ_OVERHEAD_BYTES: u64 = 64 << 10;
 
 impl ArchiveLimits {
-    /// The usual limits, which are sufficient for a suite with all its scenes, or for a student's sources with a
+    /// The usual limits. They are large enough for a suite with all its scenes, and for a student's sources with a
     /// library.
     pub const DEFAULT: Self = Self { bytes: 1 << 30, entries: 20_000 };
 
-    /// Adjusts the limits to an archive of `packed` bytes: an archive that unpacks to 200 times its size is a bomb,
-    /// unless it is small.
+    /// Adjusts the limits to an archive of `packed` bytes. Unless an archive is small, it must not unpack to more than
+    /// 200 times its size.
     fn for_size(self, packed: u64) -> Self {
         Self { bytes: self.bytes.min(packed.saturating_mul(200).max(50 << 20)), ..self }
     }
 }
 
-/// The reason why an archive is not unpacked.
+/// The reason why an archive is rejected.
 #[derive(Debug, Error)]
 pub enum ArchiveError {
-    /// The file is not an archive of a supported kind.
+    /// The file is not an archive that can be unpacked.
     #[error("expected an archive ({KNOWN_EXTENSIONS}), but found {0}")]
     Unknown(String),
     /// The archive cannot be read to its end.
@@ -76,22 +78,22 @@ pub enum ArchiveError {
     /// An entry is neither a file nor a folder.
     #[error("the archive has {0}, which is neither a file nor a folder; links and devices are not allowed")]
     Kind(String),
-    /// Two files have the same name.
+    /// Two files in the archive have the same name.
     #[error("the archive contains {0} twice")]
     Twice(String),
     /// The archive has too many entries.
     #[error("the archive has more than {0} files")]
     Entries(usize),
-    /// The archive has too many bytes.
+    /// The files in the archive have too many bytes.
     #[error("the unpacked archive has more than {0} bytes")]
     Bytes(u64),
-    /// The archive's folders are nested too deeply.
+    /// The folders in the archive are nested too deeply.
     #[error("the archive has folders nested more than {MAX_DEPTH} levels deep: {0}")]
     Depth(String),
-    /// The archive file cannot be read, which is not the archive's fault.
+    /// The archive's file cannot be read. The archive itself is not at fault.
     #[error("cannot read the archive: {0}")]
     Read(io::Error),
-    /// The folder cannot be written.
+    /// The folder into which the archive is unpacked cannot be written.
     #[error("cannot unpack: {0}")]
     Folder(io::Error),
 }
@@ -99,22 +101,23 @@ pub enum ArchiveError {
 /// Reads an archive to its end and returns the paths of its files.
 ///
 /// # Errors
-/// Fails if the archive is rejected, with the reason.
+/// Fails if the archive is rejected. The error is the reason.
 pub fn look_through(archive: File, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, None)
 }
 
 /// Unpacks an archive into an empty folder, and returns the paths of its files. Files that begin like programs become
-/// executable, whatever the archive's permission bits are, because archives from Windows and many web pages lack them.
+/// executable, even without permission bits, because archives from Windows and from many web pages do not contain
+/// these.
 ///
 /// # Errors
-/// Fails if the archive is rejected, with the first reason. The folder may then contain a part of it.
+/// Fails if the archive is rejected. The error is the first reason. The folder may then contain a part of the archive.
 pub fn unpack(archive: File, folder: &Path, limits: ArchiveLimits) -> Result<Vec<PathBuf>, ArchiveError> {
     walk(archive, limits, Some(folder))
 }
 
-/// Returns the folder that contains the submission in an unpacked archive with the given files. Many archives have a
-/// single folder at their top.
+/// Returns the folder of an unpacked archive that contains the submission. Many archives have a single folder at their
+/// top, which is returned then.
 #[must_use]
 pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
     let mut tops = files.iter().map(|file| file.components().next().filter(|_| file.components().count() > 1));
@@ -124,9 +127,9 @@ pub fn top_folder(folder: &Path, files: &[PathBuf]) -> PathBuf {
     }
 }
 
-/// Returns whether a file or folder with this name is created automatically by a file manager or a build tool: Finder's
-/// attributes and window settings, Explorer's picture caches, and CMake's cache of a build on another machine (which
-/// prevents a build here).
+/// Returns whether file managers or build tools create files or folders with this name automatically. These are
+/// attributes and window settings of Finder, picture caches of Explorer, and CMake's cache of a build on another
+/// machine, which would prevent a build here.
 #[must_use]
 pub fn is_litter(name: &OsStr) -> bool {
     let name = name.as_encoded_bytes();
@@ -135,10 +138,10 @@ pub fn is_litter(name: &OsStr) -> bool {
     NAMES.contains(&name) || name.starts_with(b"._")
 }
 
-/// The state of a walk through an archive.
+/// The state while the entries of an archive are read.
 struct Walk<'a> {
     limits: ArchiveLimits,
-    /// The folder for the archive's files; `None` if the archive is only checked.
+    /// The folder into which the files are unpacked; `None` if the archive is only checked.
     folder: Option<&'a Path>,
     entries: usize,
     bytes: u64,
@@ -166,10 +169,10 @@ fn describe_damage(error: impl std::fmt::Display) -> ArchiveError {
     ArchiveError::Damaged(error.to_string())
 }
 
-/// Returns the number of entries that a zip archive claims, from its end record (APPNOTE 4.3.16), or from the end
-/// record of large archives (4.3.14) if there is one.
+/// Returns the number of entries that a zip archive announces. It is in the archive's end record (APPNOTE 4.3.16), or
+/// in the end record for large archives (4.3.14) if there is one.
 fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
-    /// The size of both records, the pointer between them, and the longest comment after them.
+    /// The size of both records, the pointer between them, and the longest comment that may follow them.
     const MAX_END_BYTES: u64 = 56 + 20 + 22 + 0xffff;
     let size = file.seek(SeekFrom::End(0))?;
     file.seek(SeekFrom::Start(size.saturating_sub(MAX_END_BYTES)))?;
@@ -184,7 +187,7 @@ fn count_announced(file: &mut File) -> io::Result<Option<u64>> {
     Ok(Some(of_large.unwrap_or(entries.into())))
 }
 
-/// Returns the first bytes of a file.
+/// Returns the first bytes of a file, and rewinds it.
 fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
     let mut start = Vec::new();
     file.seek(SeekFrom::Start(0))?;
@@ -193,20 +196,20 @@ fn start_of(file: &mut File) -> io::Result<Vec<u8>> {
     Ok(start)
 }
 
-/// Reads an archive's header of the next file.
+/// Reads a header that describes the next file of an archive.
 fn read_header(entry: &mut impl Read) -> Result<Vec<u8>, ArchiveError> {
     let mut header = Vec::new();
     entry.take(MAX_HEADER_BYTES + 1).read_to_end(&mut header).map_err(describe_damage)?;
     if header.len() as u64 > MAX_HEADER_BYTES { Err(describe_damage("a header is too long")) } else { Ok(header) }
 }
 
-/// Returns a name escaped for messages.
+/// Returns a name for messages, in which unusual characters are replaced by escapes.
 fn escape_name(name: &[u8]) -> String {
     String::from_utf8_lossy(name).chars().take(200).flat_map(char::escape_default).collect()
 }
 
 impl Walk<'_> {
-    /// Walks through an archive of any kind.
+    /// Reads all entries of an archive of any kind.
     fn walk_archive(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let start = start_of(&mut file).map_err(ArchiveError::Read)?;
         match FileKind::from_start(&start) {
@@ -219,16 +222,16 @@ impl Walk<'_> {
 
     fn walk_zip(&mut self, mut file: File) -> Result<(), ArchiveError> {
         let announced = count_announced(&mut file).map_err(ArchiveError::Read)?;
-        // The library reads the whole list of files before it returns the first one.
+        // The library reads the whole list of files before it returns the first file.
         if announced.is_some_and(|announced| announced > self.limits.entries as u64) {
             return Err(ArchiveError::Entries(self.limits.entries));
         }
         let packed = file.metadata().map_err(ArchiveError::Read)?.len();
         let meter = Meter::new(MAX_LIST_BYTES);
         let mut archive = zip::ZipArchive::new(BufReader::new(meter.reader(file))).map_err(describe_damage)?;
-        // Entries may overlap in the archive, and compress to almost nothing, so their sizes prove nothing.
+        // Entries of an archive may overlap, and may compress to almost nothing, so their sizes prove nothing.
         meter.set(packed.saturating_mul(2).saturating_add(READ_OVERHEAD_BYTES * archive.len() as u64));
-        // The library keeps only one of several entries with the same name, which may be the wrong one.
+        // If several entries have the same name, the library keeps only one, which may be the wrong one.
         if announced.is_some_and(|announced| announced > archive.len() as u64) {
             return Err(ArchiveError::Twice("a name".to_owned()));
         }
@@ -236,7 +239,7 @@ impl Walk<'_> {
             let mut entry = archive.by_index(index).map_err(describe_damage)?;
             let name = entry.name_raw().to_vec();
             let mode = entry.unix_mode();
-            // The file type in Unix permissions: none, a file or a folder.
+            // In Unix permissions, the type of the entry must be missing, or mean a file or a folder.
             if mode.is_some_and(|mode| !matches!(mode & 0o170_000, 0 | 0o100_000 | 0o040_000)) {
                 return Err(ArchiveError::Kind(escape_name(&name)));
             }
@@ -252,7 +255,7 @@ impl Walk<'_> {
     fn walk_tar(&mut self, input: impl Read) -> Result<(), ArchiveError> {
         let meter = Meter::new(self.limits.bytes.saturating_add(READ_OVERHEAD_BYTES * self.limits.entries as u64));
         let mut archive = tar::Archive::new(meter.reader(input));
-        // The library would read this header, which names the next file, completely.
+        // The library would read all of this header, which contains the name of the next file.
         let mut long_name = None;
         for entry in archive.entries().map_err(describe_damage)?.raw(true) {
             let mut entry = entry.map_err(describe_damage)?;
@@ -269,7 +272,7 @@ impl Walk<'_> {
                     let said = said.map_err(describe_damage)?;
                     match said.key_bytes() {
                         b"path" => long_name = Some(said.value_bytes().to_vec()),
-                        // Only files larger than allowed have this field.
+                        // Only files that are larger than allowed have this field.
                         b"size" => return Err(ArchiveError::Bytes(self.limits.bytes)),
                         _ => {}
                     }
@@ -283,7 +286,7 @@ impl Walk<'_> {
                     let executable = entry.header().mode().is_ok_and(|mode| mode & 0o111 != 0);
                     self.unpack_file(&name, executable, &mut entry)?;
                 }
-                // This header describes the archive, and is not an entry.
+                // This header describes the archive as a whole, and not an entry.
                 tar::EntryType::XGlobalHeader => {}
                 _ => return Err(ArchiveError::Kind(escape_name(&name))),
             }
@@ -291,7 +294,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Returns the path of an entry, if it stays within the folder.
+    /// Returns the path of an entry. Fails if it leads out of the folder.
     fn path(&mut self, name: &[u8]) -> Result<PathBuf, ArchiveError> {
         self.entries += 1;
         if self.entries > self.limits.entries {
@@ -299,7 +302,7 @@ impl Walk<'_> {
         }
         let refused = || ArchiveError::Name(escape_name(name));
         let text = std::str::from_utf8(name).map_err(|_| refused())?;
-        // A backslash is a separator for some programs and part of a name for others.
+        // For some programs a backslash separates names; for others it is a part of a name.
         if text.is_empty() || text.len() > 1000 || text.contains(['\\', ':']) || text.chars().any(char::is_control) {
             return Err(refused());
         }
@@ -317,7 +320,7 @@ impl Walk<'_> {
         Ok(path)
     }
 
-    /// Notes the folders above a file; none of them may be a file.
+    /// Records the folders that contain a file. Fails if one of them is a file.
     fn note_folders_above(&mut self, path: &Path, name: &[u8]) -> Result<(), ArchiveError> {
         for folder in path.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
             if self.seen.contains(folder) {
@@ -366,8 +369,8 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Copies a file and returns its kind. The unpacked bytes are counted, because the sizes in an archive may be
-    /// wrong.
+    /// Copies a file, and returns its kind. The unpacked bytes are counted, because the sizes that an archive states
+    /// may be wrong.
     fn copy(&mut self, input: &mut impl Read, output: &mut impl Write) -> Result<FileKind, ArchiveError> {
         const CHUNK_BYTES: u64 = 64 << 10;
         let mut chunk = Vec::new();

@@ -1,15 +1,16 @@
-//! Limits reading for all readers together, so that an archive cannot occupy its readers forever.
+//! Limits the bytes that all readers of an archive may read together, so that an archive cannot keep them reading
+//! forever.
 use std::{
     cell::Cell,
     io::{self, Read, Seek, SeekFrom},
     rc::Rc,
 };
 
-/// The number of bytes that may still be read.
+/// The number of bytes that all readers together may still read.
 #[derive(Debug, Clone)]
 pub(crate) struct Meter(Rc<Cell<u64>>);
 
-/// A reader that fails when the bytes of its meter are used up.
+/// A reader that fails when its meter has no bytes left.
 #[derive(Debug)]
 pub(crate) struct MeteredReader<R> {
     inner: R,
@@ -17,17 +18,17 @@ pub(crate) struct MeteredReader<R> {
 }
 
 impl Meter {
-    /// Creates a limit of `bytes` bytes.
+    /// Creates a meter that allows `bytes` bytes.
     pub(crate) fn new(bytes: u64) -> Self {
         Self(Rc::new(Cell::new(bytes)))
     }
 
-    /// Sets the remaining limit to `bytes` bytes.
+    /// Sets the number of bytes that are still allowed.
     pub(crate) fn set(&self, bytes: u64) {
         self.0.set(bytes);
     }
 
-    /// Returns a reader that counts for this meter.
+    /// Returns a reader whose bytes this meter counts.
     pub(crate) fn reader<R>(&self, inner: R) -> MeteredReader<R> {
         MeteredReader { inner, meter: self.clone() }
     }

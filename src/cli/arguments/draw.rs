@@ -1,10 +1,10 @@
-//! Arguments of the commands that draw or show details.
+//! The arguments of the commands that draw something or show details.
 use super::values::parse_positive;
 use crate::render::Size;
 use clap::{Args, ValueEnum};
 use std::{num::NonZeroU32, path::PathBuf};
 
-/// The format of the output.
+/// The format of the pictures or the film.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(in crate::cli) enum RenderFormat {
     /// SVG pictures: a folder of them, or one picture with --step.

@@ -1,4 +1,4 @@
-//! Arguments of the commands that run programs.
+//! The arguments of the commands that run programs.
 use super::values::{TextOrJson, audience_parser, hints_parser, parse_positive, rules_parser};
 use crate::{
     assignments::Assignment,
@@ -9,12 +9,12 @@ use crate::{
 use clap::{Args, Subcommand};
 use std::{num::NonZeroUsize, path::PathBuf, str::FromStr};
 
-/// Returns the help of `--format` for the accepted formats.
+/// Returns the help text of `--format`, for the formats that the command accepts.
 fn help_of_formats(takes: impl Fn(Format) -> bool) -> String {
     format!("A report: {}; with =FILE, written to a file", Format::names(takes))
 }
 
-/// Returns the names of the built-in suites, as text.
+/// Returns the names of the built-in suites, as words for a help text.
 fn list_built_in() -> String {
     plan::built_in_names().collect::<Vec<_>>().join(", ")
 }
@@ -54,7 +54,7 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) programs: Vec<PathBuf>,
     #[arg(long, value_name = "SUITE", default_value = Assignment::DEFAULT.key(), help = help_of_suite())]
     pub(in crate::cli) suite: String,
-    /// The rule books; by default those of the suite.
+    /// The rule books; by default the suite's.
     #[arg(long, value_parser = rules_parser())]
     pub(in crate::cli) rules: Option<Rules>,
     /// The folder for results, logs and the journal.
@@ -66,7 +66,7 @@ pub(in crate::cli) struct GradeArguments {
     /// groups. The output folder gets pages of both kinds; those for students are in students/.
     #[arg(long = "for", value_parser = audience_parser(), value_name = "READER", default_value = "staff")]
     pub(in crate::cli) reader: Audience,
-    /// The number of parallel runs. One per core by default.
+    /// The number of parallel runs. The default is one per core.
     #[arg(short, long, value_name = "N", value_parser = parse_positive::<NonZeroUsize>)]
     pub(in crate::cli) jobs: Option<NonZeroUsize>,
     /// Run only scenes with these names, such as 'GeometricTests/*' or 'ball-*'; may be given several times.
@@ -86,8 +86,8 @@ pub(in crate::cli) struct GradeArguments {
     /// Keep the traces of scenes that are not accepted, in the output folder.
     #[arg(long)]
     pub(in crate::cli) keep_traces: bool,
-    /// The file for the progress, such as `3/85`: scenes with a verdict, and all. Scenes that are hidden from the
-    /// reader do not count.
+    /// The file for the progress, such as `3/85`: the number of scenes with a verdict, and of all scenes. Scenes that
+    /// are hidden from the reader do not count.
     #[arg(long, value_name = "FILE", env = "FOSSSIM_PROGRESS")]
     pub(in crate::cli) progress: Option<PathBuf>,
     /// Write an additional page for staff, which shows everything. Only with reports for students.
@@ -112,7 +112,7 @@ pub(in crate::cli) struct GradeArguments {
     /// Treat a folder as one submission, not as a folder of submissions.
     #[arg(long)]
     pub(in crate::cli) single: bool,
-    /// An earlier grading, to show which scenes became right and which broke since: its output folder, its
+    /// An earlier grading, to show which scenes became right or wrong since then. Name its output folder, its
     /// grades.jsonl, or the output of --format json.
     #[arg(long, value_name = "OLD")]
     pub(in crate::cli) compare: Option<PathBuf>,
@@ -147,15 +147,15 @@ pub(in crate::cli) struct GradeArguments {
     pub(in crate::cli) unsafe_no_sandbox: bool,
 }
 
-/// The maximum number of shards of a grading.
+/// The maximum number of parts into which a grading can be split.
 pub(in crate::cli) const MAX_SHARDS: usize = 10_000;
 
-/// A part of the submissions: number `number` of `total`.
+/// A part of the submissions: the one with the given number, of `total` parts.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(in crate::cli) struct ShardArgument {
-    /// The number of this part, from 1.
+    /// The number of the part, from 1.
     pub(in crate::cli) number: usize,
-    /// The total number of parts.
+    /// The number of all parts.
     pub(in crate::cli) total: usize,
 }
 
@@ -183,7 +183,7 @@ pub(in crate::cli) struct MergeArguments {
     /// Folders of shards, or folders that contain such folders.
     #[arg(required = true)]
     pub(in crate::cli) folders: Vec<PathBuf>,
-    /// The folder for the results. By default the folder that contains the shards, if you name only one.
+    /// The folder for the results. The default is the folder that contains the shards, if you name only one.
     #[arg(short, long, value_name = "DIR")]
     pub(in crate::cli) output: Option<PathBuf>,
     #[arg(long, value_name = "FORMAT[=FILE]", help = help_of_formats(Format::takes_several))]
@@ -206,7 +206,7 @@ pub(in crate::cli) enum SuiteCommand {
     List(SuiteListArguments),
 }
 
-/// Prints a commented suite to start from.
+/// Prints a suite with comments, from which you can start.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -237,7 +237,7 @@ pub(in crate::cli) struct SuiteCheckArguments {
     pub(in crate::cli) mistakes: bool,
 }
 
-/// Lists the built-in suites; the first is the default.
+/// Lists the built-in suites. The first one is the default.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:

@@ -1,4 +1,4 @@
-//! The arguments of the command line; the commands interpret them.
+//! The arguments of the command line. Each command interprets its own.
 pub(super) mod draw;
 pub(super) mod grade;
 pub(super) mod scenes;
@@ -31,7 +31,7 @@ pub(super) struct Arguments {
     pub(super) command: Command,
 }
 
-/// The use of colors.
+/// The use of colors on a terminal.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
 pub(super) enum ColorChoice {
     Auto,
@@ -50,7 +50,7 @@ SUITE is a file, or a milestone of the course: t1m1, t1m2, t1m3, t2m1, t2m2 or t
 SCENE is a file, or asset:Group/name for a scene that comes with the program.
 TRACE is a file (.zst and .gz files are unpacked), - for standard input, or asset:Group/name for its recording.";
 
-// The commands. Help lists the sentence about each; other texts of help are at the arguments.
+// The commands. The list of commands shows the sentence about each. Other help texts are with the arguments.
 #[derive(Debug, Subcommand)]
 pub(super) enum Command {
     /// Simulates a scene, and records its trace.
@@ -72,7 +72,7 @@ pub(super) enum Command {
     Record(RecordArguments),
     /// Grades programs: runs them on a suite of scenes in a sandbox, and judges their traces.
     Grade(GradeArguments),
-    /// Joins the parts that `grade --shard` graded.
+    /// Joins the parts of a grading that `grade --shard` has graded.
     Merge(MergeArguments),
     /// Writes and explains suites: the scenes of a grading, with limits and points.
     #[command(subcommand)]
@@ -100,7 +100,7 @@ pub(super) enum Command {
     Man(ManArguments),
 }
 
-/// Returns the number of a step.
+/// Parses the number of a step; 0 is the first record.
 fn to_step(word: &str) -> Result<u32, &'static str> {
     word.trim().parse().map_err(|_| "steps are counted from 1; 0 is the first record, before any step")
 }
@@ -129,7 +129,7 @@ pub(super) enum ExplainFormat {
     Html,
 }
 
-/// The option of commands whose main result is an exit code or a file.
+/// The option `--quiet`, for commands whose main result is an exit code or a file.
 #[derive(Debug, Clone, Copy, Args)]
 pub(super) struct QuietArguments {
     /// Show only errors: no report, no warnings and no progress. Files are still written.
@@ -144,7 +144,7 @@ Example:
 pub(super) struct SimulateArguments {
     /// The scene, a file or asset:Group/name.
     pub(super) scene: PathBuf,
-    /// The file for the trace; - for standard output. By default no trace is written.
+    /// The file for the trace, or - for standard output. By default no trace is written.
     #[arg(short, long, value_name = "TRACE")]
     pub(super) output: Option<PathBuf>,
     /// Search all roots, even if a certificate excludes an impact, and count disagreements.
@@ -219,8 +219,8 @@ pub(super) struct ExplainArguments {
     /// The program to run.
     #[arg(long, value_name = "PROGRAM")]
     pub(super) program: Option<PathBuf>,
-    /// The milestone of the program, whose small scenes it runs. By default it is inferred from the scenes that the
-    /// program accepts.
+    /// The milestone of the program. It decides which small scenes the program runs. By default it is inferred from the
+    /// scenes that the program accepts.
     #[arg(
         long,
         alias = "assignment",
@@ -258,22 +258,22 @@ small.2.xml and so on. The exit code is 0 when nothing is wrong, else 1.")]
 pub(super) struct ShrinkArguments {
     /// The program to run.
     pub(super) program: PathBuf,
-    /// The scene to begin with, a file or asset:Group/name. By default those of the suite, or small scenes of the
+    /// The scene to begin with, a file or asset:Group/name. The default is the suite's scenes, or small scenes of the
     /// milestone.
     pub(super) scene: Option<PathBuf>,
-    /// The suite whose scenes are tried. By default the scenes of the program's milestone.
+    /// The suite whose scenes are tried. The default is the scenes of the program's milestone.
     #[arg(long, value_name = "SUITE")]
     pub(super) suite: Option<String>,
-    /// The wrong step of the scene to begin with, from 1; by default the first one that shows only one cause.
+    /// The wrong step of the scene to begin with, from 1. The default is the first one that shows only one cause.
     #[arg(long, value_name = "N", requires = "scene", value_parser = clap::value_parser!(u32).range(1..))]
     pub(super) step: Option<u32>,
-    /// The file for the scene.
+    /// The file for the smallest scene.
     #[arg(short, long, value_name = "FILE")]
     pub(super) output: Option<PathBuf>,
     /// The maximum number of runs for one cause.
     #[arg(long, value_name = "N", default_value_t = 2_000)]
     pub(super) runs: u32,
-    /// The most processor time for one cause, in seconds.
+    /// The maximum processor time for one cause, in seconds.
     #[arg(long, value_name = "N", default_value_t = 10)]
     pub(super) seconds: u32,
     /// The format of the report.

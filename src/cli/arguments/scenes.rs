@@ -1,4 +1,4 @@
-//! Arguments of the commands about scenes.
+//! The arguments of the commands about scenes.
 use clap::{Args, Subcommand};
 use std::path::PathBuf;
 
@@ -12,7 +12,7 @@ pub(in crate::cli) enum SceneCommand {
     Export(SceneExportArguments),
 }
 
-/// Lists the built-in scenes, with a line on each.
+/// Lists the built-in scenes, one per line.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -27,7 +27,7 @@ pub(in crate::cli) struct SceneListArguments {
     pub(in crate::cli) quiet: bool,
 }
 
-/// Prints a scene's XML.
+/// Prints the XML of a scene.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:
@@ -38,7 +38,7 @@ pub(in crate::cli) struct SceneShowArguments {
     pub(in crate::cli) name: String,
 }
 
-/// Writes scenes as FOLDER/Group/name.xml.
+/// Writes scenes into a folder, as FOLDER/Group/name.xml.
 #[derive(Debug, Args)]
 #[command(after_help = "\
 Example:

@@ -1,4 +1,4 @@
-//! Values that several commands take as arguments.
+//! Parsers for values that several commands take as arguments.
 use crate::{assignments::Assignment, judge::Rules, report::page::Audience, suite::config::Hints};
 use clap::{
     ValueEnum,
@@ -6,7 +6,7 @@ use clap::{
 };
 use std::str::FromStr;
 
-/// Parses a number of at least one.
+/// Parses a whole number that is at least one.
 pub(in crate::cli) fn parse_positive<N: FromStr>(word: &str) -> Result<N, &'static str> {
     word.trim().parse().map_err(|_| "it must be a whole number, 1 or more")
 }
@@ -20,10 +20,10 @@ pub(in crate::cli) enum TextOrJson {
     Json,
 }
 
-/// A word of the command line, its value, and its help text.
+/// A word that an argument can have on the command line, its value, and its help text.
 type Word<T> = (&'static str, T, &'static str);
 
-/// Returns a parser for one of several words.
+/// Returns a parser that accepts one of these words.
 fn word_parser<T: Copy + Send + Sync + 'static>(words: &'static [Word<T>]) -> impl TypedValueParser<Value = T> {
     PossibleValuesParser::new(words.iter().map(|(word, _, help)| PossibleValue::new(*word).help(*help))).try_map(
         |found| words.iter().find(|(word, ..)| *word == found).map(|(_, value, _)| *value).ok_or("no such word"),

@@ -30,7 +30,7 @@ pub(super) fn run(arguments: &CheckArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(name)?;
     let inputs: Vec<_> = scene.identity.into_iter().chain(trace.identity).collect();
-    // Open the output first, so that an unwritable one is reported before the work begins.
+    // The output is opened first. If it cannot be written, this is reported before the work begins.
     let target = arguments.output.as_deref().map(|name| Output::create(name, &inputs)).transpose()?;
     let (shown, lasts) = (ShownParts::from_arguments(arguments), is_rereadable(name));
     let mut wrong = wrong_steps(arguments, &scene)?;
@@ -88,7 +88,7 @@ fn write_report(
     }
 }
 
-/// The parts of the report after the verdict, which decide which data of a trace are kept.
+/// The parts that follow the verdict in a report. They decide which data of a trace must be kept.
 struct ShownParts {
     is_explained: bool,
     is_drawn: bool,
@@ -96,7 +96,7 @@ struct ShownParts {
 
 impl ShownParts {
     fn from_arguments(arguments: &CheckArguments) -> Self {
-        // With `--step`, the values of these steps are shown instead of an explanation.
+        // With `--step`, the values in these steps are shown instead of an explanation.
         let is_explained = arguments.step.is_empty() && !arguments.no_explain;
         Self { is_explained, is_drawn: arguments.format == CheckFormat::Html }
     }
@@ -119,7 +119,7 @@ fn replay_options(arguments: &CheckArguments) -> replay::Options {
     }
 }
 
-/// Returns an empty collection for wrong steps, if they are shown.
+/// Returns an empty collection for wrong steps, if the report shows wrong steps.
 fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSteps> {
     let steps = scene.scene.step_count();
     if let Some(step) = arguments.step.iter().find(|step| **step > steps) {
@@ -134,27 +134,28 @@ fn wrong_steps(arguments: &CheckArguments, scene: &SceneInput) -> Result<WrongSt
     }))
 }
 
-/// Returns an error if the scene has no verdicts, or the trace could not be read to its end.
+/// Returns an error if no trace of the scene can have a verdict, or if the trace could not be read to its end.
 fn refuse_unreadable(outcome: &Outcome, scene: &SceneInput, trace: &TraceInput) -> Result<()> {
     if let Some(why) = describe_no_verdict(outcome, &scene.name) {
         bail!(why);
     }
     match (&outcome.stop, trace.failure()) {
-        // Whether later steps were read is unknown, so their faults are not used.
+        // It is unknown whether later steps were read, so their faults are not used.
         (Some(Stop::Step(_)), _) | (_, None) => Ok(()),
-        // Missing bytes within polynomials do not stop the original, but may be missing only in this copy of the trace.
+        // If bytes are missing within polynomials, the original does not stop. However, they may be missing only in
+        // this copy of the trace.
         (_, Some(message)) => bail!(describe_unread(outcome, &trace.name, &message)),
     }
 }
 
-/// Returns the evidence. If only a part of the trace was kept and the file can be read again, the evidence covers the
-/// whole trace.
+/// Collects the evidence for the report. If only a part of the trace was kept and the file can be read again, the whole
+/// trace is used.
 fn evidence_of(examined: &ExaminedTrace<'_>, name: &Path, lasts: bool) -> Evidence {
     let mut again = if lasts && !examined.trace.is_whole() { input::trace(name).ok() } else { None };
     examined.evidence(again.as_mut().map(|trace| &mut trace.reader as &mut dyn Read), evidence::MAX_NUMBERS)
 }
 
-/// Returns whether a trace can be read a second time, so that it need not be kept during judging.
+/// Returns whether a trace can be read a second time. It then need not be kept while it is judged.
 fn is_rereadable(name: &Path) -> bool {
     name != Path::new("-") && !std::fs::metadata(name).is_ok_and(|data| !data.is_file())
 }

@@ -1,5 +1,5 @@
-//! Suggests commands that show more about a scene that is not accepted: the user's own command line, reduced to that
-//! scene.
+//! Suggests commands that show more about a scene that is not accepted. They repeat the user's own command line, for
+//! that scene only.
 use crate::{
     assignments::Assignment,
     cli::arguments::grade::GradeArguments as Arguments,
@@ -8,17 +8,17 @@ use crate::{
 };
 use std::path::{Path, PathBuf};
 
-/// The parts of the grading that the commands below a report need.
+/// The parts of the grading that the suggested commands repeat.
 pub(super) struct Closer<'a> {
     pub(super) arguments: &'a Arguments,
     pub(super) plan: &'a Plan,
     pub(super) submissions: &'a [Submission],
-    /// A function that returns the file of a scene's trace, if traces are kept.
+    /// A function that returns the file in which a scene's trace is kept; `None` if traces are not kept.
     pub(super) trace: &'a dyn Fn(&str, &str) -> Option<PathBuf>,
 }
 
 impl Closer<'_> {
-    /// Returns the commands for a scene.
+    /// Returns the suggested commands for a scene.
     pub(super) fn advice(&self, grade: &Grade, scene: &SceneGrade) -> Vec<String> {
         let Some(submission) = self.submissions.iter().find(|one| one.name == grade.submission) else {
             return Vec::new();
@@ -48,7 +48,7 @@ impl Closer<'_> {
         lines
     }
 
-    /// Returns the name of a scene, in the form for `check`.
+    /// Returns the name of a scene in the form that `check` accepts; `None` if the scene cannot be named.
     fn scene(&self, name: &str) -> Option<String> {
         let task = self.plan.scenes().find(|task| task.name == name)?;
         if library::scene(name).is_some_and(|embedded| embedded == task.xml) {
@@ -62,7 +62,7 @@ impl Closer<'_> {
     fn command(&self, submission: &Submission) -> String {
         let Arguments { suite, rules, program, single, recorded, unsafe_no_sandbox, output, .. } = self.arguments;
         let path = match &submission.program {
-            // An entry of a folder of programs.
+            // The submission is an entry in a folder of programs.
             Some(entry) if !*single && submission.name.ends_with(entry.as_str()) => submission.path.join(entry),
             _ => submission.path.clone(),
         };

@@ -12,7 +12,7 @@ use std::path::Path;
 /// The name of the file of grades in a folder for results.
 const FILE_NAME: &str = "grades.jsonl";
 
-/// The maximum size of the file, in bytes; 10,000 submissions of 120 wrong scenes need less.
+/// The maximum size of the file, in bytes. 10,000 submissions of 120 wrong scenes need less than this.
 const MAX_BYTES: u64 = 4 << 30;
 
 /// The document that `--format json` writes.
@@ -32,7 +32,7 @@ pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     let text = file.read(MAX_BYTES).with_context(|| format!("cannot read the earlier grading {shown}"))?;
     let grades = match serde_json::from_slice(&text) {
         Ok(GradesFile { grades }) => grades,
-        // A line without groups is an entry that was not a submission.
+        // A line without groups is about an entry that is not a submission.
         Err(_) => text.split(|&byte| byte == b'\n').filter_map(|line| serde_json::from_slice(line).ok()).collect(),
     };
     if grades.is_empty() {
@@ -43,8 +43,8 @@ pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     Ok(grades)
 }
 
-/// Adds to each grade the earlier grade with the same name. If there is only one earlier and one new grade, names do
-/// not matter.
+/// Adds to each grade the earlier grade of the submission with the same name. If there is only one of each, the names
+/// do not matter.
 pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     if let ([before], [grade]) = (earlier, &mut *grades) {
         grade.before = Some(before.clone());

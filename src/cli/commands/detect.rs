@@ -59,7 +59,7 @@ fn print(arguments: &DetectArguments, report: &Overlap<'_>, inputs: &[Identity])
     })
 }
 
-/// Writes a report to the requested output.
+/// Writes a report to standard output, or to the file that was requested.
 fn write_output(arguments: &DetectArguments, inputs: &[Identity], text: impl FnOnce(Style) -> String) -> Result<()> {
     let target = arguments.output.as_deref().map(|name| Output::create(name, inputs)).transpose()?;
     let text = text(if target.is_some() { Style::Plain } else { console::style() });
@@ -70,7 +70,7 @@ fn write_output(arguments: &DetectArguments, inputs: &[Identity], text: impl FnO
     }
 }
 
-/// Returns the pair from the typed numbers.
+/// Returns the pair whose numbers were typed.
 fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
     const NO_PAIR: &str = "name a pair: its points (detect pe:3,1+4,1:5,9+2,6:5,3+5,8 --radii 1,1), or where it is in \
                            a scene (--scene, --step, --pair)";
@@ -78,7 +78,7 @@ fn parse_typed(arguments: &DetectArguments) -> Result<PairMotion> {
     pair::parse_motion(word, arguments.radii.as_deref())
 }
 
-/// Reports on a pair of a scene, in a step of the reference's run or of a trace.
+/// Reports on a pair of a scene, in a step of a trace or of the reference's own run.
 fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     let scene = input::scene(name)?;
     let (Some(step), Some(word)) = (arguments.step, &arguments.pair) else { bail!("name a step and a pair") };
@@ -129,7 +129,7 @@ fn detect_in_scene(arguments: &DetectArguments, name: &Path) -> Result<()> {
     show(arguments, &study, Some(place), &inputs)
 }
 
-/// Returns the state before a step of the reference's run.
+/// Simulates the reference, and returns the state before a step.
 fn simulate_to(scene: &SceneInput, step: u32) -> Result<State> {
     let mut simulation = Simulation::new(&scene.scene, RootSearch::OnDemand);
     for _ in 1..step {
@@ -140,10 +140,10 @@ fn simulate_to(scene: &SceneInput, step: u32) -> Result<State> {
     Ok(simulation.state().clone())
 }
 
-/// The records of a step in a trace.
+/// The records of one step in a trace.
 struct TracedStep {
     before: State,
-    /// The mid record's state; if the scene has no mid records, the state before the step's end.
+    /// The state of the mid record. Without mid records, that of the record before the step's end record.
     mid: State,
     end: Frame,
     name: String,

@@ -1,4 +1,5 @@
-//! The progress display of a grading on standard error: bars on a terminal, otherwise a line per finished submission.
+//! The progress display of a grading, on standard error. It consists of bars on a terminal, and otherwise of one line
+//! per finished submission.
 use crate::{
     cli::{console, screen},
     files::Place,
@@ -11,7 +12,7 @@ use crate::{
 use indicatif::{MultiProgress, ProgressBar};
 use std::{collections::BTreeMap, io, path::Path};
 
-/// The display of one grading, which disappears when the value is dropped.
+/// The progress display of one grading. It disappears when the value is dropped.
 pub(super) struct LiveDisplay<'a> {
     plan: &'a Plan,
     submissions: &'a [Submission],
@@ -26,7 +27,7 @@ struct Bars {
 }
 
 impl<'a> LiveDisplay<'a> {
-    /// Creates a display for a plan and its submissions.
+    /// Creates the display for a grading of these submissions.
     pub(super) fn new(plan: &'a Plan, submissions: &'a [Submission]) -> Self {
         let bars = console::wants_bars().then(|| {
             let all = console::show_bars();
@@ -37,7 +38,7 @@ impl<'a> LiveDisplay<'a> {
         Self { plan, submissions, bars, graded: 0 }
     }
 
-    /// Shows an event.
+    /// Updates the display after an event.
     pub(super) fn event(&mut self, event: &Event<'_>) {
         match *event {
             Event::SceneBegins { submission, scene } => self.begin(submission, scene),
@@ -52,7 +53,7 @@ impl<'a> LiveDisplay<'a> {
                         bar.finish_and_clear();
                     }
                     match cached {
-                        // Leave reused results out, because they do not show how long the rest will take.
+                        // Reused results are left out, because they do not show how long the rest will take.
                         true => bars.overall.set_length(bars.overall.length().unwrap_or(1).saturating_sub(1)),
                         false => bars.overall.inc(1),
                     }
@@ -89,17 +90,17 @@ impl<'a> LiveDisplay<'a> {
     }
 }
 
-/// The file with the number of scenes that have a verdict, for waiting programs.
+/// A file with the number of scenes that have a verdict. Programs that wait for the grading can read it.
 pub(super) struct Counter {
     place: Place,
-    /// For each scene of the plan, whether it counts.
+    /// Whether each scene of the plan counts, in the order of the plan.
     counts: Vec<bool>,
     done: usize,
     all: usize,
 }
 
 impl Counter {
-    /// Creates a counter at zero for a number of submissions.
+    /// Creates the file with a count of zero, for a number of submissions.
     ///
     /// # Errors
     ///
@@ -116,7 +117,7 @@ impl Counter {
         self.place.write(format!("{}/{}\n", self.done, self.all).as_bytes())
     }
 
-    /// Counts a scene that has its verdict. An error of the file does not stop the grading.
+    /// Counts a scene that has its verdict. If the file cannot be written, the grading still continues.
     pub(super) fn event(&mut self, event: &Event<'_>) {
         if let Event::SceneDone { scene, .. } = *event
             && self.counts.get(scene).copied().unwrap_or_default()

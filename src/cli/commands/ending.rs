@@ -1,14 +1,14 @@
-//! The common end of the commands that grade: exit code, file names, and level of detail.
+//! The common end of the commands that grade: exit codes, file names, and the amount of detail.
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, exit},
     report::grade::{self, Advice, Text, TextDetail},
     suite::{Grade, SkippedEntry},
 };
 
-/// The maximum number of scenes and mistakes that are shown of a class; class.txt has all.
+/// The maximum number of scenes and mistakes that are shown for a class. The file class.txt lists all of them.
 pub(super) const MAX_HARDEST: usize = 5;
 
-/// Returns the exit code of a grading that was not stopped.
+/// Returns the exit code of a grading that was not interrupted.
 pub(super) fn exit_code(grades: &[Grade]) -> u8 {
     if grades.iter().any(Grade::is_our_fault) {
         exit::FAULT
@@ -19,12 +19,13 @@ pub(super) fn exit_code(grades: &[Grade]) -> u8 {
     }
 }
 
-/// Returns a scene's name as a file name.
+/// Returns the file name for a scene.
 pub(super) fn file_of_scene(name: &str) -> String {
     file_name(&name.replace('/', "_"))
 }
 
-/// Returns a name as a file name: no separators, no leading dot, not too long, and different for every name.
+/// Returns the file name for any name. It has no separators and no leading dot, it is not too long, and different names
+/// have different file names.
 pub(super) fn file_name(name: &str) -> String {
     let safe = |c: char| if c.is_ascii_alphanumeric() || matches!(c, '-' | '_' | '.' | ' ') { c } else { '_' };
     let plain: String = name.chars().map(safe).take(100).collect();
@@ -34,18 +35,18 @@ pub(super) fn file_name(name: &str) -> String {
         return plain.to_owned();
     }
     let digest = &blake3::hash(name.as_bytes()).to_hex()[..8];
-    // The mark is not allowed in raw names; otherwise two submissions could have the same file.
+    // This mark is not allowed in names that are used unchanged. Otherwise two submissions could have the same file.
     format!("{}{plain}~{digest}", if is_device(plain) { "_" } else { "" })
 }
 
-/// Returns whether a name is reserved for a device on Windows; extensions do not matter.
+/// Returns whether Windows reserves a name for a device. The part after a dot does not matter.
 fn is_device(name: &str) -> bool {
     let stem = name.split('.').next().unwrap_or_default().trim_end().to_ascii_lowercase();
     let numbered = |device: &str| stem.strip_prefix(device).is_some_and(|number| "0123456789".contains(number));
     matches!(stem.as_str(), "con" | "prn" | "aux" | "nul") || numbered("com") || numbered("lpt")
 }
 
-/// Returns the level of detail for each submission.
+/// Returns the amount of detail in the text about each submission.
 pub(super) const fn text_detail(arguments: &Arguments, is_class: bool) -> TextDetail {
     match (arguments.quiet, arguments.verbose) {
         (true, _) => TextDetail::Line,
@@ -55,8 +56,8 @@ pub(super) const fn text_detail(arguments: &Arguments, is_class: bool) -> TextDe
     }
 }
 
-/// Renders the report for a terminal. For several submissions it ends with the result of the class, the `hardest`
-/// scenes and mistakes, and the entries that are not graded.
+/// Renders the report for a terminal. If there are several submissions, it ends with the result of the class, at most
+/// `hardest` scenes and mistakes, and the skipped entries.
 pub(super) fn text(
     grades: &[Grade],
     passed_over: &[SkippedEntry],

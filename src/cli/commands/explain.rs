@@ -1,4 +1,4 @@
-//! The command `explain`: the likely mistakes of a program, from its trace or by running it.
+//! The command `explain`, which names the likely mistakes of a program, from its trace or by running it.
 use super::{
     probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, report},
     shrink,
@@ -37,7 +37,7 @@ pub(super) fn run(arguments: &ExplainArguments) -> Result<u8> {
     Ok(if diagnosis.is_accepted() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Runs a program on scenes that make every term of every formula visible, and on the given ones.
+/// Runs a program on scenes that make every term of every formula visible, and also on the given scenes.
 fn explain_program(
     program: &Path,
     scenes: &[PathBuf],
@@ -70,7 +70,7 @@ fn explain_trace(scene: &Path, trace: &Path, arguments: &ExplainArguments) -> Re
     }
     let (case, card, _) =
         case((scene.name, trace.name.clone()), true, &scene.scene, &mut trace.reader, None, drawing(arguments));
-    // Bytes after the last step matter only if they can't be read.
+    // Bytes after the last step matter only if they cannot be read.
     let _ = io::copy(&mut (&mut trace.reader).take(MAX_KEPT_BYTES as u64), &mut io::sink());
     trace.ensure_not_failed()?;
     Ok((case, card))

@@ -59,7 +59,7 @@ use std::{
 /// The default folder for results of several submissions.
 const DEFAULT_OUTPUT: &str = "fosssim-grades";
 
-/// The folder for traces on which the grader failed, if there is no folder for results.
+/// The folder for traces on which the grader failed, if no folder for results is used.
 const FAULTS_FOLDER: &str = "fosssim-faults";
 
 pub(super) fn run(arguments: &Arguments) -> Result<u8> {
@@ -71,7 +71,8 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
     Ok(code)
 }
 
-/// Grades, and adds up the times of runs. The sandbox's processes have ended when this function returns.
+/// Grades the submissions, and adds up the times of their runs. When this function returns, all processes of the
+/// sandbox have ended.
 fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let mut plan = plan::find(&arguments.suite)?;
     if let Some(rules) = arguments.rules {
@@ -86,7 +87,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
         (Some(hints), Audience::Student) => plan.tell_students(hints),
     }
     let reports = read_reports(&arguments.format)?;
-    // Read the earlier grading before anything is written, because its files may be in the folder for results.
+    // The earlier grading is read before anything is written, because its files may be in the folder for results.
     let earlier = arguments.compare.as_deref().map(compare::read).transpose()?.unwrap_or_default();
     if arguments.traces {
         return traces::run(arguments, plan, &reports, &earlier);
@@ -109,10 +110,11 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     let names: Vec<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
     let selection = Selection::new(&arguments.scene, &names)?;
     refuse_several(&reports, submissions.len(), "; a class's pages go to its --output folder")?;
-    // Install the signal handler before an output is opened, whose own handler would end the program immediately.
+    // The signal handler is installed before an output is opened. The output's own handler would end the program
+    // immediately.
     let cancellation = cancelled_by_signals();
     for file in reports.iter().filter_map(|report| report.file.as_deref()) {
-        // Open the outputs first, so that an unwritable one is reported before the work begins.
+        // The outputs are opened first. If one cannot be written, this is reported before the work begins.
         drop(output::Output::create(file, &[])?);
     }
     let backend = backend(arguments.unsafe_no_sandbox)?;
@@ -145,7 +147,7 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     session.grade_and_report(&submissions, &reports, &mut last_run, &earlier).map(|(_, code)| code)
 }
 
-/// The data that all gradings of `--watch` share.
+/// The data that all gradings with `--watch` share.
 struct GradingSession<'a> {
     arguments: &'a Arguments,
     plan: &'a Plan,
@@ -153,13 +155,13 @@ struct GradingSession<'a> {
     cancellation: &'a Cancellation,
     folder: Option<PathBuf>,
     pages: Option<Pages>,
-    /// Whether scenes of the suite were left out on request.
+    /// Whether the user left out scenes of the suite.
     is_part: bool,
-    /// The shard of the submissions, if `--shard` is given.
+    /// The shard of this grading; `None` without `--shard`.
     sharding: Option<Sharding>,
-    /// The entries that are not submissions.
+    /// The skipped entries, which are not submissions.
     passed_over: Vec<SkippedEntry>,
-    /// The sums of the runs' processor times, for `--timings`.
+    /// The sums of the processor times of all runs, for `--timings`.
     times: &'a Timings,
 }
 
@@ -188,7 +190,7 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Prints the number of results from earlier runs, and the way to continue a grading that was stopped.
+    /// Prints how many results were reused, and how a grading that was stopped can be continued.
     fn say_what_was_kept(&self, grades: &[Grade]) {
         let taken: usize = grades.iter().map(Grade::taken_over).sum();
         let all = grades.iter().flat_map(Grade::scenes).count();
@@ -205,13 +207,14 @@ impl GradingSession<'_> {
         }
     }
 
-    /// Returns the file for the trace of a scene that is not accepted, if traces are kept.
+    /// Returns the file for a scene's trace that is not accepted; `None` if traces are not kept.
     fn trace(&self, submission: &str, scene: &str) -> Option<Place> {
         let folder = self.folder.as_ref().filter(|_| self.arguments.keep_traces)?;
         Some(Place::new(folder, format!("traces/{}/{}.bin", file_name(submission), file_of_scene(scene))))
     }
 
-    /// Returns the grades, and the error that stopped the grading or the storing of results, if any.
+    /// Grades the submissions. Also returns the error that stopped the grading or the storing of results, if there was
+    /// one.
     fn grade(&self, submissions: &[Submission], fresh: bool) -> Result<(Vec<Grade>, Option<anyhow::Error>)> {
         let kept = match &self.folder {
             Some(folder) => {
@@ -283,7 +286,7 @@ impl GradingSession<'_> {
         Ok((grades, fault.map(anyhow::Error::from).or(log_error.into_inner())))
     }
 
-    /// Returns the counter of scenes for `--progress`, which counts those that the reader of the pages sees.
+    /// Returns the counter for `--progress`. It counts the scenes that the reader of the pages may see.
     fn counter(&self, file: &Path, submissions: &[Submission]) -> Result<Counter> {
         let sees_all = self.arguments.reader == Audience::Staff;
         let groups = self.plan.groups.iter();
@@ -295,12 +298,12 @@ impl GradingSession<'_> {
             .with_context(|| format!("cannot write the progress to {}", file.display()))
     }
 
-    /// Returns the entries that are not submissions; for shards, `merge` reports them.
+    /// Returns the skipped entries. For a shard there are none, because `merge` reports them.
     fn passed_over(&self) -> &[SkippedEntry] {
         if self.sharding.is_some() { &[] } else { &self.passed_over }
     }
 
-    /// Writes the reports and the files of the output folder.
+    /// Writes the reports, and the files in the output folder.
     fn report(&self, grades: &[Grade], submissions: &[Submission], reports: &[Report]) -> Result<()> {
         let (folder, pages, reader) = (self.folder.as_deref(), self.pages.as_ref(), self.arguments.reader);
         let passed_over = self.passed_over();
@@ -312,7 +315,7 @@ impl GradingSession<'_> {
         results.write(reports, |grades| self.text(grades, submissions))
     }
 
-    /// Renders the report for a terminal; for a class, a table and its result.
+    /// Renders the report for a terminal. For a class, it is a table and the result of the class.
     fn text(&self, grades: &[Grade], submissions: &[Submission]) -> String {
         let shown = text_detail(self.arguments, grades.len() > 1);
         let trace = |submission: &str, scene: &str| self.trace(submission, scene).map(|place| place.path());
@@ -321,7 +324,7 @@ impl GradingSession<'_> {
         text(grades, self.passed_over(), shown, MAX_HARDEST, Some(&closer))
     }
 
-    /// Grades whenever a program changes, until interrupted.
+    /// Grades again whenever a program changes, until the user interrupts it.
     fn watch(
         &self,
         submissions: &[Submission],
@@ -338,7 +341,7 @@ impl GradingSession<'_> {
             }
             earlier = grades.iter().map(EarlierGrade::from).collect();
             console::print_error("waiting for a change; Ctrl-C ends\n");
-            // Wait until a file has stopped changing, because a linker writes in several steps.
+            // A file is used only after it has stopped changing, because a linker writes in several steps.
             let mut last = seen.clone();
             loop {
                 std::thread::sleep(Duration::from_millis(300));
@@ -355,7 +358,8 @@ impl GradingSession<'_> {
     }
 }
 
-/// Returns the newest modification time below each submission, and its size, to detect changes.
+/// Returns the newest modification time below each submission, and the submission's size. If they change, the
+/// submission has changed.
 fn change_stamps(submissions: &[Submission]) -> Vec<Option<(SystemTime, u64)>> {
     let program = |submission: &Submission| match &submission.program {
         Some(program) => submission.path.join(program),
@@ -376,8 +380,8 @@ fn find_newest(path: &Path, budget: &mut u32) -> Option<(SystemTime, u64)> {
     Some(below.fold(own, |(time, size), (newer, more)| (time.max(newer), size + more)))
 }
 
-/// Writes a submission's log: its build, and for each run the verdict, the reason and the output without control
-/// characters. A fault of the whole submission is written once.
+/// Writes the log of a submission: its build, and for each run the verdict, the reason, and the output without control
+/// characters. If the whole submission has a fault, it is written only once.
 fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
     let mut text = String::new();
     if let Some(build) = &grade.build {

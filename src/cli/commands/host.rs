@@ -26,10 +26,10 @@ use std::{
 /// The maximum size of this program, in bytes.
 const MAX_PROGRAM_BYTES: u64 = 1 << 30;
 
-/// The default mistake of the demo's wrong sample.
+/// The mistake that the wrong sample program makes in the demo, unless the user chooses another.
 const DEMO_MISTAKE: &str = "pe-square-no-eh";
 
-/// The demo's suite: few scenes, all kinds of collisions.
+/// The suite of the demo. It has few scenes, but all kinds of collisions.
 const DEMO_SUITE: &str = include_str!("demo.toml");
 
 pub(super) fn doctor() -> Result<u8> {
@@ -60,7 +60,7 @@ pub(super) fn doctor() -> Result<u8> {
 pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     let mistake = arguments.mistake.as_deref().unwrap_or(DEMO_MISTAKE);
     for id in mistake.split(',') {
-        // A variant is right, so a program with a variant would be a right submission.
+        // A variant is right, so a program that uses a variant would be a right submission.
         if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
             let mistakes = student::all_rows().filter(|row| row.kind != RowKind::Variant);
             let meant = near::suggest(id, mistakes.map(|row| row.id));
@@ -107,7 +107,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
             return Ok(exit::INTERRUPTED);
         }
         verdicts.push(grades.iter().map(|grade| grade.verdict).max());
-        // Keep the last grade, which is that of the wrong sample.
+        // The last grade is that of the wrong sample program.
         last = grades.into_iter().next();
     }
     if verdicts == [Some(Verdict::Accepted), Some(Verdict::WrongAnswer)] {
@@ -123,7 +123,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
     }
 }
 
-/// Writes the sample as a separate program with a fixed mistake.
+/// Writes the sample as a separate program that always makes this mistake.
 fn write_sample(mistake: &str, program: &Path) -> Result<()> {
     let this = Path::new("/proc/self/exe").canonicalize().context("cannot find this program")?;
     let bytes = files::read(&this, MAX_PROGRAM_BYTES).with_context(|| format!("cannot read {}", this.display()))?;
@@ -141,7 +141,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
         backend = backend.without_layer(layer.with_context(unknown)?)?;
     }
     let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;
-    // If this process is root, programs run as another user, who must be able to reach the folder.
+    // If this process is root, programs run as another user. That user must be able to reach the folder.
     fs::set_permissions(folder.path(), Permissions::from_mode(0o755)).context("the temporary folder")?;
     let mut done = 0;
     let chosen = |name: &str| arguments.only.as_ref().is_none_or(|text| name.contains(text.as_str()));
@@ -170,7 +170,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     Ok(if broken == 0 && table.count_held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Returns the sandbox, or an error that names the missing layers.
+/// Returns the sandbox. If required layers are missing, the error names them.
 pub(super) fn backend(unsafe_no_sandbox: bool) -> Result<Backend> {
     let supervisor = Supervisor::this_program();
     if unsafe_no_sandbox {

@@ -1,6 +1,7 @@
-//! The scenes that the last grading of the same submissions did not accept, for `grade --failed`.
+//! The scenes that were not accepted in the last grading of the same submissions, for `grade --failed`.
 //!
-//! They are stored in the output folder, or without one in the user's cache. Errors of the file are ignored.
+//! They are stored in the output folder, or in the user's cache if there is no output folder. Errors of the file are
+//! ignored.
 use crate::{
     cli::output,
     files::Place,
@@ -14,13 +15,13 @@ use std::{
 /// The name of the file in an output folder.
 const LAST_RUN_FILE: &str = "last-run.json";
 
-/// The maximum size of the file, in bytes: four times that of 10,000 submissions of 85 scenes.
+/// The maximum size of the file, in bytes. It is four times the size for 10,000 submissions of 85 scenes.
 const MAX_BYTES: u64 = 256 << 20;
 
-/// For each submission and scene, whether it was accepted.
+/// For each submission, whether each scene was accepted.
 type AcceptedScenes = BTreeMap<String, BTreeMap<String, bool>>;
 
-/// The verdicts of the last grading.
+/// The scenes that the last grading accepted and did not accept.
 #[derive(Debug, Default)]
 pub(super) struct LastRun {
     file: Option<Place>,
@@ -28,7 +29,7 @@ pub(super) struct LastRun {
 }
 
 impl LastRun {
-    /// Reads the verdicts of the given submissions on a suite.
+    /// Reads what the last grading of these submissions on the same suite accepted.
     pub(super) fn open(folder: Option<&Path>, submissions: &[Submission], suite: &str) -> Self {
         let file = folder.map(|folder| Place::new(folder, LAST_RUN_FILE)).or_else(|| {
             let mut hasher = blake3::Hasher::new();
@@ -44,18 +45,18 @@ impl LastRun {
         Self { file, known: serde_json::from_slice(&text).unwrap_or_default() }
     }
 
-    /// Returns the scenes that were not accepted for some submission; `None` if no grading is known.
+    /// Returns the scenes that were not accepted for at least one submission; `None` if there was no such grading.
     pub(super) fn failed_scenes(&self) -> Option<BTreeSet<String>> {
         let scenes = self.known.values().flatten().filter(|(_, accepted)| !**accepted);
         (!self.known.is_empty()).then(|| scenes.map(|(scene, _)| scene.clone()).collect())
     }
 
-    /// Returns whether a scene of the submission was not accepted.
+    /// Returns whether any scene of the submission was not accepted.
     pub(super) fn has_failed(&self, submission: &str) -> bool {
         self.known.get(submission).is_none_or(|scenes| scenes.values().any(|accepted| !accepted))
     }
 
-    /// Stores the grades. Scenes that were not run keep their earlier state.
+    /// Stores which scenes these grades accept. Scenes that were not run keep their earlier state.
     pub(super) fn remember(&mut self, grades: &[Grade]) {
         for grade in grades {
             let scenes = self.known.entry(grade.submission.clone()).or_default();
@@ -73,7 +74,7 @@ impl LastRun {
     }
 }
 
-/// Returns the folder for this program in the user's cache.
+/// Returns this program's folder in the user's cache.
 fn cache_folder() -> Option<PathBuf> {
     let set = |name: &str| std::env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
     let cache = set("XDG_CACHE_HOME").or_else(|| set("HOME").map(|home| home.join(".cache")))?;

@@ -25,10 +25,10 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The folders of a grading whose files have unique names or the names of their submissions.
+/// The folders of a grading whose files have unique names, or the names of submissions.
 const COPIED_FOLDERS: [&str; 4] = ["cards", "logs", "traces", "faults"];
 
-/// The maximum depth of folders that are copied.
+/// The maximum depth to which folders are copied.
 const MAX_DEPTH: usize = 4;
 
 /// The maximum size of a file that a grading writes, in bytes.
@@ -42,7 +42,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     let names = &first.common.submissions;
     refuse_several(&reports, names.len(), "")?;
     Folder::make(&output).with_context(|| format!("cannot make {}", output.display()))?;
-    // The lock is kept until the end, so that no other process uses the folder.
+    // The lock is held until the end, so that no other process uses the folder.
     let kept = FolderResults::open(&output, true)?;
     for (folder, _) in &parts {
         for name in COPIED_FOLDERS {
@@ -83,7 +83,7 @@ pub(super) fn run(arguments: &MergeArguments) -> Result<u8> {
     Ok(exit_code(&grades))
 }
 
-/// Finds the shards among the given folders and their subfolders.
+/// Finds shards in the given folders and in their subfolders.
 fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
     let mut parts: Vec<(PathBuf, Part)> = Vec::new();
     for folder in folders {
@@ -105,7 +105,7 @@ fn find(folders: &[PathBuf]) -> Result<Vec<(PathBuf, Part)>> {
     Ok(parts)
 }
 
-/// Checks that each shard of one grading exists once; returns one of them, and the folder for the results.
+/// Checks that each shard of the same grading exists exactly once. Returns one of them, and the folder for the results.
 fn require_complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments) -> Result<(&'a Part, PathBuf)> {
     let (place, first) = parts.first().context("there is no shard")?;
     for (other, part) in parts {
@@ -156,17 +156,17 @@ fn require_complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments
     Ok((first, output))
 }
 
-/// Stores a shard's results in the merged folder, so that a later grading without shards finds them.
+/// Stores the results of a shard in the merged folder. A later grading without shards then finds them.
 fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     let place = Place::new(folder, JOURNAL_NAME);
     let (file, length) = match place.open_file(MAX_JOURNAL_BYTES) {
         Ok(opened) => opened,
-        // A shard without submissions has no journal.
+        // If a shard has no submissions, it has no journal.
         Err(FileError::Missing { .. }) => return Ok(()),
         Err(error) => return Err(error).with_context(|| format!("cannot read {}", place.path().display())),
     };
     for_each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
-        // A damaged entry is skipped, so a later grading repeats it.
+        // A damaged entry is skipped, so a later grading runs its scene again.
         if let Some(entry) = read_line(line) {
             kept.keep(&entry.key, &entry.submission, &entry.result)?;
         }
@@ -175,7 +175,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     .with_context(|| format!("cannot read {}", place.path().display()))
 }
 
-/// Copies the files of a folder. Links are not followed on either side.
+/// Copies the files of a folder. Links are followed neither in the folder nor at the destination.
 fn copy(from: &Folder, to: &Place, depth: usize) -> Result<()> {
     for name in from.names().with_context(|| format!("cannot read {}", from.given_path().display()))? {
         let (source, target) = (from.given_path().join(&name), to.join(&name));
@@ -199,6 +199,6 @@ fn copy_file(file: File, target: &Place) -> io::Result<()> {
     if length > MAX_FILE_BYTES {
         return Err(io::Error::other(format!("it has {length} bytes, the limit is {MAX_FILE_BYTES}")));
     }
-    // Copy only the length that was read before, even if the file grows.
+    // Only the length that was read before is copied, even if the file grows.
     output::copy_at(target, &mut file.take(length))
 }

@@ -1,4 +1,4 @@
-//! The commands: each reads its inputs, calls the libraries, and prints the output of a renderer.
+//! The commands. Each reads its inputs, calls the libraries, and prints what a renderer returns.
 
 mod check;
 mod closer;
@@ -41,11 +41,11 @@ use anyhow::Result;
 ///
 /// # Errors
 ///
-/// Fails with the reason why the command can't run: wrong usage, bad input, or an error of this program.
+/// Fails if the command is used wrongly, if an input is bad, or if this program has an error. The error is the reason.
 pub(super) fn run(command: &Command) -> Result<u8> {
     console::be_quiet(is_quiet(command));
     let done = match command {
-        // For these commands the exit code is a verdict.
+        // The exit codes of these commands are verdicts.
         Command::Check(arguments) => return check::run(arguments),
         Command::Explain(arguments) => return explain::run(arguments),
         Command::Shrink(arguments) => return shrink::run(arguments),
@@ -57,7 +57,7 @@ pub(super) fn run(command: &Command) -> Result<u8> {
         Command::Demo(arguments) => return host::demo(arguments),
         Command::Doctor(_) => return host::doctor(),
         Command::Selftest(arguments) => return host::selftest(arguments),
-        // This arm is unreachable, because the command ends the process itself.
+        // This arm is never reached, because the command ends the process itself.
         Command::Original(_) => return Ok(exit::FAULT),
         Command::Simulate(arguments) => simulate::run(arguments),
         Command::Detect(arguments) => detect::run(arguments),

@@ -9,7 +9,7 @@ use anyhow::{Context, Result, anyhow, bail};
 use fosssim_browser::CourseSuite;
 use std::borrow::Cow;
 
-/// The WebAssembly module that was compiled into the program (build.rs).
+/// The WebAssembly module that the build included into the program (build.rs).
 #[cfg(has_module)]
 const MODULE: Option<&[u8]> = Some(include_bytes!(env!("FOSSSIM_MODULE_FILE")));
 #[cfg(not(has_module))]
@@ -18,7 +18,7 @@ const MODULE: Option<&[u8]> = None;
 /// The maximum size of a module, in bytes.
 const MAX_MODULE_BYTES: u64 = 64 << 20;
 
-/// The first bytes of every WebAssembly module.
+/// The first bytes that every WebAssembly module has.
 const MODULE_MAGIC: &[u8] = b"\0asm";
 
 pub(super) fn run(arguments: &PageArguments) -> Result<()> {
@@ -43,7 +43,7 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
     target.finish_and_tell(fosssim_browser::page(&module, course.as_ref()).as_bytes(), true)
 }
 
-/// Returns the part of a suite that the page's readers may see.
+/// Returns the part of a suite that the readers of the page may see.
 fn course_part(name: &str, reader: Audience) -> Result<CourseSuite> {
     let plan = plan::find(name)?;
     CourseSuite::for_plan(&plan, reader).map_err(|why| anyhow!("the suite {name}: {why}"))

@@ -1,4 +1,4 @@
-//! Pictures of judged traces, and the HTML pages with them.
+//! The pictures of judged traces, and the HTML pages that contain them.
 use super::ending::file_name;
 use crate::{
     cli::output,
@@ -23,22 +23,23 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The maximum number of values that are kept of a graded scene's motion, because several scenes are graded in
-/// parallel. The largest course scene has 70,444.
+/// The maximum number of values of a scene's motion that are kept. Several scenes are graded in parallel, so it is
+/// limited. The largest course scene has 70,444 values.
 const MAX_MOTION_VALUES: usize = 1 << 19;
 
-/// The cards of a grading, and the folder for its pages.
+/// The cards of a grading, and the folder in which its pages are written.
 pub(super) struct Pages {
     cards: Place,
-    /// The folder for pages, if there is one.
+    /// The folder for pages; `None` if none are written.
     folder: Option<PathBuf>,
-    /// Whether pages for students are made, too.
+    /// Whether pages for students are written as well.
     for_students: bool,
     _temporary: Option<tempfile::TempDir>,
 }
 
 impl Pages {
-    /// Creates pages in the folder for results. Without such a folder, cards exist only during the grading.
+    /// Creates the value for pages in the folder for results. Without such a folder, cards are kept only during the
+    /// grading.
     pub(super) fn new(folder: Option<&Path>, for_students: bool) -> Result<Self> {
         let (cards, temporary) = match folder {
             Some(folder) => (Place::new(folder, "cards"), None),
@@ -51,7 +52,7 @@ impl Pages {
         Ok(Self { cards, folder: folder.map(Path::to_owned), for_students, _temporary: temporary })
     }
 
-    /// Returns cards that `draw_card` draws and this folder stores.
+    /// Returns a storage of cards that uses this folder. `draw` draws each card.
     pub(super) fn drawing<'a>(&'a self, draw: &'a Draw<'a>) -> Cards<'a> {
         Cards { folder: &self.cards, draw, for_students: self.for_students }
     }
@@ -60,28 +61,28 @@ impl Pages {
     pub(super) fn forget(&self) {
         let is_card = |name: &OsString| Path::new(name).extension().is_some_and(|extension| extension == "zst");
         for name in self.cards.names().unwrap_or_default().iter().filter(|name| is_card(name)) {
-            // If a card can't be removed, it only takes space.
+            // If a card can't be removed, it only uses space.
             drop(self.cards.join(name).remove());
         }
     }
 
-    /// Returns the stored card with a name.
+    /// Returns the stored card of this name, if there is one.
     pub(super) fn card(&self, name: Option<&str>) -> Option<Card> {
         Card::from_stored(&cards::read(&self.cards, name?)?)
     }
 
-    /// Stores a card; returns its name. If a card can't be stored, only the picture is missing.
+    /// Stores a card, and returns its name. If it can't be stored, only the picture is missing.
     pub(super) fn keep(&self, card: Option<Card>) -> Option<String> {
         cards::store(&self.cards, &card?.to_stored()).ok()
     }
 
-    /// Returns the page of one submission.
+    /// Renders the page of one submission.
     pub(super) fn render_one(&self, grade: &Grade, class: Option<&str>, reader: Audience) -> String {
         GradePage { grade, card: &|name| self.card(name), class, reader }.html()
     }
 
-    /// Writes the pages for staff into the folder for results, and next to them those for students: always for a class,
-    /// on request for a single submission. Returns the page to begin with.
+    /// Writes the pages for staff into the folder for results. The pages for students are written next to them, always
+    /// for a class, and for a single submission if requested. Returns the page that a reader should open first.
     pub(super) fn write(
         &self,
         grades: &[Grade],
@@ -112,13 +113,13 @@ impl Pages {
     }
 }
 
-/// The sentence above the card of a trace that was judged against a recording.
+/// The sentence above the card of a trace that was compared with a recording.
 const NOTE: &str = "The verdict compares with the recording, where nearly everything after the first wrong step \
                         differs. The steps below are judged from the trace's own state before each step, to show \
                         which ones are wrong by themselves, and which only follow from others.";
 
-/// Draws the card of a graded scene. If the trace was judged against a recording, each step is judged again from the
-/// trace's own state.
+/// Draws the card of a graded scene. If the trace was compared with a recording, each step is judged again for the
+/// card, from the trace's own state.
 pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<String> {
     if judged.hints == Hints::None {
         return None;
@@ -128,13 +129,13 @@ pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<Stri
             let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
             examine(judged.scene, judged.trace, KeptPart::Nothing, &options, &mut ())
         });
-        // A failure of drawing must not cost points.
+        // A failure while drawing must not cost points.
         let Ok(ExaminedTrace { outcome, rulings, .. }) = again else { return None };
         let own = JudgedTrace { outcome: &outcome, rulings: &rulings, rules: Rules::Fair, ..*judged };
         return draw_card(&own, false)
             .map(|kept| Card::from_stored(&kept).map_or(kept, |card| card.with_remark(NOTE).to_stored()));
     }
-    // A failure of drawing must not cost points.
+    // A failure while drawing must not cost points.
     let card = catch_panic(|| card(judged, None, 3)).unwrap_or_else(|fault| {
         Some(Card::from_words(&format!("The pictures of this scene could not be made: {fault}; please report this.")))
     });
@@ -142,8 +143,8 @@ pub(super) fn draw_card(judged: &JudgedTrace<'_>, recorded: bool) -> Option<Stri
     card.map(|card| if judged.is_cut { card.with_remark(cut) } else { card }.to_stored())
 }
 
-/// Returns the card of a judged trace. `trace_name` is the trace's name for the reader, and `depth` is the level of the
-/// heading above.
+/// Draws the card of a judged trace. `trace_name` is the name by which the reader can use the trace, and `depth` is the
+/// level of the heading above the card.
 pub(super) fn card(judged: &JudgedTrace<'_>, trace_name: Option<&str>, depth: usize) -> Option<Card> {
     let JudgedTrace { scene, name, trace, is_cut, outcome, rulings, explanations, rules, hints } = *judged;
     let (fair, focus) = (outcome.fair.is_some(), Focus::from_outcome(outcome));

@@ -1,4 +1,4 @@
-//! Runs a program on many small scenes, and finds its faults on each scene and its likely mistakes.
+//! Runs a program on many small scenes, and finds its faults in each scene and its likely mistakes.
 use super::{host::backend, pages};
 use crate::{
     assignments::{Assignment, Definition},
@@ -37,24 +37,24 @@ use std::{
     time::Duration,
 };
 
-/// The limits of processor time and wall time on scenes that take a right program some milliseconds.
+/// The limits of processor time and wall time on scenes for which a right program needs some milliseconds.
 const TIME_LIMITS: [Duration; 2] = [Duration::from_secs(4), Duration::from_secs(10)];
 
-/// The maximum number of runs that end at a limit. After that, no further scenes are run.
+/// The maximum number of runs that are ended at a limit. After that many, no further scenes are run.
 const MAX_STOPPED: usize = 4;
 
-/// The hints of cards, and whether pictures are drawn.
+/// The level of detail on cards, and whether pictures are drawn.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Drawing {
     pub(super) hints: Hints,
     pub(super) has_pictures: bool,
 }
 
-/// A program to run, with everything that its runs need.
+/// A program that is to be run, and everything that its runs need.
 pub(super) struct ProgramUnderTest {
     pub(super) program: PathBuf,
     pub(super) assignment: Assignment,
-    /// The name of the suite, as commands accept it.
+    /// The name of the suite in the form that commands accept.
     pub(super) suite: String,
     pub(super) cancellation: Arc<Cancellation>,
     plan: Plan,
@@ -63,19 +63,19 @@ pub(super) struct ProgramUnderTest {
     nowhere: Place,
 }
 
-/// A program's runs, and the report on them.
+/// A program's behavior on the scenes, and the report about it.
 pub(super) struct ExaminedProgram {
     pub(super) diagnosis: Diagnosis,
-    /// The cards of the cases, in order.
+    /// The cards of the cases, in the order of the cases.
     pub(super) cards: Vec<Option<Card>>,
-    /// The scenes of the cases, in order.
+    /// The scenes of the cases, in the order of the cases.
     pub(super) tasks: Vec<SceneTask>,
-    /// The ends of the program on the cases, each with the number of complete steps.
+    /// The way in which the program ended in each case, and the number of complete steps.
     pub(super) ends: Vec<(RunEnd, u32)>,
 }
 
 impl ProgramUnderTest {
-    /// Prepares a program for running. Without a suite, its milestone is inferred.
+    /// Prepares a program for runs. If no suite is named, the program's milestone is inferred.
     pub(super) fn new(program: &Path, suite: Option<&str>, unsafe_no_sandbox: bool) -> Result<Self> {
         let mut ready = Self {
             program: make_absolute(program),
@@ -97,7 +97,7 @@ impl ProgramUnderTest {
         Ok(ready)
     }
 
-    /// Returns a runner with limits.
+    /// Returns a runner that enforces these limits.
     pub(super) fn runner<'a>(&'a self, limits: &'a RunLimits) -> Runner<'a> {
         Runner {
             folders: &self.folders,
@@ -116,35 +116,36 @@ impl ProgramUnderTest {
         }
     }
 
-    /// Returns the suite's limits, or shorter ones for scenes that take a right program some milliseconds.
+    /// Returns the limits of the suite. Times are shortened, because a right program needs only some milliseconds for
+    /// the scenes.
     pub(super) fn limits(&self) -> RunLimits {
         let limits = self.plan.limits;
         RunLimits { cpu: limits.cpu.min(TIME_LIMITS[0]), wall: limits.wall.min(TIME_LIMITS[1]), ..limits }
     }
 
-    /// Returns the scenes to run: the milestone's probe scenes, the suite's scenes if they show more, and the named
-    /// ones.
+    /// Returns the scenes on which the program is run: the probe scenes of the milestone, the suite's scenes if they
+    /// show more, and the scenes that the user named.
     pub(super) fn tasks(&self, scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
         let mut tasks = Vec::new();
         for (name, scene) in diagnose::probe_scenes(self.assignment) {
             let xml = scene::write(&scene).into_bytes();
             tasks.push(SceneTask { name: format!("probe {name}"), xml, scene, recording: None });
         }
-        // The default milestone's probe scenes show every term of every formula.
+        // The probe scenes of the default milestone show every term of every formula.
         tasks.extend(self.suite_tasks().into_iter().filter(|_| self.assignment != Assignment::DEFAULT));
         tasks.extend(named_tasks(scenes)?);
         if tasks.is_empty() { Err(anyhow::anyhow!("no scene to run")).context("explain --program") } else { Ok(tasks) }
     }
 
-    /// Returns the scenes of the suite.
+    /// Returns the scenes of the program's suite.
     pub(super) fn suite_tasks(&self) -> Vec<SceneTask> {
         self.plan.scenes().cloned().collect()
     }
 
-    /// Runs the program on scenes; `None` if that was interrupted.
+    /// Runs the program on scenes; `None` if the user interrupted it.
     pub(super) fn examine(&self, mut tasks: Vec<SceneTask>, drawing: Drawing) -> Result<Option<ExaminedProgram>> {
         let long = self.limits();
-        // The shorter limits that apply after a run has ended at a limit.
+        // After a run has ended at a limit, these shorter limits apply.
         let short = shorten_limits(&long);
         let (mut cases, mut cards, mut ends, mut stopped) = (Vec::new(), Vec::new(), Vec::new(), 0);
         let bar = console::Bar::for_runs(tasks.len() as u64);
@@ -196,7 +197,7 @@ impl ProgramUnderTest {
     }
 }
 
-/// Judges a trace by the fair rules, and explains it if they reject it; for a page it is also drawn.
+/// Judges a trace by the fair rules. If they reject it, it is also explained, and drawn if a page was requested.
 pub(super) fn case(
     (name, trace): (String, String),
     has_trace: bool,
@@ -209,11 +210,11 @@ pub(super) fn case(
     let options = Options { uses_fair_rules: true, ..Options::default() };
     let examined = examine(scene, bytes, KeptPart::All, &options, &mut ());
     let outcome = &examined.outcome;
-    // If the program did not end well, its end explains more than the end of its trace.
+    // If the program did not end well, the way in which it ended explains more than the end of its trace.
     let note = note.or_else(|| outcome.stop.as_ref().map(|stop| describe_stop(stop, outcome)));
     let fair = outcome.fair.clone().unwrap_or_default();
     let accepted = fair.verdict == FairVerdict::Accepted && note.is_none();
-    // A run that stops early, and is right so far, needs no explanation.
+    // If a run stops early but is right so far, no explanation is needed.
     let is_wrong = outcome.stop.is_none() || fair.findings.first_divergence.is_some();
     let is_explained = fair.verdict != FairVerdict::Accepted && is_wrong && hints.explains();
     let explanations = if is_explained { examined.explain() } else { Vec::new() };
@@ -237,7 +238,7 @@ pub(super) fn case(
     (Case { scene: name, trace, accepted, note, first, explanations }, card.flatten(), outcome.steps_judged)
 }
 
-/// Writes a report to a file, or to standard output.
+/// Writes a report to standard output, or to a file.
 pub(super) fn report(
     diagnosis: &Diagnosis,
     cards: &[Option<Card>],
@@ -257,7 +258,7 @@ pub(super) fn report(
     }
 }
 
-/// Reads the scenes that are named.
+/// Reads the scenes that the user named.
 pub(super) fn named_tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
     let read = |path: &PathBuf| {
         let scene = input::scene(path)?;
@@ -267,8 +268,8 @@ pub(super) fn named_tasks(scenes: &[PathBuf]) -> Result<Vec<SceneTask>> {
     scenes.iter().map(read).collect()
 }
 
-/// Returns the absolute path of a program, without `..`, which may mean a different folder in a sandbox. The last name
-/// is kept, even that of a link, because programs may depend on it.
+/// Returns the absolute path of a program. It does not contain `..`, which may lead to another folder in a sandbox. The
+/// last name in the path is kept even if it is a link, because programs may depend on their names.
 fn make_absolute(program: &Path) -> PathBuf {
     let folder = program.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
     match (folder.canonicalize(), program.file_name()) {
@@ -277,7 +278,7 @@ fn make_absolute(program: &Path) -> PathBuf {
     }
 }
 
-/// Returns a note about the end of a program, unless it ended well.
+/// Describes how a program ended; `None` if it ended well.
 pub(super) fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<String> {
     match (ended, is_traceless) {
         (RunEnd::Exited(0), false) => None,
@@ -286,7 +287,7 @@ pub(super) fn note(ended: &RunEnd, is_traceless: bool, stderr: &[u8]) -> Option<
     }
 }
 
-/// Infers the milestone of a program, and reports it if it is not the default.
+/// Infers the milestone of a program. If it is not the default, the milestone is printed.
 fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
     let found = milestone::infer_milestone(runner, program).map_err(anyhow::Error::msg)?.unwrap_or(Assignment::DEFAULT);
     if found != Assignment::DEFAULT {
@@ -296,15 +297,15 @@ fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Assignment> {
     Ok(found)
 }
 
-/// Returns the last line of a program's standard error; empty without one.
+/// Returns the last line that a program wrote to standard error; empty if it wrote nothing.
 fn last_line(stderr: &[u8]) -> String {
     let text = clean_output(&String::from_utf8_lossy(stderr));
     let last = text.lines().rev().map(str::trim).find(|line| !line.is_empty());
     last.map(|line| format!("; its standard error ends with: {}", one_line(line))).unwrap_or_default()
 }
 
-/// Returns the common properties of the failing scenes, from the end of the program in each and the number of complete
-/// steps.
+/// Finds what the failing scenes have in common. `ends` has for each scene how the program ended, and the number of
+/// complete steps.
 fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<LocatedFailure> {
     let ends: Vec<_> = ends.iter().map(|(ended, steps)| (FailureKind::from_end(ended), *steps)).collect();
     if ends.iter().all(|(failing, _)| failing.is_none()) {
@@ -317,7 +318,7 @@ fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<Locate
     locate(&tried.collect::<Vec<_>>())
 }
 
-/// Returns the likely mistakes of all wrong traces together, and the keys of those that are ruled out.
+/// Returns the likely mistakes that explain all wrong traces together, and the keys of those that right traces refute.
 fn find_likely(whose: Assignment, cases: &[Case], tasks: &[SceneTask]) -> (Vec<Explanation>, Vec<String>) {
     let (right, wrong): (Vec<_>, Vec<_>) = cases.iter().zip(tasks).partition(|(case, _)| case.accepted);
     let wrong: Vec<(&Scene, &[Explanation])> =

@@ -1,4 +1,4 @@
-//! The command `record`, which records a folder of scenes.
+//! The command `record`, which records the reference's traces for a folder of scenes.
 use crate::{
     cli::{arguments::RecordArguments, console, exit, output},
     files::{self, FileError, Place},
@@ -17,7 +17,7 @@ use std::{io, path::Path};
 const MAX_RECORDING_BYTES: u64 = 1 << 30;
 
 pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
-    // A folder that the user names is used even if it does not exist yet.
+    // A folder that the user names is used, even if it does not exist yet.
     let defaults = arguments.assets == Path::new("assets") && arguments.references == Path::new("references");
     let embedded = arguments.check && defaults && !arguments.assets.is_dir();
     let scenes = if embedded { list_bundled() } else { find_scenes(&arguments.assets)? };
@@ -31,15 +31,15 @@ pub(super) fn run(arguments: &RecordArguments) -> Result<u8> {
     check(&recordings, &EarlierRecordings((!embedded).then_some(&arguments.references)))
 }
 
-/// A scene to record.
+/// A scene that is to be recorded.
 struct Input {
     name: String,
-    /// The path of the recording in the folder of recordings, without the extension.
+    /// The path of the recording in the folder of recordings, without the ending.
     stem: String,
     xml: Vec<u8>,
 }
 
-/// Returns the embedded scenes, whose recordings are requested by name.
+/// Returns the embedded scenes. Their recordings are found by name.
 fn list_bundled() -> Vec<Input> {
     let input =
         |name: &str| Some(Input { name: name.to_owned(), stem: name.to_owned(), xml: library::scene(name)?.into() });
@@ -69,7 +69,7 @@ fn find_scenes(folder: &Path) -> Result<Vec<Input>> {
     files.into_iter().map(read).collect()
 }
 
-/// The recordings before this run: those in a folder, or the embedded ones.
+/// The recordings that existed before: those in a folder, or the embedded ones.
 struct EarlierRecordings<'a>(Option<&'a Path>);
 
 impl EarlierRecordings<'_> {
@@ -82,16 +82,16 @@ impl EarlierRecordings<'_> {
         }
     }
 
-    /// Returns the paths of recordings, without their extension.
+    /// Returns the paths of the recordings, without their endings.
     fn stems(&self) -> Vec<String> {
         let Some(folder) = self.0 else { return library::recordings().map(str::to_owned).collect() };
-        // A missing folder has no recordings.
+        // If the folder does not exist, it has no recordings.
         let files = scene_files::list(folder, ".bin.zst").unwrap_or_default();
         files.into_iter().map(|file| file.stem).collect()
     }
 }
 
-/// Compares with the earlier recordings, byte for byte.
+/// Compares the new recordings with the earlier ones, byte for byte.
 fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Result<u8> {
     let mut text = String::new();
     for (stem, recording) in recordings {
@@ -118,7 +118,7 @@ fn check(recordings: &[(String, Recording)], old: &EarlierRecordings<'_>) -> Res
     Ok(exit::NOT_ACCEPTED)
 }
 
-/// Writes all files, each atomically. Unchanged recordings are not written, and those without a scene are removed.
+/// Writes all files, each at once. Unchanged recordings are not written. Recordings that have no scene are removed.
 fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
     let mut bytes = 0;
     for (stem, recording) in recordings {
@@ -128,7 +128,7 @@ fn write(recordings: &[(String, Recording)], folder: &Path) -> Result<u8> {
         replace(&place("bin.zst"), &packed)?;
         replace(&place("steps"), recording.digests.as_bytes())?;
     }
-    // All files of the folder belong to scenes, so other recordings are outdated.
+    // All files in the folder belong to scenes, so other recordings are outdated.
     for stem in EarlierRecordings(Some(folder)).stems() {
         if !recordings.iter().any(|(known, _)| *known == stem) {
             for extension in ["bin.zst", "steps"] {

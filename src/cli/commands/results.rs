@@ -1,4 +1,4 @@
-//! The outputs of a grading: requested reports, and the tables and pages in a folder.
+//! Writes the results of a grading: the requested reports, and tables and pages in a folder.
 use super::pages::Pages;
 use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
@@ -15,14 +15,14 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The maximum width of lines in class.txt, in columns.
+/// The maximum width of the lines in class.txt, in columns.
 const CLASS_WIDTH: usize = 100;
 
-/// A requested report.
+/// A report that the user requested.
 pub(super) struct Report {
     pub(super) format: Format,
     pub(super) name: String,
-    /// The file for the report; `None` for standard output.
+    /// The file for the report; `None` means standard output.
     pub(super) file: Option<PathBuf>,
 }
 
@@ -30,7 +30,7 @@ pub(super) struct Report {
 ///
 /// # Errors
 ///
-/// Fails if a format is unknown, or two formats have the same destination.
+/// Fails if a format is unknown, or if two reports have the same destination.
 pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
     let mut reports = Vec::new();
     for word in words {
@@ -58,11 +58,11 @@ pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
     Ok(reports)
 }
 
-/// Rejects a format for one submission if there are several.
+/// Rejects formats that hold only one submission if there are several submissions.
 ///
 /// # Errors
 ///
-/// Fails if such a format was requested; `of_html` is added to the message for HTML.
+/// Fails if such a format was requested. For HTML, `of_html` is added to the message.
 pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &str) -> Result<()> {
     match reports.iter().find(|report| submissions > 1 && !report.format.takes_several()) {
         Some(Report { format, name, .. }) => {
@@ -73,7 +73,7 @@ pub(super) fn refuse_several(reports: &[Report], submissions: usize, of_html: &s
     }
 }
 
-/// Returns the pages of a grading, if they are written to the folder for results or in a report.
+/// Returns the pages of a grading; `None` if neither the folder for results nor a report contains pages.
 ///
 /// # Errors
 ///
@@ -87,28 +87,29 @@ pub(super) fn wanted_pages(
     let is_asked = arguments.staff_page.is_some()
         || arguments.published_page.is_some()
         || reports.iter().any(|report| report.format == Format::Html);
-    // A class's pages for students may be requested later, without grading it again, so they are always prepared.
+    // Pages of a class for students may be requested later, and the class is not graded again for them. Therefore they
+    // are always prepared.
     let for_students = arguments.reader == Audience::Student || is_class;
     (folder.is_some() || is_asked).then(|| Pages::new(folder, for_students)).transpose()
 }
 
-/// The results of a grading, and their destinations.
+/// Writes the results of a grading to these places.
 pub(super) struct Results<'a> {
-    /// The folder for results, if there is one.
+    /// The folder for results; `None` if there is none.
     pub(super) folder: Option<&'a Path>,
     pub(super) pages: Option<&'a Pages>,
-    /// The reader of the reports. Files in the folder are for staff, except for pages in students/.
+    /// The reader of the reports. The files in the folder are for staff, except for the pages in students/.
     pub(super) reader: Audience,
-    /// Whether the platform that requests the report hides the hidden groups itself.
+    /// Whether the platform that requests the report itself hides the hidden groups from students.
     pub(super) platform_hides: bool,
-    /// The file for a page that shows staff everything, if requested.
+    /// The file for a page that shows everything to staff; `None` if it was not requested.
     pub(super) staff_page: Option<&'a Path>,
-    /// The file for the page that students see after hidden groups are published, if requested.
+    /// The file for the page that students see after the hidden groups are published; `None` if it was not requested.
     pub(super) published_page: Option<&'a Path>,
-    /// Whether scenes of the suite were left out on request.
+    /// Whether the user left out scenes of the suite.
     pub(super) is_part: bool,
     pub(super) grades: &'a [Grade],
-    /// The entries that are not submissions.
+    /// The skipped entries, which are not submissions.
     pub(super) passed_over: &'a [SkippedEntry],
 }
 
@@ -117,10 +118,10 @@ impl Results<'_> {
     ///
     /// # Errors
     ///
-    /// Fails with the first error. The other files are still written.
+    /// Fails if a file can't be written. The other files are still written, and the first error is returned.
     pub(super) fn write(&self, reports: &[Report], text: impl Fn(&[Grade]) -> String) -> Result<()> {
         let (grades, passed_over) = (self.grades, self.passed_over);
-        // An error with one file must not prevent the other files.
+        // If one file cannot be written, the other files are still written.
         let mut wrong = None;
         let mut keep = |result: Result<()>| drop(result.map_err(|error| wrong.get_or_insert(error).to_string()));
         if self.is_part && self.folder.is_some() {
@@ -139,7 +140,7 @@ impl Results<'_> {
                 ("grades.jsonl", &lines),
                 ("class.txt", &class),
             ];
-            // Write with all cores, because this takes long for a large class.
+            // All cores are used, because this takes long for a large class.
             let written = tables.par_iter().take(if grades.len() > 1 { 4 } else { 3 });
             let write_tables = || written.map(|(name, text)| write_in(folder, name, text)).collect::<Vec<_>>();
             let write_pages = |pages: &Pages| make("the pages", || pages.write(grades, passed_over, self.reader));
@@ -185,7 +186,7 @@ impl Results<'_> {
 }
 
 impl<'a> Results<'a> {
-    /// Returns the grades, reduced to what this format shows the reader.
+    /// Returns the part of the grades that this format shows to the reader.
     fn visible_grades(&self, format: Format) -> Cow<'a, [Grade]> {
         let told = |grade: &'a Grade| format.visible_part(grade, self.reader, self.platform_hides);
         if self.grades.iter().all(|grade| matches!(told(grade), Cow::Borrowed(_))) {
@@ -195,7 +196,7 @@ impl<'a> Results<'a> {
     }
 }
 
-/// Returns whether a file is the one to which the steps of a GitHub job add their summaries.
+/// Returns whether a file is the summary of a GitHub job, to which the steps of the job append.
 fn is_step_summary(file: &Path) -> bool {
     std::env::var_os("GITHUB_STEP_SUMMARY").is_some_and(|summary| Path::new(&summary) == file)
 }
@@ -221,7 +222,7 @@ fn write_in(folder: &Path, name: &str, text: impl FnOnce() -> String) -> Result<
     output::write_at(&place, text.as_bytes())
 }
 
-/// Returns the result of `text`, or a panic in it as an error.
+/// Calls `text` and returns its result. If it panics, returns an error.
 fn make<T>(name: &str, text: impl FnOnce() -> T) -> Result<T> {
     catch_panic(text).map_err(|fault| anyhow::anyhow!("{name} could not be made: {fault}; please report this"))
 }

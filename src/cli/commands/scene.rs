@@ -20,7 +20,7 @@ pub(super) fn run(command: &SceneCommand) -> Result<()> {
     }
 }
 
-/// Lists the scenes that match patterns, or all scenes if there are no patterns.
+/// Prints the names of the scenes that match the patterns. Without patterns, all scenes are listed.
 fn print_list(patterns: &[String], quiet: bool) -> Result<()> {
     let names = matching_names(patterns)?;
     if quiet {
@@ -42,7 +42,7 @@ fn show(name: &str) -> Result<()> {
     if let Some(xml) = library::scene(name) {
         return console::print(xml);
     }
-    // A name without its group is sufficient if it is unique.
+    // A name without its group is accepted if it is unique.
     let same: Vec<_> = library::all_names().filter(|known| known.rsplit('/').next() == Some(name)).collect();
     match (same[..].first().and_then(|only| library::scene(only)), same.len()) {
         (Some(xml), 1) => console::print(xml),
@@ -77,7 +77,7 @@ fn export(arguments: &SceneExportArguments) -> Result<()> {
     Ok(())
 }
 
-/// Returns whether a file has the given content; `None` if the file does not exist.
+/// Returns whether a file has exactly this content; `None` if there is no such file.
 fn has_contents(place: &Place, bytes: &[u8]) -> Option<bool> {
     match place.read(MAX_SCENE_BYTES as u64) {
         Ok(old) => Some(old == bytes),

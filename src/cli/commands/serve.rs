@@ -1,4 +1,5 @@
-//! The command `serve`, which becomes the program `fosssim-server`, so that this program contains no server.
+//! The command `serve`, which starts the program `fosssim-server` in place of this one. This program contains no
+//! server.
 use crate::cli::arguments::ServeArguments;
 use anyhow::{Context, Result, bail};
 use std::{os::unix::process::CommandExt, process::Command};

@@ -1,5 +1,5 @@
-//! A shard: a part of a grading that is distributed among machines, with its own submissions, and its results for
-//! `merge`.
+//! A shard is a part of a grading that runs on several machines. It grades its own submissions, and stores the results
+//! for `merge`.
 use crate::{
     cli::{
         arguments::grade::{GradeArguments as Arguments, MAX_SHARDS, ShardArgument},
@@ -15,27 +15,28 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The name of the file that marks a shard as complete, and contains its exit code.
+/// The name of the file that shows that a shard is complete. It contains the results of the shard.
 const SHARD_FILE: &str = "shard.json";
 
-/// The maximum size of the file, in bytes: twice that of ten thousand submissions of 85 scenes that are all wrong.
+/// The maximum size of the file, in bytes. It is twice the size for ten thousand submissions of 85 scenes that are all
+/// wrong.
 const MAX_BYTES: u64 = 4 << 30;
 
-/// The version of the file's format.
+/// The version of the form of this file.
 const SCHEMA: u32 = 1;
 
-/// The inputs that all shards of one grading share.
+/// The inputs that must be the same for all shards of a grading.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct SharedInputs {
     schema: u32,
-    /// The grader's version.
+    /// The version of the grader.
     version: String,
-    /// The digest of the grader, because two builds of one version may judge differently.
+    /// The digest of the grader's program, because two builds of the same version may judge differently.
     grader: String,
-    /// The number of shards.
+    /// The number of all shards.
     #[serde(rename = "of")]
     pub(super) total: usize,
-    /// The suite's name.
+    /// The name of the suite.
     pub(super) suite: String,
     /// The digest of everything that results depend on, except for the programs.
     plan: String,
@@ -44,7 +45,7 @@ pub(super) struct SharedInputs {
 }
 
 impl SharedInputs {
-    /// Returns the difference of two gradings, as a sentence.
+    /// Describes the first difference between the inputs of two gradings; `None` if they are equal.
     pub(super) fn difference(&self, other: &Self) -> Option<&'static str> {
         [
             (self.schema == other.schema && self.version == other.version, "the grader's version differs"),
@@ -61,7 +62,7 @@ impl SharedInputs {
     }
 }
 
-/// The result of a shard.
+/// The results of a shard.
 #[derive(Debug, Serialize, Deserialize)]
 pub(super) struct Part {
     pub(super) common: SharedInputs,
@@ -69,13 +70,13 @@ pub(super) struct Part {
     pub(super) number: usize,
     /// The grades of the shard's submissions, in order.
     pub(super) grades: Vec<Grade>,
-    /// The entries of the class that are not submissions.
+    /// The skipped entries of the class, which are not submissions.
     #[serde(default)]
     pub(super) passed_over: Vec<SkippedEntry>,
 }
 
 impl Part {
-    /// Reads a shard's results from a folder; `None` if there are none, or the shard is not complete.
+    /// Reads the results of a shard from a folder; `None` if the folder contains none, or if the shard is not complete.
     ///
     /// # Errors
     ///
@@ -87,14 +88,14 @@ impl Part {
             Err(FileError::Missing { .. }) => return Ok(None),
             Err(error) => return Err(error).with_context(|| format!("cannot read {}", file.display())),
         };
-        // The file is read as a stream, so that a long file that is not JSON is rejected at its first byte.
+        // The file is parsed while it is read. If a long file is not JSON, it is rejected at its first byte.
         let part: Self = serde_json::from_reader(BufReader::new(opened))
             .with_context(|| format!("{} is damaged, or of another version; grade this shard again", file.display()))?;
         part.check().with_context(|| format!("{} has invalid content; grade this shard again", file.display()))?;
         Ok(Some(part))
     }
 
-    /// Checks that the shard contains the grades of its submissions, and that their points follow from the verdicts.
+    /// Checks that the shard has grades for its own submissions, and that the points follow from the verdicts.
     fn check(&self) -> Result<()> {
         let common = &self.common;
         if common.schema != SCHEMA {
@@ -116,24 +117,24 @@ impl Part {
     }
 }
 
-/// Returns a shard's entries of a list, which are every N-th one. Neighbors in the list may have similar slow programs,
-/// so they are put into different shards.
+/// Returns the entries of a list that belong to a shard. Each shard gets every N-th entry, because neighbors in the
+/// list may have similar slow programs.
 fn select_own<T>(number: usize, of: usize, all: &[T]) -> impl Iterator<Item = &T> {
     all.iter().skip(number.wrapping_sub(1)).step_by(of.max(1))
 }
 
-/// A grading of a shard.
+/// A grading that grades only one shard.
 pub(super) struct Sharding {
     shard: ShardArgument,
     common: SharedInputs,
-    /// The folder of the shard.
+    /// The folder in which the shard's results are stored.
     pub(super) folder: PathBuf,
-    /// The shard's file, as a path without links.
+    /// The path of the shard's file. No link on it is followed.
     begun: Place,
 }
 
 impl Sharding {
-    /// Creates the shard of a grading of all submissions.
+    /// Creates the shard, from all submissions of the grading.
     pub(super) fn new(
         shard: ShardArgument,
         plan: &Plan,
@@ -154,12 +155,13 @@ impl Sharding {
         Self { shard, common, folder: begun.path(), begun }
     }
 
-    /// Returns the shard's submissions.
+    /// Returns the submissions that belong to the shard.
     pub(super) fn part(&self, all: Vec<Submission>) -> Vec<Submission> {
         select_own(self.shard.number, self.shard.total, &all).cloned().collect()
     }
 
-    /// Creates the shard's folder, and removes the mark of an earlier grading's end.
+    /// Creates the folder of the shard. If an earlier grading left a file there that shows its end, the file is
+    /// removed.
     ///
     /// # Errors
     ///
@@ -170,11 +172,11 @@ impl Sharding {
         place.remove().with_context(|| format!("cannot remove {}", place.path().display()))
     }
 
-    /// Writes the grades for `merge`.
+    /// Writes the grades into the shard's file, which `merge` reads.
     ///
     /// # Errors
     ///
-    /// Fails if they can't be written.
+    /// Fails if the file can't be written.
     pub(super) fn end(&self, grades: &[Grade], passed_over: &[SkippedEntry]) -> Result<()> {
         let (common, number, passed_over) = (self.common.clone(), self.shard.number, passed_over.to_vec());
         let part = Part { common, number, grades: grades.to_vec(), passed_over };

@@ -1,4 +1,4 @@
-//! Completion scripts and the manual page.
+//! Prints completion scripts and manual pages.
 use crate::{
     cli::{
         arguments::{Arguments, CompletionsArguments, ManArguments},
@@ -16,13 +16,13 @@ use clap_complete::{
 };
 use std::ffi::OsStr;
 
-/// The name of the installed program.
+/// The name under which this program is installed.
 const PROGRAM_NAME: &str = "fosssim-oracle";
 
-/// The environment variable with which a shell's script requests completions.
+/// The environment variable by which a completion script asks for completions.
 const COMPLETION_VARIABLE: &str = "FOSSSIM_COMPLETE";
 
-/// Parts of the script for bash, which splits `asset:Group/name` into three words, with replacements that join them.
+/// Replacements in the script for bash. Bash splits `asset:Group/name` into three words, and the new parts join them.
 const BASH_REPLACEMENTS: [(&str, &str); 2] = [
     (
         r#"    local words=("${COMP_WORDS[@]}")
@@ -49,7 +49,7 @@ const BASH_REPLACEMENTS: [(&str, &str); 2] = [
     ),
 ];
 
-/// Answers a shell that requests completions, and ends the program after that.
+/// Prints completions and ends the program, if a completion script asks for them.
 pub(in crate::cli) fn complete_if_asked() {
     CompleteEnv::with_factory(|| with_names(Arguments::command()))
         .var(COMPLETION_VARIABLE)
@@ -57,7 +57,7 @@ pub(in crate::cli) fn complete_if_asked() {
         .complete();
 }
 
-/// Returns a command in which suites, scenes, traces and mistakes are completed by name.
+/// Returns the command line, with completions for the names of suites, scenes, traces and mistakes.
 fn with_names(command: Command) -> Command {
     let completed = command.mut_args(|argument| match argument.get_id().as_str() {
         "suite" => argument.add(ArgValueCompleter::new(|typed: &OsStr| {
@@ -96,7 +96,7 @@ pub(super) fn print_completions(arguments: &CompletionsArguments) -> Result<()> 
 
 pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
     let mut command = Arguments::command().disable_help_subcommand(true);
-    // This sets the full names of the commands.
+    // This sets the full names of the subcommands.
     command.build();
     for name in &arguments.command {
         let Some(found) = command.find_subcommand(name) else {
@@ -110,7 +110,7 @@ pub(super) fn write_manual(arguments: &ManArguments) -> Result<()> {
         command = found.clone();
     }
     let mut page = Vec::new();
-    // The foot of a page contains the version, which clap does not set for subcommands.
+    // The last line of a page contains the version, which clap does not set for subcommands.
     let source = format!("{PROGRAM_NAME} {}", env!("CARGO_PKG_VERSION"));
     clap_mangen::Man::new(command).source(source).manual("Manual of fosssim-oracle").render(&mut page)?;
     let page = String::from_utf8_lossy(&page).replace("\n.SH EXTRA\n", "\n.SH EXAMPLES AND NOTES\n");

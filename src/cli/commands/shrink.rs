@@ -1,4 +1,4 @@
-//! `shrink`: the smallest scene on which a program is still wrong for the same reason.
+//! The command `shrink`, which finds the smallest scene on which a program is still wrong for the same reason.
 use super::probes::{Drawing, ExaminedProgram, ProgramUnderTest, case, named_tasks, note, report};
 use crate::{
     cli::{
@@ -35,8 +35,8 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
     let program = ProgramUnderTest::new(&arguments.program, arguments.suite.as_deref(), arguments.unsafe_no_sandbox)?;
     let (own, suite) = (program.tasks(&[])?, program.suite_tasks());
     let known = if arguments.suite.is_some() { [suite, own] } else { [own, suite] };
-    // A scene of the suite or the milestone is examined together with the others, to find the likely mistakes; a scene
-    // in a file is examined alone.
+    // If the chosen scene belongs to the suite or the milestone, all of these scenes are examined, to find the likely
+    // mistakes. A scene in a file is examined alone.
     let is_chosen = |name: &str| arguments.scene.as_deref().is_none_or(|scene| Path::new(name) == scene);
     let named = known.into_iter().find(|tasks| tasks.iter().any(|task| is_chosen(&task.name)));
     let mut tasks = match (named, &arguments.scene) {
@@ -66,11 +66,12 @@ pub(super) fn run(arguments: &ShrinkArguments) -> Result<u8> {
         examined.diagnosis = Diagnosis { smallest: examined.diagnosis.smallest, ..Diagnosis::default() };
     }
     report(&examined.diagnosis, &examined.cards, arguments.format, None)?;
-    // After an interruption the best scene so far was reported.
+    // If the user interrupts the search, the best scene so far has been reported.
     Ok(if program.cancellation.is_cancelled() { exit::INTERRUPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Adds the smallest scene for each cause, made from chosen scenes, and its card, to a program's report.
+/// Adds to a program's report the smallest scene for each cause, and its card. The scenes are made from those that
+/// `is_chosen` selects.
 pub(super) fn add_smallest(
     program: &ProgramUnderTest,
     examined: &mut ExaminedProgram,
@@ -102,7 +103,7 @@ pub(super) fn add_smallest(
     Ok(())
 }
 
-/// Returns the report on a smallest scene, and its card.
+/// Describes a smallest scene for a report, and draws its card.
 pub(super) fn describe(
     small: &ShrunkScene,
     program: &str,
@@ -113,7 +114,7 @@ pub(super) fn describe(
     let note = FailureKind::from_end(&seen.ended).and_then(|_| note(&seen.ended, seen.trace.is_empty(), &[]));
     let names = ("small.xml".to_owned(), program.to_owned());
     let (case, card, _) = case(names, false, scene, &seen.trace[..], note, drawing);
-    // If the program does not end well but its steps are right, a card would show two equal motions.
+    // If the program does not end well but its steps are right, the card would show two equal motions.
     let card = card.filter(|_| case.note.is_none() || case.first.is_some());
     let Case { trace: program, note, first, explanations, .. } = case;
     let names = [program.as_str(), origin, suite].map(quote);
@@ -146,16 +147,16 @@ pub(super) fn describe(
     (told, card)
 }
 
-/// Returns the cause, with the example of the scene's own explanation.
+/// Returns the explanation of the cause, but with the example from the smallest scene.
 fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
     let named = own.iter().find(|one| is_named_in(cause, std::slice::from_ref(one)));
     match named.or_else(|| own.first()) {
-        // The explanation of pairs counts over the whole run.
+        // The explanation of missed pairs counts them over the whole run.
         Some(own) if matches!(own.about, About::Pairs(_)) && named.is_some() => own.clone(),
         own => {
-            // An unfinished cause lists its empty stages.
+            // If the cause is unwritten stages, the explanation lists these stages.
             let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
-            // Many formulas agree with a single sample of wrong polynomials, so the exact form is omitted.
+            // If there is only one sample, many formulas agree with a wrong polynomial, so the exact form is left out.
             let is_fitted = cause.samples < 2 && matches!(cause.about, About::Polynomials { .. });
             let details = if is_fitted { Vec::new() } else { cause.details.clone() };
             let example = own.and_then(|own| own.example.clone());
@@ -164,7 +165,7 @@ fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
     }
 }
 
-/// Returns the differing values as text, and the first finding.
+/// Returns the values that differ, as text, and the first finding.
 fn list_differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
     let scene = &small.small.scene;
     let mut steps = WrongSteps::new(StepChoice::All);

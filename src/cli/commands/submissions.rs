@@ -1,4 +1,4 @@
-//! The search for the submissions that the arguments of `grade` name.
+//! Finds the submissions that the arguments of `grade` name.
 use crate::{
     cli::{arguments::grade::GradeArguments, console, input},
     files::{Folder, Identity},
@@ -15,56 +15,56 @@ use std::{
     path::{Path, PathBuf},
 };
 
-/// The files that mark a folder as one of results.
+/// The files by which a folder with results is recognized.
 const RESULT_FILES: [&str; 2] = [".lock", "journal.jsonl"];
 
-/// The names of folders in a folder of results.
+/// The names of the subfolders in a folder with results.
 const RESULT_FOLDERS: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 
-/// The reason why a folder of results is not a submission.
+/// The reason why a folder with results is not a submission.
 const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
 
-/// The maximum number of entries of a class's folder.
+/// The maximum number of entries in a class's folder.
 const MAX_ENTRIES: usize = 100_000;
 
-/// The submissions of a command line, and the entries that are not submissions.
+/// The submissions that the command line names, and the skipped entries, which are not submissions.
 pub(super) struct FoundSubmissions {
     pub(super) submissions: Vec<Submission>,
     pub(super) passed_over: Vec<SkippedEntry>,
 }
 
-/// A submission before it gets its name.
+/// A submission, before its name is known.
 struct Entry {
-    /// The path of the submission.
+    /// The path that was named or found.
     path: PathBuf,
-    /// The submission's folder, or its file.
+    /// The folder of the submission; if it has none, its file.
     folder: PathBuf,
-    /// The name of the program in the folder.
+    /// The file name of the program in the folder.
     program: Option<String>,
-    /// Whether the folder belongs only to the submission.
+    /// Whether the folder belongs to this submission alone.
     is_folder: bool,
 }
 
-/// A search for submissions; also collects entries that are not submissions.
+/// A search for submissions. It also collects the skipped entries, which are not submissions.
 pub(super) struct Search<'a> {
     arguments: &'a GradeArguments,
-    /// The build of the suite, if it has one.
+    /// The build that the suite prescribes; `None` if there is no build.
     build: Option<&'a BuildStep>,
-    /// The folder for results.
+    /// The folder for results, which is not searched.
     output: &'a Path,
 }
 
 impl<'a> Search<'a> {
-    /// Creates a search among the arguments.
+    /// Creates a search among the command's arguments.
     pub(super) const fn new(arguments: &'a GradeArguments, build: Option<&'a BuildStep>, output: &'a Path) -> Self {
         Self { arguments, build, output }
     }
 
-    /// Returns the submissions, each with a unique name.
+    /// Returns the submissions, with unique names.
     ///
     /// # Errors
     ///
-    /// Fails if a path is missing, or a folder has no submissions.
+    /// Fails if a path does not exist, or if a folder has no submissions.
     pub(super) fn run(&self) -> Result<FoundSubmissions> {
         let (mut found, mut passed_over) = (Vec::new(), Vec::new());
         for path in &self.arguments.programs {
@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
                 found.push(self.folder(path));
             } else {
                 match self.gather_entries(path, &mut found, &mut passed_over) {
-                    // One empty folder of a class must not stop the others: its grade names what is missing.
+                    // An empty folder in a class must not stop the others. Its grade says what is missing.
                     Err(_) if self.arguments.programs.len() > 1 => found.push(self.folder(path)),
                     other => other?,
                 }
@@ -99,15 +99,15 @@ impl<'a> Search<'a> {
         Ok(FoundSubmissions { submissions, passed_over })
     }
 
-    /// Returns the submission in a folder: its sources if the suite builds them, otherwise the program inside. A
-    /// missing program is the submission's fault, which its grade reports.
+    /// Returns the submission in a folder. If the suite builds submissions, the folder contains sources; otherwise a
+    /// program. If the program is missing, the submission is at fault, and its grade says so.
     fn folder(&self, path: &Path) -> Entry {
         let program = self.build.is_none().then(|| self.arguments.program.clone());
         Entry { path: path.to_owned(), folder: path.to_owned(), program, is_folder: true }
     }
 
-    /// Returns whether a folder is a single submission, because it contains the program or the first file of the
-    /// suite's build.
+    /// Returns whether a folder is a single submission. It then contains the program, or the first file that the
+    /// suite's build needs.
     fn is_one(&self, path: &Path) -> bool {
         let holds = |name: &str| fs::symlink_metadata(path.join(name)).is_ok_and(|data| data.is_file());
         let Some(build) = self.build else { return holds(&self.arguments.program) };
@@ -122,7 +122,7 @@ impl<'a> Search<'a> {
         usual.iter().copied().chain(words).any(holds)
     }
 
-    /// Returns whether a folder is the one for results, or contains those of an earlier grading.
+    /// Returns whether a folder is the one for results, or contains the results of an earlier grading.
     fn is_results(&self, path: &Path) -> bool {
         let same = |one: &Path, other: &Path| {
             one.canonicalize().ok().zip(other.canonicalize().ok()).is_some_and(|(one, other)| one == other)
@@ -130,8 +130,9 @@ impl<'a> Search<'a> {
         same(path, self.output) || RESULT_FILES.iter().all(|name| path.join(name).is_file())
     }
 
-    /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are reported
-    /// and skipped: hidden ones, results of gradings, and links, which could lead to another's submission.
+    /// Adds one submission per entry, in alphabetical order: folders, programs and archives. Other entries are skipped
+    /// and reported. These are hidden entries, results of gradings, and links, which could lead to the submission of
+    /// somebody else.
     fn gather_entries(&self, folder: &Path, found: &mut Vec<Entry>, passed_over: &mut Vec<SkippedEntry>) -> Result<()> {
         let paths = list_entries(folder, MAX_ENTRIES)?;
         let holds_results = self.is_results(folder);
@@ -179,7 +180,7 @@ impl<'a> Search<'a> {
     }
 }
 
-/// Returns the paths of a folder's entries, in alphabetical order.
+/// Returns the paths of the entries in a folder, in alphabetical order.
 fn list_entries(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
     let listing = fs::read_dir(folder).with_context(|| format!("cannot read {}", folder.display()))?;
     let mut paths: Vec<PathBuf> = listing
@@ -194,8 +195,8 @@ fn list_entries(folder: &Path, most: usize) -> Result<Vec<PathBuf>> {
     Ok(paths)
 }
 
-/// Returns the reason why a file in a class's folder is not a submission, if so. Executable files are submissions, and
-/// so are files that begin like programs or archives, because learning platforms lose permissions.
+/// Returns the reason why a file in a class's folder is not a submission; `None` if it is one. Executable files are
+/// submissions. So are files that begin like programs or archives, because learning platforms do not keep permissions.
 fn rejection_reason(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<String> {
     if data.permissions().mode() & 0o111 != 0 {
         return None;
@@ -208,7 +209,7 @@ fn rejection_reason(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<S
         file.take(fosssim_intake::START_BYTES as u64).read_to_end(&mut start).map_err(|error| error.to_string())
     });
     match (read, FileKind::from_start(&start)) {
-        // The grade reports why the file can't be read.
+        // If the file can't be read, its grade says why.
         (Err(_), _) | (_, FileKind::Program | FileKind::Archive(_)) => None,
         (Ok(_), FileKind::Other) => {
             let found = fosssim_intake::describe(&start);
@@ -217,14 +218,15 @@ fn rejection_reason(folder: &Path, path: &Path, data: &fs::Metadata) -> Option<S
     }
 }
 
-/// Returns a program among others. It is opened below the folder, without following links.
+/// Returns a submission that is a single program in a class's folder. It is opened below the folder, and no link is
+/// followed.
 fn program_entry(folder: &Path, path: &Path) -> Entry {
     let program = path.file_name().and_then(OsStr::to_str).map(str::to_owned);
     let folder = if program.is_some() { folder } else { path };
     Entry { path: path.to_owned(), folder: folder.to_owned(), program, is_folder: false }
 }
 
-/// Rejects a scene in the place of the program, which is a user's mistake.
+/// Returns an error if a scene was named instead of a program.
 fn refuse_scene(path: &Path) -> Result<()> {
     if input::is_scene(path) {
         let name = input::printable_name(path);
@@ -242,7 +244,7 @@ fn skip_entry(passed_over: &mut Vec<SkippedEntry>, path: &Path, why: &str) {
     passed_over.push(SkippedEntry { name, why: why.to_owned() });
 }
 
-/// Returns the last component of a path.
+/// Returns the last part of a path.
 fn last_name(path: &Path) -> OsString {
     if let Some(name) = path.file_name() {
         return name.to_owned();
@@ -251,9 +253,9 @@ fn last_name(path: &Path) -> OsString {
     absolute.file_name().unwrap_or(absolute.as_os_str()).to_owned()
 }
 
-/// Returns unique names for paths, by default their last components. If several names look the same, names that only
-/// look equal are shown exactly. Equal names get as many parent folders as needed, and names that still look the same
-/// get a number.
+/// Returns unique names for paths. By default, the name is the last part of the path. If different names look the same,
+/// they are written with escapes. If names are equal, as many parent folders as necessary are added. If names still
+/// look the same, they get a number.
 pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
@@ -279,15 +281,15 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     paths.iter().zip(&own).map(&mut name).collect()
 }
 
-/// Returns the shortest end of a path that is unique among the paths.
+/// Returns the shortest end of a path that no other path has.
 fn unique_end<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
     let mut ends = path.ancestors().skip(1).filter_map(|folder| path.strip_prefix(folder).ok());
     let is_own = |end: &&Path| all.iter().filter(|other| other.ends_with(end)).count() == 1;
     ends.find(is_own).unwrap_or(path)
 }
 
-/// Returns the identity of the file behind each program. If several submissions link to one file, its owner submitted
-/// it. The owner of a submission is that of its folder, because in a class only folders have different owners.
+/// Returns the identity of each program's file. If several submissions link to the same file, the file belongs to the
+/// submission whose folder has the same owner as the file. In a class, only folders have different owners.
 fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
     let file = |entry: &Entry| {
         let program = entry.program.as_ref()?;

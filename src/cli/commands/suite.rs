@@ -40,7 +40,7 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
     }
 }
 
-/// Returns a commented suite with the groups of a built-in one.
+/// Returns a suite with comments, and with the groups of a built-in suite.
 fn template(name: Option<&str>) -> Result<String> {
     let name = name.map_or_else(plan::default_name, str::to_owned);
     config::template(&name).with_context(|| {
@@ -49,20 +49,20 @@ fn template(name: Option<&str>) -> Result<String> {
     })
 }
 
-/// Returns the built-in suites with their names.
+/// Returns the names of the built-in suites, and their plans.
 fn built_in() -> Result<Vec<(String, plan::Plan)>> {
     plan::built_in_names().map(|name| plan::find(&name).map(|plan| (name, plan)).map_err(Into::into)).collect()
 }
 
-/// Runs the reference on every scene, on all cores, and returns the scenes with undecided decisions.
+/// Runs the reference on every scene, on all cores. Returns the scenes in which round-off may change decisions.
 fn find_undecided(plan: &plan::Plan) -> Vec<UndecidedScene> {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().map(|task| (task.name.clone(), find_borderline(&task.scene)));
     all.filter(|(_, found)| !matches!(found, Ok(found) if found.is_empty())).collect()
 }
 
-/// Returns the coverage of the scenes, measured on all cores. A scene that can't be simulated to its end is in
-/// `undecided`.
+/// Measures what the scenes contain, on all cores. Scenes that can't be simulated to their end are left out, because
+/// `undecided` contains them.
 fn coverage(plan: &plan::Plan) -> Coverage {
     let tasks: Vec<_> = plan.scenes().collect();
     let all = tasks.par_iter().filter_map(|task| Coverage::for_scene(&task.scene).ok());

@@ -1,4 +1,4 @@
-//! The text of `suite check`: the contents of a suite, and facts to know before grading. Also the list of suites.
+//! The text that `suite check` prints: what a suite contains, and what to know before grading. Also the list of suites.
 use super::suite_sight::{MAX_LISTED_SCENES, SeenPart};
 use crate::{
     judge::{PairWords, PassWords, Rules, fair::Borderline},
@@ -19,24 +19,25 @@ use crate::{
 use serde_json::json;
 use std::{collections::BTreeSet, fmt::Write};
 
-/// A scene with the reference's decisions that round-off may change, or the reason why it has no run.
+/// A scene, and the decisions in it that round-off may change. If it cannot be simulated to its end, the reason
+/// instead.
 pub(super) type UndecidedScene = (String, Result<Vec<Borderline>, StepError>);
 
-/// The maximum number of listed decisions per scene.
+/// The maximum number of decisions that are listed for a scene.
 const MAX_LISTED: usize = 3;
 
-/// The contents of a suite's scenes, and the selected lists.
+/// The contents of a suite's scenes, and the choice of lists in the report.
 #[derive(Debug)]
 pub(super) struct SuiteContents {
-    /// The measured coverage.
+    /// The events in the suite's scenes.
     pub(super) coverage: Coverage,
-    /// Whether missing pairs of properties are listed.
+    /// Whether the report lists the missing pairs of properties.
     pub(super) lists_missing: bool,
-    /// The mistakes that no scene shows, by area of the assignment; empty unless requested.
+    /// The mistakes that no scene shows, by area of the assignment; empty if they were not requested.
     pub(super) parts: Vec<SeenPart>,
 }
 
-/// Renders the whole report; `undecided` are the scenes with borderline decisions.
+/// Renders the whole report. `undecided` has the scenes with decisions that round-off may change.
 pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[UndecidedScene], style: Style) -> String {
     let mut text = render_head(plan, style);
     for group in &plan.groups {
@@ -57,10 +58,10 @@ pub(super) fn text(plan: &Plan, contents: &SuiteContents, undecided: &[Undecided
     text
 }
 
-/// The version of the JSON list, which changes if a field's meaning changes.
+/// The version of the list in JSON. It increases if the meaning of a field changes.
 const SCHEMA: u32 = 2;
 
-/// Returns the built-in suites, with one line each.
+/// Renders the list of built-in suites, one per line.
 pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     let width = suites.iter().map(|(name, _)| name.len()).max().unwrap_or(0);
     let line = |(name, plan): &(String, Plan)| {
@@ -71,8 +72,8 @@ pub(super) fn list(suites: &[(String, Plan)], style: Style) -> String {
     suites.iter().map(line).collect()
 }
 
-/// Renders the list as one JSON object: `name` is the value for `--suite`, and `default` is the suite that is used by
-/// default.
+/// Renders the list as one JSON object. `name` is the value for `--suite`, and `default` is the name of the default
+/// suite.
 pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
     let group = |group: &PlannedGroup| {
         let PlannedGroup { name, scenes, marking, .. } = group;
@@ -92,23 +93,23 @@ pub(super) fn list_json(suites: &[(String, Plan)]) -> String {
         })
     };
     let list = json!({ "schema": SCHEMA, "suites": suites.iter().map(entry).collect::<Vec<_>>() });
-    // Plain values can always be serialized.
+    // This cannot fail, because plain values can always be serialized.
     serde_json::to_string_pretty(&list).unwrap_or_default() + "\n"
 }
 
-/// Returns the size of a plan, such as `12 scenes, 100 points`.
+/// Describes the size of a plan, such as `12 scenes, 100 points`.
 fn describe_size(plan: &Plan) -> String {
     format!("{}, {}", format_count(plan.scenes().count() as u64, "scene"), counted_points(plan.max_points()))
 }
 
-/// Returns points as text, such as `1 point` or `12.5 points`.
+/// Formats points, such as `1 point` or `12.5 points`.
 fn counted_points(value: f64) -> String {
     let words = format_points(value);
     let plural = if words == "1" { "" } else { "s" };
     format!("{words} point{plural}")
 }
 
-/// Returns the meaning of the choice of rule books, as text.
+/// Describes what the choice of rule books means.
 const fn describe_rules(rules: Rules) -> &'static str {
     match rules {
         Rules::Parity => "parity: the original's verdict counts, the fair rules are not applied",
@@ -117,7 +118,7 @@ const fn describe_rules(rules: Rules) -> &'static str {
     }
 }
 
-/// Returns the meaning of partial credit, as text.
+/// Describes what the rule for partial credit means.
 const fn describe_credit(credit: Credit) -> &'static str {
     match credit {
         Credit::Scenes => "credit per scene",
@@ -187,7 +188,7 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     text
 }
 
-/// Returns the share of possible events that the scenes contain; empty for scenes of earlier assignments.
+/// Describes the share of possible events that the scenes contain; empty for scenes of assignments without such events.
 fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     let coverage = &contents.coverage;
     if coverage.is_empty() {
@@ -210,7 +211,7 @@ fn describe_contents(contents: &SuiteContents, style: Style) -> String {
     text
 }
 
-/// Returns the known mistakes that no scene shows, as text.
+/// Lists the known mistakes that no scene shows.
 fn describe_mistakes(parts: &[SeenPart], style: Style) -> String {
     if parts.is_empty() {
         return String::new();
@@ -244,7 +245,7 @@ fn notes_on_unknown(plan: &Plan, style: Style) -> Vec<String> {
     scenes.map(|(scene, unknown)| format!("\n{note}: {scene}: {unknown}\n")).collect()
 }
 
-/// Returns a note on a scene that is not an error, but worth knowing before a class is graded.
+/// Returns a note on a scene. It is not an error, but worth knowing before a class is graded.
 fn describe_note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style: Style) -> String {
     let (note, scene) = (style.paint(Look::Notice, "note"), one_line(scene));
     let found = match found {

@@ -1,4 +1,4 @@
-//! The option `suite check --mistakes`: the known mistakes that no scene of a suite shows.
+//! The option `suite check --mistakes`, which finds the known mistakes that no scene of a suite shows.
 use crate::{
     diagnose::{is_written_by_student, may_change_trace},
     scene::Scene,
@@ -8,43 +8,43 @@ use crate::{
 };
 use rayon::prelude::*;
 
-/// The number of polynomials in a step above which a program counts as endless.
+/// The number of polynomials in a step from which a program counts as endless.
 const MAX_POLYNOMIALS: usize = 1 << 20;
 
-/// The maximum number of particles of a scene that is used; larger scenes exist only for timing.
+/// The maximum number of particles in a scene that is used. Larger scenes exist only for timing.
 const MAX_PARTICLES: usize = 2_000;
 
-/// An area of the assignment, with the mistakes that the scenes show.
+/// An area of the assignment, and which of its mistakes the scenes show.
 #[derive(Debug)]
 pub(super) struct SeenPart {
     /// The area of the assignment.
     pub(super) area: Area,
-    /// The number of the area's mistakes that a scene of the suite could show.
+    /// The number of mistakes in the area that a scene of the suite could show.
     pub(super) all: usize,
-    /// The mistakes with which the sample program writes the same traces as without, on every scene.
+    /// The mistakes that no scene shows: on every scene, the sample program writes the same trace with and without the
+    /// mistake.
     pub(super) unseen: Vec<&'static str>,
-    /// The mistakes that fewer than [`MAX_LISTED_SCENES`] scenes show, so that a small change of one scene could hide
-    /// them.
+    /// The mistakes that fewer than [`MAX_LISTED_SCENES`] scenes show. A small change of one scene could hide them.
     pub(super) rare: Vec<&'static str>,
 }
 
-/// The number of scenes that are sufficient to show a mistake.
+/// The number of scenes that are enough to show a mistake reliably.
 pub(super) const MAX_LISTED_SCENES: usize = 3;
 
-/// Returns the areas in the order of the catalogue.
+/// Returns the areas of the assignment, in the order of the catalogue.
 pub(super) fn seen_parts(plan: &Plan) -> Vec<SeenPart> {
     let written = |scene: &Scene, student: Student| {
         student::record_limited_trace(scene, student, MAX_POLYNOMIALS).unwrap_or_else(|(bytes, _)| bytes)
     };
     let mut scenes: Vec<&Scene> = plan.scenes().map(|task| &task.scene).collect();
     scenes.retain(|scene| scene.particles.len() <= MAX_PARTICLES);
-    // Begin with small scenes, because most mistakes show in the first scenes.
+    // Small scenes are tried first, because most mistakes already show in these.
     scenes.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() as u64).pow(2));
     let right: Vec<Vec<u8>> = scenes.par_iter().map(|scene| written(scene, Student::default())).collect();
     let is_theirs = |row: &&Row| scenes.iter().any(|scene| is_written_by_student(row, scene.assignment()));
     let rows: Vec<_> = all_rows().filter(|row| row.kind == RowKind::Wrong).filter(is_theirs).collect();
     let logs_polynomials = scenes.iter().any(|scene| Layout::for_scene(scene).has_polynomials);
-    // Most mistakes in writing a trace concern lists, which traces of states do not have.
+    // Most mistakes in writing a trace concern lists. Traces that contain only states have no lists.
     let concerns = |row: &Row| {
         (logs_polynomials || row.area != Area::Trace) && scenes.iter().any(|scene| may_change_trace(scene, row))
     };

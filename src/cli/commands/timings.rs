@@ -1,4 +1,4 @@
-//! The table of `grade --timings`, with the processor time of each part of a grading.
+//! The table that `grade --timings` prints. It shows the processor time of each part of a grading.
 use crate::{
     cli::console,
     report::{
@@ -9,7 +9,7 @@ use crate::{
     suite::timings::{RunPart, Timings},
 };
 
-/// Prints the table. The sandbox's processes must have ended, otherwise their time is missing.
+/// Prints the table. The processes of the sandbox must have ended, because their time would be missing otherwise.
 pub(super) fn print(timings: &Timings) {
     let own = processor_time(ProcessorTimeScope::Process);
     let others = processor_time(ProcessorTimeScope::Children);

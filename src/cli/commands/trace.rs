@@ -1,4 +1,4 @@
-//! The commands `trace info` and `trace show`, which show the contents of traces.
+//! The commands `trace info` and `trace show`, which show what a trace contains.
 use crate::{
     cli::{
         arguments::{TraceInfoArguments, TraceShowArguments},
@@ -12,7 +12,7 @@ use crate::{
 };
 use anyhow::{Result, bail};
 
-/// Prints the contents of a trace. The exit code is 1 if it can't be read to its end.
+/// Prints a summary of a trace. If the trace can't be read to its end, the exit code is 1.
 pub(super) fn print_info(arguments: &TraceInfoArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let mut trace = input::trace(&arguments.trace)?;

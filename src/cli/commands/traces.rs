@@ -1,5 +1,5 @@
-//! The option `grade --traces`, which judges existing traces, a folder of them for each submission. No program runs, so
-//! no sandbox is needed; the program's time and end are unknown.
+//! The option `grade --traces`, which judges existing traces. Each submission is a folder of traces. No program is run,
+//! so no sandbox is needed. The duration of the run and the way in which it ended are unknown.
 use super::{
     compare,
     ending::{MAX_HARDEST, exit_code, text, text_detail},
@@ -71,10 +71,10 @@ pub(super) fn run(arguments: &Arguments, plan: Plan, reports: &[Report], earlier
     Ok(exit_code(&grades))
 }
 
-/// Returns the grade of a folder of traces.
+/// Grades a folder of traces.
 fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) -> Grade {
     let tasks: Vec<&SceneTask> = plan.scenes().collect();
-    // The results are in the plan's order, with any number of threads.
+    // With any number of threads, the results are in the order of the plan.
     let opened = Folder::open(folder);
     let judged: Vec<JudgedScene> = tasks.par_iter().map(|task| judge_scene(plan, task, &opened, pages)).collect();
     let (results, passed_over): (Vec<_>, Vec<_>) = judged.into_iter().unzip();
@@ -84,7 +84,7 @@ fn grade(plan: &Plan, folder: &Path, submission: String, pages: Option<&Pages>) 
 /// The maximum number of traces that a warning names.
 const MAX_NAMED: usize = 5;
 
-/// Returns a sentence about the traces in a folder and its subfolders that belong to no scene, if there are any.
+/// Describes the traces in a folder and its subfolders that do not belong to any scene; `None` if there are none.
 fn describe_strays(folder: &Folder, scenes: &[String]) -> Option<String> {
     let texts = |folder: &Folder| -> Vec<String> {
         let names = folder.names().unwrap_or_default();
@@ -109,10 +109,10 @@ fn describe_strays(folder: &Folder, scenes: &[String]) -> Option<String> {
     (!strays.is_empty()).then(|| format!("{count} {verb} to no scene of the suite: {}{more}", named.join(", ")))
 }
 
-/// The result of one scene, and a warning about skipped files.
+/// The result of a scene, and a warning if files were skipped.
 type JudgedScene = (SceneResult, Option<String>);
 
-/// Returns the result of one scene; a panic becomes its judge error.
+/// Judges the trace of one scene. If this panics, the verdict on the scene is a judge error.
 fn judge_scene(plan: &Plan, task: &SceneTask, folder: &io::Result<Folder>, pages: Option<&Pages>) -> JudgedScene {
     let failure = match folder.as_ref().map(|folder| catch_panic(|| judge(plan, task, folder, pages))) {
         Ok(Ok(Ok(judged))) => return judged,
@@ -146,9 +146,10 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     Ok((result, passed_over))
 }
 
-/// Reads the trace of a scene, under its full name or its name without group, plain or packed. If there is no usable
-/// trace, the result describes the entry in its place: something other than a file, a damaged file, or a link, which
-/// may lead to another's trace. At most `most` bytes are read; a longer trace is cut, and bad.
+/// Reads the trace of a scene. The file has the scene's full name or its name without the group, and may be compressed.
+/// If there is no usable trace, the warning says what is there instead: something that is not a file, a damaged file,
+/// or a link, which may lead to the trace of somebody else. At most `most` bytes are read; a longer trace is cut, and
+/// is therefore a bad trace.
 fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<String>)> {
     let mut passed_over = None;
     let last = scene.rsplit('/').next().unwrap_or(scene);

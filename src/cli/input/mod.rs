@@ -1,7 +1,7 @@
-//! Inputs: scenes and traces by path, from standard input, or from the embedded library.
+//! Reads inputs: scenes and traces from files, from standard input, or from the embedded library.
 //!
-//! No function waits forever: a named pipe without a writer is rejected. Only scenes are read completely, and their
-//! size is limited; traces are streams, decompressed while they are read.
+//! No function waits forever: a named pipe without a writer is rejected. Scenes are read completely, and their size is
+//! limited. Traces are streams, which are decompressed while they are read.
 
 pub(super) mod pair;
 mod scene;
@@ -22,12 +22,13 @@ use std::{
     path::Path,
 };
 
-/// Returns a file's name as typed, in printable form: another's file may have a name with terminal codes.
+/// Returns the name of a file as the user typed it, in printable form. A file of somebody else may have terminal codes
+/// in its name.
 pub(super) fn printable_name(name: &Path) -> String {
     one_line(&name.display().to_string())
 }
 
-/// Returns the name after `asset:`.
+/// Returns the part of a name after `asset:`, if the name begins with that.
 pub(super) fn asset(name: &Path) -> Option<&str> {
     name.to_str()?.strip_prefix("asset:")
 }
@@ -38,7 +39,7 @@ fn no_asset(what: &str, name: &str) -> String {
     format!("no embedded {what} is called `{name}`; the nearest are {near} (`fosssim-oracle scene list` lists all)")
 }
 
-/// Returns an error for a missing file; if an embedded file has that name, the message suggests `asset:`.
+/// Returns the error for a file that does not exist. If an embedded file has this name, the message suggests `asset:`.
 fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
     let known = name.to_str().map(|name| name.strip_suffix(".xml").unwrap_or(name));
     match known
@@ -49,7 +50,7 @@ fn or_asset(name: &Path, error: io::Error) -> anyhow::Error {
     }
 }
 
-/// Opens a file without waiting for a pipe's other end. Directories are rejected.
+/// Opens a file. If it is a pipe, its other end is not waited for. Folders are rejected.
 pub(super) fn open(name: &Path) -> Result<(File, Metadata)> {
     let (file, metadata) = open_for_reading(name).map_err(|error| or_asset(name, error))?;
     if metadata.is_dir() {

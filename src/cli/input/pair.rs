@@ -1,4 +1,4 @@
-//! Typed pairs: their points and radii, or their names in a scene.
+//! Parses pairs that a user typed, with their points and radii, or by their names in a scene.
 use crate::{
     num::vector::Vec2,
     scene::Scene,
@@ -7,7 +7,7 @@ use crate::{
 };
 use anyhow::{Context, Result, anyhow, bail};
 
-/// Parses a pair with its motion, such as `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
+/// Parses a pair and its motion, such as `pe:3,1+4,1:5,9+2,6:5,3+5,8`.
 ///
 /// # Errors
 ///
@@ -73,7 +73,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
     let second = index(second, count, kind.second_name())?;
     match kind {
         PairKind::ParticleParticle if first == second => bail!("a particle cannot form a pair with itself"),
-        // Detection checks each pair only once, with the lower index first.
+        // Detection checks each pair only once, with the smaller index first.
         PairKind::ParticleParticle => Ok(Pair { kind, first: first.min(second), second: first.max(second) }),
         PairKind::ParticleEdge => {
             let edge = &scene.edges[second as usize];
@@ -97,18 +97,18 @@ fn kind_of(word: &str) -> Result<PairKind> {
     })
 }
 
-/// Parses a point with its motion: `X,Y+DX,DY`, `X,Y..X,Y`, or `X,Y` at rest.
+/// Parses a point and its motion, in the form `X,Y+DX,DY` or `X,Y..X,Y`; `X,Y` is a point at rest.
 ///
 /// # Errors
 ///
 /// Fails if the text has none of these forms.
 fn parse_moving(word: &str) -> Result<PointMotion> {
     if let Some((start, end)) = word.split_once("..") {
-        // The displacement is the difference of the ends, computed as in the course's code.
+        // The displacement is the difference of both ends, computed as in the course's code.
         let (start, end) = (parse_vector(start)?, parse_vector(end)?);
         return Ok(PointMotion { start, shift: end - start });
     }
-    // A plus sign may also belong to a number or to its exponent: 1e+3,+2+4,1.
+    // A plus sign may also belong to a number or to its exponent, as in `1e+3,+2+4,1`.
     let separates = |&(place, _): &(usize, char)| {
         let before = word[..place].trim_end();
         before.contains(',') && before.ends_with(|c: char| c.is_ascii_digit() || c == '.')

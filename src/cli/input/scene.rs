@@ -1,4 +1,4 @@
-//! Scenes as inputs, with strict reading that reports all problems together.
+//! Reads scenes as inputs. The reader is strict, and reports all problems together.
 use super::{asset, no_asset, open, printable_name, trace::ZSTD_MAGIC};
 use crate::files::{Identity, read_limited};
 use crate::{
@@ -13,19 +13,19 @@ use std::path::Path;
 /// A scene that has been read.
 #[derive(Debug)]
 pub(in crate::cli) struct SceneInput {
-    /// The name as typed, in printable form.
+    /// The name of the scene as the user typed it, in printable form.
     pub(in crate::cli) name: String,
-    /// The parsed scene.
+    /// The scene that was read.
     pub(in crate::cli) scene: scene::Scene,
-    /// The identity of the file, if there is one.
+    /// The identity of the scene's file; `None` if it is not a file.
     pub(in crate::cli) identity: Option<Identity>,
 }
 
-/// Reads a scene and prints warnings about it.
+/// Reads a scene, and prints warnings about it.
 ///
 /// # Errors
 ///
-/// Fails if the scene can't be read or has errors: all of them, with their places.
+/// Fails if the scene can't be read or has errors. The message lists all errors with their places.
 pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     let shown = printable_name(name);
     if name == Path::new("-") {
@@ -43,7 +43,7 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     }
     match scene::read(&shown, &bytes) {
         Ok(LoadedScene { scene, warnings, .. }) => {
-            // Embedded scenes need no warnings.
+            // Warnings about embedded scenes would not help the user.
             if identity.is_some() {
                 console::print_remark(problems::render_warnings(&shown, &bytes, &warnings));
             }
@@ -53,14 +53,14 @@ pub(in crate::cli) fn scene(name: &Path) -> Result<SceneInput> {
     }
 }
 
-/// Returns whether the bytes are not text, so that the reader's messages would not help. XML in UTF-8 contains no NUL;
-/// UTF-16, which does, begins with a byte order mark and gets the reader's own message.
+/// Returns whether the bytes are not text, so that the reader's messages would not help. XML in UTF-8 contains no NUL
+/// bytes. XML in UTF-16 does, but it begins with a byte order mark, and the reader has a message of its own about it.
 fn is_binary(bytes: &[u8]) -> bool {
     let is_utf_16 = bytes.starts_with(&[0xff, 0xfe]) || bytes.starts_with(&[0xfe, 0xff]);
     bytes.starts_with(&ZSTD_MAGIC) || (!is_utf_16 && !bytes.starts_with(b"<") && bytes.contains(&0))
 }
 
-/// Returns the bytes of a scene file, up to a generous limit of its size.
+/// Returns the content of a scene file. Its size is limited generously.
 fn scene_file(name: &Path) -> Result<(Vec<u8>, Option<Identity>)> {
     let (file, metadata) = open(name)?;
     let bytes = read_limited(file, &metadata, MAX_SCENE_BYTES as u64)?;

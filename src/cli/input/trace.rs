@@ -1,4 +1,4 @@
-//! Traces as inputs, which are streams and are decompressed while they are read.
+//! Reads traces as inputs. They are streams, and are decompressed while they are read.
 use super::{asset, no_asset, open, printable_name};
 use crate::files::{Identity, with_timeout};
 use crate::{
@@ -15,22 +15,22 @@ use std::{
     sync::{Arc, Mutex, PoisonError},
 };
 
-/// A trace before it is read.
+/// A trace that is opened, before it is read.
 pub(in crate::cli) struct TraceInput {
-    /// The name as typed, in printable form.
+    /// The name of the trace as the user typed it, in printable form.
     pub(in crate::cli) name: String,
-    /// The trace's bytes, decompressed.
+    /// The bytes of the trace, decompressed.
     pub(in crate::cli) reader: Box<dyn Read + Send>,
-    /// The identity of the file, if there is one.
+    /// The identity of the trace's file; `None` if it is not a file.
     pub(in crate::cli) identity: Option<Identity>,
-    /// The kind of file that it seems to be, if it can't be a trace.
+    /// The kind of file that it probably is, if it can't be a trace.
     pub(in crate::cli) looks_like: Option<&'static str>,
     failure: Failure,
 }
 
 impl TraceInput {
-    /// Returns the message of the operating system or the decoder if reading failed, which is not the fault of the
-    /// trace's author.
+    /// Returns the error message of the operating system or of the decoder, if reading failed. In that case, the author
+    /// of the trace is not at fault.
     pub(in crate::cli) fn failure(&self) -> Option<String> {
         self.failure.get()
     }
@@ -47,13 +47,13 @@ impl TraceInput {
         }
     }
 
-    /// Reads the records as those of a trace of `scene`.
+    /// Reads the records of the trace, which belongs to `scene`.
     pub(in crate::cli) fn records(&mut self, scene: &Scene) -> Reader<&mut Box<dyn Read + Send>> {
         Reader::new(&mut self.reader, Layout::for_scene(scene)).with_scene(scene)
     }
 }
 
-/// The first error while reading.
+/// The first error that occurs while the trace is read.
 #[derive(Clone, Default)]
 struct Failure(Arc<Mutex<Option<String>>>);
 
@@ -67,12 +67,12 @@ impl Failure {
     }
 }
 
-/// Opens a trace: a path, `-` for standard input, `asset:Group/name` for an embedded recording, or
+/// Opens a trace. The name is a path, `-` for standard input, `asset:Group/name` for an embedded recording, or
 /// `asset:Group/name/flawed` for the built-in wrong trace of one scene.
 ///
 /// # Errors
 ///
-/// Fails if it can't be opened. Damage is detected only while it is read.
+/// Fails if the trace can't be opened. Damage is detected only when the trace is read.
 pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
     let shown = printable_name(name);
     let failure = Failure::default();
@@ -87,7 +87,8 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         let reader = maybe_packed(Box::new(watched(Box::new(io::stdin()))), false, &failure);
         (reader.context("cannot read the trace from standard input")?, None)
     } else {
-        // A scene instead of a trace is a user's mistake, not a wrong trace: reject it if name and content agree.
+        // If the user names a scene instead of a trace, that is a mistake of the user, and not a wrong trace. It is
+        // rejected if both the name and the content show it.
         if is_scene(name) {
             bail!("{shown} is a scene, not a trace: SCENE comes first, then TRACE");
         }
@@ -98,14 +99,14 @@ pub(in crate::cli) fn trace(name: &Path) -> Result<TraceInput> {
         (reader.with_context(context)?, Some(Identity::from_metadata(&metadata)))
     };
     let mut start = Vec::new();
-    // If bytes can't be read, the second reading reports that.
+    // If bytes can't be read here, reading them again below reports it.
     let _ = reader.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = if failure.get().is_none() { looks_like(&start) } else { None };
     let reader = Box::new(Cursor::new(start).chain(reader));
     Ok(TraceInput { name: shown, reader, identity, looks_like, failure })
 }
 
-/// Returns whether a file is a scene, by its name and its beginning.
+/// Returns whether a file is a scene, according to its name and its first bytes.
 pub(in crate::cli) fn is_scene(name: &Path) -> bool {
     if has_extension(name, "xml")
         && let Ok((file, metadata)) = open(name)
@@ -118,7 +119,7 @@ pub(in crate::cli) fn is_scene(name: &Path) -> bool {
     false
 }
 
-/// A reader that stores the operating system's error if reading fails.
+/// A reader that stores the error of the operating system if reading fails.
 struct WatchedReader {
     reader: Box<dyn Read + Send>,
     failure: Failure,
@@ -134,19 +135,20 @@ impl Read for WatchedReader {
     }
 }
 
-/// The first bytes of every zstd frame.
+/// The first bytes of each frame in a zstd file.
 pub(super) const ZSTD_MAGIC: [u8; 4] = [0x28, 0xb5, 0x2f, 0xfd];
 
-/// The maximum window size of zstd frames, as a power of two (8 MiB), which limits the memory for unpacking. The packer
-/// chooses the window: 2 MiB at zstd's default level 3, and 8 MiB at level 19, which recordings use.
+/// The maximum window size of zstd frames, as a power of two (8 MiB). It limits the memory for decompression. The
+/// program that compresses chooses the window: it is 2 MiB at zstd's default level 3, and 8 MiB at level 19, which
+/// recordings use.
 const ZSTD_WINDOW: u32 = 23;
 
-/// Returns whether a file begins like a gzip file, whose flags are below 32.
+/// Returns whether a file begins like a gzip file. Its flags must be below 32.
 const fn is_gzip(start: &[u8]) -> bool {
     matches!(start, [0x1f, 0x8b, 8, 0..32])
 }
 
-/// Returns the reader, with decompression if it starts like a zstd or gzip file.
+/// Returns a reader that decompresses, if the bytes begin like a zstd or a gzip file.
 fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure) -> Result<Box<dyn Read + Send>> {
     let mut start = Vec::new();
     reader.by_ref().take(ZSTD_MAGIC.len() as u64).read_to_end(&mut start)?;
@@ -163,7 +165,8 @@ fn maybe_packed(mut reader: Box<dyn Read + Send>, must: bool, failure: &Failure)
     Ok(Box::new(Cursor::new(start).chain(reader)))
 }
 
-/// Returns at most `most` bytes of a trace that may be packed, or the reason why its zstd data can't be unpacked.
+/// Returns at most `most` bytes of a trace that may be compressed. If its zstd data can't be decompressed, returns the
+/// reason.
 ///
 /// # Errors
 ///
@@ -188,8 +191,8 @@ fn decompress(reader: Box<dyn Read + Send>, start: &[u8], failure: &Failure) -> 
     Ok(Box::new(UnpackedReader { decoder, format: "zstd", failure: failure.clone() }))
 }
 
-/// A decoder whose errors describe the fault of the file and are stored, because a damaged file shows nothing about the
-/// trace. Bytes after the last zstd frame that do not begin a frame are damage, too.
+/// A decoder that stores its errors and describes them as faults of the file, because a damaged file proves nothing
+/// about the trace. If bytes follow the last zstd frame that are not a frame, the file also counts as damaged.
 struct UnpackedReader<R> {
     decoder: R,
     format: &'static str,
@@ -199,7 +202,7 @@ struct UnpackedReader<R> {
 impl<R: Read> Read for UnpackedReader<R> {
     fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
         self.decoder.read(buffer).map_err(|error| {
-            // The operating system's message is already stored, and explains more than this one.
+            // The message of the operating system is already stored. It explains more than this one.
             if error.kind() == io::ErrorKind::Interrupted || self.failure.get().is_some() {
                 return error;
             }

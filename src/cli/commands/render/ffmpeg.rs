@@ -1,7 +1,8 @@
-//! MP4 films by an external program: pictures are sent to ffmpeg through a pipe.
+//! Makes MP4 films with an external program: pictures are sent to ffmpeg through a pipe.
 //!
-//! ffmpeg writes a temporary file, so that the target appears only when it is complete. If ffmpeg reads nothing for a
-//! minute, it is ended. Of its arguments, only the output contains a user's file name, which begins with `file:`.
+//! ffmpeg writes a temporary file, so that the output appears only when it is complete. If ffmpeg reads nothing for a
+//! minute, it is ended. Only one of its arguments contains a name that the user chose: the output, and it begins with
+//! `file:`.
 use crate::{
     cli::output::Output,
     render::{Size, film::Rate},
@@ -22,7 +23,7 @@ use std::{
 /// The name of the program.
 const FFMPEG: &str = "ffmpeg";
 
-/// The encoders for MP4, the best first, each with its arguments.
+/// The encoders for MP4 and their arguments. The best encoder is the first.
 const ENCODERS: [(&str, &[&str]); 4] = [
     ("libx264", &["-preset", "medium", "-crf", "20"]),
     ("libopenh264", &["-b:v", "4M"]),
@@ -33,7 +34,7 @@ const ENCODERS: [(&str, &[&str]); 4] = [
 /// The time after which a program that reads nothing is ended.
 const STUCK_TIME: Duration = Duration::from_secs(60);
 
-/// The maximum number of bytes that are kept of the program's messages.
+/// The maximum number of bytes of the program's messages that are kept.
 const MAX_MESSAGE_BYTES: usize = 4096;
 
 /// A film that is being encoded.
@@ -42,11 +43,11 @@ pub(super) struct Ffmpeg {
     pipe: Option<ChildStdin>,
     words: Option<JoinHandle<String>>,
     watch: Arc<EncoderWatch>,
-    /// The temporary output, until it gets its final name.
+    /// The temporary file, until it gets its final name.
     output: Option<Output>,
 }
 
-/// The state of the watching thread.
+/// The state that the thread that watches the encoder shares with the others.
 #[derive(Default)]
 struct EncoderWatch {
     pictures: AtomicU64,
@@ -55,11 +56,11 @@ struct EncoderWatch {
 }
 
 impl Ffmpeg {
-    /// Returns an encoder of ffmpeg for MP4.
+    /// Returns an encoder of ffmpeg for MP4, and its arguments.
     ///
     /// # Errors
     ///
-    /// Fails if there is none, with advice.
+    /// Fails if ffmpeg or an encoder is missing. The error says what to install.
     pub(super) fn find() -> Result<(&'static str, &'static [&'static str])> {
         let run = Command::new(FFMPEG)
             .args(["-hide_banner", "-loglevel", "error", "-encoders"])
@@ -74,7 +75,7 @@ impl Ffmpeg {
             ),
             Err(error) => return Err(error).context("ffmpeg can't be started"),
         };
-        // A line looks like ` V....D libx264 description`.
+        // A line of this list looks like ` V....D libx264 description`.
         let has = |name: &str| list.lines().any(|line| line.split_whitespace().nth(1) == Some(name));
         let found = ENCODERS.into_iter().find(|(name, _)| has(name));
         found.context(
@@ -83,11 +84,11 @@ impl Ffmpeg {
         )
     }
 
-    /// Starts the program.
+    /// Starts the program ffmpeg.
     ///
     /// # Errors
     ///
-    /// Fails if it can't be started, or the output is not a file.
+    /// Fails if ffmpeg can't be started, or the output is not a file.
     pub(super) fn start(size: Size, rate: Rate, output: Output) -> Result<Self> {
         let (encoder, options) = Self::find()?;
         let Some(path) = output.temporary_path() else { bail!("an MP4 needs an output file; name one") };
@@ -113,7 +114,7 @@ impl Ffmpeg {
             thread::spawn(move || {
                 let mut words = Vec::new();
                 let _ = errors.by_ref().take(MAX_MESSAGE_BYTES as u64).read_to_end(&mut words);
-                // Read the rest, so that the program does not block.
+                // The rest is read as well, so that the program is not blocked.
                 let _ = io::copy(&mut errors, &mut io::sink());
                 String::from_utf8_lossy(&words).trim().to_owned()
             })
@@ -124,7 +125,7 @@ impl Ffmpeg {
         Ok(Self { child, pipe, words, watch, output: Some(output) })
     }
 
-    /// Writes a picture to the program.
+    /// Sends a picture to the program.
     ///
     /// # Errors
     ///
@@ -136,16 +137,16 @@ impl Ffmpeg {
         Ok(())
     }
 
-    /// Waits for the film, which then gets its final name. `drawn` is the result of drawing.
+    /// Waits until the film is complete, and gives it its final name. `drawn` is the result of drawing the pictures.
     ///
     /// # Errors
     ///
-    /// Fails if drawing or the program failed, with the program's output; then there is no film.
+    /// Fails if drawing or the program failed. The error contains the program's output, and there is no film.
     pub(super) fn finish(mut self, drawn: Result<()>) -> Result<()> {
         drop(self.pipe.take());
         self.watch.pictures.fetch_add(1, Ordering::Relaxed);
         let status = loop {
-            // The lock is released during the wait, for the watching thread.
+            // The lock is released while waiting, because the watching thread needs it.
             let asked = self.child.lock().unwrap_or_else(PoisonError::into_inner).try_wait();
             match asked.context("cannot wait for ffmpeg")? {
                 Some(status) => break status,
@@ -176,7 +177,7 @@ impl Drop for Ffmpeg {
     }
 }
 
-/// Starts a thread that ends the program when it is stuck. The thread ends with the program.
+/// Starts a thread that ends the program if it reads nothing for too long. The thread ends together with the program.
 fn end_when_stuck(child: &Arc<Mutex<Child>>, watch: &Arc<EncoderWatch>) {
     let (child, watch) = (Arc::clone(child), Arc::clone(watch));
     thread::spawn(move || {

@@ -1,4 +1,4 @@
-//! The command `render`: a scene's motion as pictures, a GIF or a movie.
+//! The command `render`, which draws a scene's motion as pictures, as a GIF or as a movie.
 mod ffmpeg;
 mod motion;
 
@@ -27,10 +27,11 @@ use std::{
     path::Path,
 };
 
-/// The number of pictures above which films skip steps, unless `--every` is given: a minute at 25 per second.
+/// The number of pictures from which films skip steps, unless `--every` is given. It is enough for a minute at 25
+/// pictures per second.
 const LONG_FILM: u32 = 1500;
 
-/// The maximum number of pictures in one run.
+/// The maximum number of pictures that one command draws.
 const MAX_PICTURES: u32 = 100_000;
 
 pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
@@ -38,7 +39,7 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     let scene = input::scene(&arguments.scene)?;
     let picks = picked_steps(arguments, form, &scene.scene)?;
     let Some(rate) = Rate::new(arguments.fps) else { bail!("--fps may be 1 to {}", crate::render::film::MAX_RATE) };
-    // Check the output first, so that an invalid one is reported before the work begins.
+    // The output is checked first. If it is invalid, this is reported before the work begins.
     let target = RenderTarget::open(form, arguments)?;
     let main = match &arguments.trace {
         Some(trace) => motion::read_motion(&scene.scene, trace, picks)?,
@@ -73,8 +74,8 @@ pub(super) fn run(arguments: &RenderArguments) -> Result<u8> {
     Ok(if stopped.is_empty() { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }
 
-/// Returns the format of the output, from `--format` or its name. SVG and PNG are one picture with `--step`, otherwise
-/// a folder with a picture per step.
+/// Returns the format of the output, according to `--format` or its name. With `--step`, SVG and PNG are a single
+/// picture; otherwise they are a folder with a picture for each step.
 fn output_format(arguments: &RenderArguments) -> Result<RenderFormat> {
     let (output, is_single) = (&arguments.output, arguments.step.is_some());
     let by_name = |extension: &str| has_extension(output, extension);
@@ -105,19 +106,19 @@ fn output_format(arguments: &RenderArguments) -> Result<RenderFormat> {
     Ok(format)
 }
 
-/// Returns whether pictures follow each other in time, beginning with the start of the scene.
+/// Returns whether the pictures form a film, which begins at the start of the scene.
 const fn is_film(form: RenderFormat) -> bool {
     matches!(form, RenderFormat::Gif | RenderFormat::Mp4)
 }
 
-/// Returns the steps that are drawn.
+/// Returns the steps for which pictures are drawn.
 fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) -> Result<StepRange> {
     let last = scene.step_count();
     if let Some(step) = arguments.step {
         if step > last {
             bail!("the scene has {}; there is no step {step}", format_count(last.into(), "step"));
         }
-        // A particle's path consists of its earlier positions.
+        // The path of a particle consists of its earlier positions, so they are needed.
         let first = if scene.display.paths.is_empty() { step } else { 0 };
         return Ok(StepRange { first, every: 1, last: step });
     }
@@ -126,7 +127,7 @@ fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) 
         None if is_film(form) => last.div_ceil(LONG_FILM).max(1),
         None => 1,
     };
-    // The original's first picture is that after the first step.
+    // The first picture of the original shows the state after the first step.
     let first = if is_film(form) { 0 } else { every };
     let picks = StepRange { first, every, last };
     let pictures = picks.count();
@@ -141,7 +142,7 @@ fn picked_steps(arguments: &RenderArguments, form: RenderFormat, scene: &Scene) 
     Ok(picks)
 }
 
-/// A motion that can be drawn.
+/// A motion, and everything that is needed to draw it.
 struct Reel {
     painter: Painter,
     main: Motion,
@@ -167,7 +168,7 @@ impl Reel {
         self.painter.size()
     }
 
-    /// Draws every picture; passes its number (from 1), its step and its shapes to `draw`.
+    /// Draws every picture, and passes it to `draw`: its number from 1, its step, and its shapes.
     fn for_each(&mut self, mut draw: impl FnMut(u32, u32, &[Shape]) -> Result<()>) -> Result<()> {
         let (mut place, mut other) = (Vec::new(), Vec::new());
         let mut bar = console::Bar::new(self.main.pictures);
@@ -189,7 +190,7 @@ impl Reel {
         Ok(())
     }
 
-    /// Draws every picture in pixels.
+    /// Draws every picture in pixels, and passes it to `take`.
     fn for_each_raster(&mut self, mut take: impl FnMut(u32, &Raster) -> Result<()>) -> Result<()> {
         let mut raster = Raster::new(self.size());
         let background = self.painter.background();
@@ -200,7 +201,7 @@ impl Reel {
     }
 }
 
-/// The format and the destination of pictures.
+/// The place to which pictures are written, and their format.
 enum RenderTarget {
     Folder(Folder),
     Stream(Output),
@@ -222,7 +223,7 @@ impl RenderTarget {
         })
     }
 
-    /// Draws everything, and returns a description of the result.
+    /// Draws all pictures, and describes the result for the user.
     fn draw(self, form: RenderFormat, reel: &mut Reel, rate: Rate) -> Result<String> {
         let (pictures, size) = (reel.main.pictures, reel.size());
         let steps = match (reel.picks.step(1), reel.picks.step(pictures)) {
@@ -243,7 +244,7 @@ impl RenderTarget {
         match (self, form) {
             (Self::Folder(folder), form) => {
                 let names = |number: u32| match form {
-                    // The names that the original gives to its pictures.
+                    // These are the names that the original gives to its pictures.
                     RenderFormat::Svg => format!("frame{number:020}.svg"),
                     _ => format!("frame{number:05}.png"),
                 };
@@ -277,7 +278,7 @@ impl RenderTarget {
             }
             (Self::Stream(output), RenderFormat::Mp4) => {
                 let mut encoder = Ffmpeg::start(size, rate, output)?;
-                // If ffmpeg ends early, its messages explain more than a closed pipe.
+                // If ffmpeg ends early, its own messages explain more than a closed pipe.
                 let drawn = reel.for_each_raster(|_, raster| encoder.write_picture(raster.rgba()));
                 encoder.finish(drawn)?;
                 Ok(film(0))
@@ -295,7 +296,7 @@ impl RenderTarget {
     }
 }
 
-/// Returns one picture in its file format.
+/// Returns one picture in the format of its file.
 fn picture(
     form: RenderFormat,
     raster: &mut Raster,
@@ -312,7 +313,7 @@ fn picture(
     Ok(bytes)
 }
 
-/// A writer that counts bytes.
+/// A writer that counts the bytes that were written.
 struct CountedWriter<W> {
     out: W,
     bytes: u64,

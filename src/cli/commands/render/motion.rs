@@ -1,7 +1,7 @@
-//! The motion for drawing: the positions of all bodies after each requested step.
+//! The motion that is drawn, as the positions of all bodies after each requested step.
 //!
-//! A motion is read or simulated once, and kept as plain numbers in memory, or in an unnamed temporary file if it is
-//! large. The view can therefore include all of it, and a trace may come from a pipe.
+//! A motion is read or simulated only once. Its numbers are kept in memory, or in an unnamed temporary file if it is
+//! large. Therefore the view can include all positions, even if the trace comes from a pipe.
 use crate::{
     cli::{console, input},
     render::Extent,
@@ -17,14 +17,14 @@ use std::{
 };
 use tempfile::SpooledTempFile;
 
-/// The maximum number of bytes of a motion in memory.
+/// The maximum size of a motion that is kept in memory, in bytes.
 const MAX_MEMORY_BYTES: usize = 32 << 20;
 
 /// The steps that are drawn: `first`, `first + every` and so on up to `last`.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) struct StepRange {
     pub(super) first: u32,
-    /// The distance between drawn steps, at least 1.
+    /// The number of steps from one drawn step to the next, at least 1.
     pub(super) every: u32,
     pub(super) last: u32,
 }
@@ -35,7 +35,7 @@ impl StepRange {
         if self.first > self.last { 0 } else { (self.last - self.first) / self.every + 1 }
     }
 
-    /// Returns the step of picture `number` (from 1).
+    /// Returns the step of the picture with this number, which starts at 1.
     pub(super) fn step(self, number: u32) -> u32 {
         self.first + (number - 1) * self.every
     }
@@ -45,13 +45,13 @@ impl StepRange {
     }
 }
 
-/// The positions of all particles at the drawn steps.
+/// The positions of all particles after each drawn step.
 pub(super) struct Motion {
-    /// The name of the motion's scene or trace, for messages.
+    /// The name of the scene or the trace, for messages.
     pub(super) name: String,
-    /// The number of stored steps.
+    /// The number of steps whose positions are stored.
     pub(super) pictures: u32,
-    /// The bounding box of all positions.
+    /// The rectangle that contains all positions.
     pub(super) extent: Extent,
     /// The reason why the motion ends before the scene does.
     pub(super) stopped: Option<String>,
@@ -60,7 +60,7 @@ pub(super) struct Motion {
 }
 
 impl Motion {
-    /// Replaces `row` by the next positions; returns `false` at the end.
+    /// Replaces the contents of `row` by the next positions. Returns `false` after the last ones.
     ///
     /// # Errors
     ///
@@ -79,7 +79,7 @@ impl Motion {
     }
 }
 
-/// A motion while it is being stored.
+/// A motion whose positions are still being stored.
 struct FilmKeeper<'a> {
     scene: &'a Scene,
     picks: StepRange,
@@ -114,11 +114,11 @@ impl<'a> FilmKeeper<'a> {
     }
 }
 
-/// Returns the reference's own motion.
+/// Simulates the reference, and returns its motion.
 ///
 /// # Errors
 ///
-/// Fails if it can't be stored.
+/// Fails if the motion can't be stored.
 pub(super) fn reference(scene: &Scene, picks: StepRange) -> Result<Motion> {
     let mut keeper = FilmKeeper::new(scene, picks);
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
@@ -137,12 +137,12 @@ pub(super) fn reference(scene: &Scene, picks: StepRange) -> Result<Motion> {
     keeper.finish("the reference's run".to_owned(), stopped)
 }
 
-/// Returns the motion of a trace.
+/// Reads a trace, and returns its motion.
 ///
 /// # Errors
 ///
-/// Fails if the trace can't be opened or stored, or the operating system fails while it is read. Damage ends the
-/// motion.
+/// Fails if the trace can't be opened or stored, or the operating system fails while it is read. If the trace is
+/// damaged, the motion only ends there.
 pub(super) fn read_motion(scene: &Scene, name: &Path, picks: StepRange) -> Result<Motion> {
     let mut trace = input::trace(name)?;
     let layout = Layout::for_scene(scene);
