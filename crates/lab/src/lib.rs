@@ -1,6 +1,5 @@
-//! Measurement tools: the sources of tables in the docs, and right programs in other arithmetic.
+//! Measurement tools: the sources of tables in the docs.
 #![forbid(unsafe_code)]
 
 pub mod corpus;
-pub mod right;
 pub mod runs;

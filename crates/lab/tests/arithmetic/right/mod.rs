@@ -107,6 +107,3 @@ pub fn record(scene: &Scene, state: &State, contacts: &[Contact], bytes: &mut Ve
     let log = StepLog { impulses: contacts.to_vec(), ..StepLog::default() };
     Record::new(Student::default(), &scene.collision, state, &log).encode(None, bytes);
 }
-
-#[cfg(test)]
-mod tests;

@@ -1,18 +1,16 @@
-//! Compares the certificate with the root finder on random detections, on all processors.
+//! Certificates and the root finder agree on random detections.
 //!
-//! `audit [detections] [seed]` draws that many detections (default: a million) of the three pair types from wide and
-//! difficult distributions. Whenever the certificate excludes an impact within the step, the search must exclude it as
-//! well: for the list, and for each polynomial alone, so that no other polynomial hides a mistake. A fourth kind are
-//! products of linear factors with particularly difficult zeros. The program prints how many detections each level
-//! decided, how many only the search could decide, and the first disagreement, of which there must be none. The draws
-//! depend on the seed only, not on the number of processors.
+//! Detections of the three pair types are drawn from wide and difficult distributions. Whenever the certificate
+//! excludes an impact within the step, the search must exclude it as well: for the list, and for each polynomial alone,
+//! so that no other polynomial hides a mistake. A fourth kind are products of linear factors with particularly
+//! difficult zeros.
 //!
-//! A second table compares the certified decisions of `num::decision` (64 units of rounding, as in the fair rules) with
-//! the root finder. Certified decisions are proved, so disagreements show the root finder's properties. They are sorted
-//! by the original's intentional rules (`c t^m` counts as nowhere positive, and small leading coefficients are
-//! dropped); all others come from its rounding. They do not change the exit code.
-//!
-//! `audit states [CORPUS]` runs right programs in other arithmetic on scenes whose traces hold states.
+//! `FOSSSIM_DETECTIONS` and `FOSSSIM_SEED` set the number of detections and their seed; the draws do not depend on the
+//! number of processors. `--nocapture` prints how many detections each level decided, and how many only the search
+//! could decide. A second table compares the certified decisions of `num::decision` (64 units of rounding, as in the
+//! fair rules) with the root finder. Certified decisions are proved, so disagreements show the root finder's
+//! properties. They are sorted by the original's intentional rules (`c t^m` counts as nowhere positive, and small
+//! leading coefficients are dropped); all others come from its rounding.
 #![forbid(unsafe_code)]
 use fosssim_oracle::{
     num::{
@@ -25,33 +23,19 @@ use fosssim_oracle::{
     sim::formulas,
 };
 use rayon::prelude::*;
-use std::{fmt::Write as _, path::Path, process::ExitCode};
+use std::fmt::Write as _;
 
 mod decisions;
-mod states;
 
 use decisions::Decisions;
 
 /// The number of detections that one thread draws at a time.
 const BLOCK_DETECTIONS: u64 = 10_000;
 
-fn main() -> ExitCode {
-    let words: Vec<String> = std::env::args().skip(1).collect();
-    let numbers: Option<Vec<u64>> = words.iter().map(|word| word.parse().ok()).collect();
-    match (words.first().map(String::as_str), numbers.as_deref()) {
-        (Some("states"), _) if words.len() <= 2 => states::run(words.get(1).map(Path::new)),
-        (_, Some([])) => audit_certificates(1_000_000, 1),
-        (_, Some([detections])) => audit_certificates(*detections, 1),
-        (_, Some([detections, seed])) => audit_certificates(*detections, *seed),
-        _ => {
-            eprintln!("usage: audit [detections [seed]], or audit states [CORPUS]");
-            ExitCode::from(2)
-        }
-    }
-}
-
-/// Compares `detections` detections.
-fn audit_certificates(detections: u64, seed: u64) -> ExitCode {
+#[test]
+fn no_certificate_excludes_an_impact_that_the_search_finds() {
+    let number = |name: &str, default| std::env::var(name).map_or(default, |text| text.parse().expect(name));
+    let (detections, seed) = (number("FOSSSIM_DETECTIONS", 300_000), number("FOSSSIM_SEED", 1));
     let audited = |block: u64| {
         let (mut tally, mut random) = (AuditTally::default(), Random::new(seed, block));
         for index in 0..BLOCK_DETECTIONS.min(detections - block * BLOCK_DETECTIONS) {
@@ -61,8 +45,9 @@ fn audit_certificates(detections: u64, seed: u64) -> ExitCode {
     };
     let blocks = (0..detections.div_ceil(BLOCK_DETECTIONS)).into_par_iter();
     let total = blocks.map(audited).reduce(AuditTally::default, AuditTally::merge);
-    print!("{}", total.report());
-    ExitCode::from(u8::from(total.disagreements > 0))
+    let report = total.report();
+    print!("{report}");
+    assert_eq!(total.disagreements, 0, "{report}");
 }
 
 /// The descriptions of the certificate's levels, in order.
