@@ -161,7 +161,7 @@ fn an_ordinary_users_grader_holds_the_promises_too() {
         skip(Need::Setpriv, err);
         return;
     }
-    assert!(output.status.success() && out.contains(" 0 not held"), "{out}{err}");
+    assert!(output.status.success() && out.contains(" 0 broken"), "{out}{err}");
 }
 
 #[test]

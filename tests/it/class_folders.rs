@@ -344,7 +344,7 @@ fn a_class_is_compared_with_its_earlier_grading() {
     let expected = serde_json::json!({ "points": 10.0, "max_points": 10.0, "right": [], "broke": [], "others": [] });
     assert_eq!(json["grades"][0]["changes"], expected, "{}", run.shown());
     let refused = compared(&["--compare", "suite.toml"]);
-    assert!(refused.code == Some(2) && refused.err().contains("suite.toml holds no grades"), "{}", refused.shown());
+    assert!(refused.code == Some(2) && refused.err().contains("suite.toml contains no grades"), "{}", refused.shown());
 }
 
 #[test]

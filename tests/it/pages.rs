@@ -19,7 +19,7 @@ fn a_class_has_a_page_each_and_an_index_and_nothing_is_run_for_them_again() {
     words.splice(0..0, ["grade", "--suite", "suite.toml", "--output", "class"].map(str::to_owned));
     let first = workspace.run(&words);
     assert_eq!(first.code, Some(1), "{}", first.shown());
-    assert!(first.err().contains("to look at: class/index.html\n"), "{}", first.shown());
+    assert!(first.err().contains("open in a browser: class/index.html\n"), "{}", first.shown());
     let index = text(&workspace, "class/index.html");
     let links: Vec<&str> = index
         .split("<th scope=\"row\"><a href=\"")

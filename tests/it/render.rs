@@ -46,7 +46,7 @@ fn a_folder_gets_a_picture_per_step_under_the_originals_names() {
     made(&workspace, "scene.xml --step 2 --output one.png --size 64x48");
     assert!(workspace.read("one.png") == workspace.read("pngs/frame00002.png"));
     let run = render(&workspace, "scene.xml --format png --output pngs --size 64x48 --every 2");
-    assert_eq!(run.err(), "pngs also holds older pictures, from frame00002.png on\n");
+    assert_eq!(run.err(), "pngs also contains older pictures, from frame00002.png on\n");
 }
 
 #[test]
@@ -92,7 +92,7 @@ fn nonsense_is_refused_before_anything_is_written() {
         ("scene.xml --output x.gif --every 0", "--every"),
         ("scene.xml --output x.gif --every 4 --format png", "no step is drawn: the scene has 3 steps, and --every 4"),
         ("scene.xml --output x.png", "x.png can hold one picture: add --step N"),
-        ("scene.xml --output x", "say what to make of x: --format svg or --format png"),
+        ("scene.xml --output x", "choose the format of x: --format svg or --format png"),
         ("scene.xml --output x.gif --step 1", "--step is for one picture"),
         ("scene.xml --output x.png --step 4", "the scene has 3 steps; there is no step 4"),
         ("scene.xml --output x.mp4 --size 641x480", "an MP4 needs even width and height, not 641x480"),

@@ -12,31 +12,35 @@ fosssim_num::closed_set! {
     pub enum Cause {
         /// Parity rejects: coefficients of all sizes are compared with the same absolute bound.
         AbsoluteCoefficients =
-            "the original compares coefficients at an absolute 1e-10, after rescaling by sums of moduli: the \
-             round-off of large ones exceeds it",
+            "the original compares coefficients with an absolute bound of 1e-10, after rescaling them by the sums of \
+                their absolute values; the round-off of large coefficients exceeds this bound",
         /// Parity rejects: small leading coefficients are dropped before degrees are compared.
         DroppedCoefficients =
-            "the original compares degrees after leading coefficients below an absolute 1e-12 have been dropped: a \
-             factor or a rounding moves them across that bound",
+            "the original compares degrees after dropping leading coefficients below an absolute bound of 1e-12; a \
+                factor or a rounding moves coefficients across this bound",
         /// Parity rejects: a polynomial that consists only of round-off is compared with zero.
         VanishingPolynomial =
-            "the original treats a polynomial below an absolute 1e-10 as zero, and its round-off elsewhere as wrong",
+            "the original treats a polynomial below an absolute bound of 1e-10 as zero, and the trace's round-off in \
+                it as wrong",
         /// Parity rejects: the original's approach polynomial contains the course's slip.
         ApproachForm =
             "the original has the course's slip in t^3 of the particle-edge approach polynomial, and the trace has \
              the right form",
         /// Parity rejects: states in scenes of all sizes are compared with the same absolute bound.
-        AbsoluteStates = "the original compares states at an absolute 1e-10: the round-off of large numbers exceeds it",
+        AbsoluteStates = "the original compares states with an absolute bound of 1e-10; the round-off of large \
+            numbers exceeds this bound",
         /// Parity rejects: contact normals are compared with an absolute bound.
         AbsoluteNormals =
-            "the original compares contact normals at an absolute 1e-9: the round-off of long ones exceeds it",
+            "the original compares contact normals with an absolute bound of 1e-9; the round-off of long normals \
+                exceeds this bound",
         /// Parity rejects: the round-off of all steps is added up.
         AccumulatedResiduals =
-            "the original adds up the round-off of all steps and particles, and its bound of 1e-6 does not grow \
-             with them",
+            "the original adds up the round-off of all steps and particles, but its bound of 1e-6 does not grow with \
+                their number",
         /// Parity rejects: a decision differs because of round-off.
         BorderlineDecision =
-            "the original accepts only one result of a decision that round-off may flip, and the trace has the other",
+            "the original accepts only one result of a decision that round-off may change, and the trace has the \
+                other result",
         /// Parity accepts: the original never checks the first record.
         FirstRecord = "the original never checks the first record against the scene",
         /// Parity accepts: the original copies the states of mid records without checking them.
@@ -49,12 +53,13 @@ fosssim_num::closed_set! {
         OwnPolynomials =
             "the original decides with its own polynomials, so it does not check the trace's decisions",
         /// Parity accepts: the original does not check whether the course's library could have written a polynomial.
-        ImpossibleLog = "the original does not check whether the course's library can have written the log",
+        ImpossibleLog = "the original does not check whether the course's library could have written the log",
         /// Parity accepts: the original accepts values that are not numbers.
         NotANumber = "the original accepts values that are not numbers",
         /// Parity accepts: the original accepts errors below an absolute bound, even if they are large relative to the
         /// value.
-        SmallErrors = "the original compares at absolute bounds: smaller errors pass, however large for the value",
+        SmallErrors = "the original compares with absolute bounds, so it accepts smaller errors, even if they are \
+            large relative to the value",
         /// Parity accepts: the original does not read the bytes after the last record.
         TrailingBytes = "the original does not check what follows the last record",
         /// Parity accepts: the original skips damaged data.

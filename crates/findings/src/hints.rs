@@ -28,7 +28,7 @@ impl Hints {
             Self::None => ("none", "the verdict only"),
             Self::Where => ("where", "where the first difference is"),
             Self::What => ("what", "where the first difference is, and the likely mistake in a sentence"),
-            Self::Full => ("full", "everything, formulas and values included"),
+            Self::Full => ("full", "everything, including formulas and values"),
         }
     }
 

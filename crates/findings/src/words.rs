@@ -36,8 +36,8 @@ impl Finding {
 /// a factor explains why they are missing.
 const MISSING_COEFFICIENTS: &str = "the trace's polynomials lack the coefficients for it";
 const OTHER_FORM: &str = "the other of the two accepted forms; a program must use one of them throughout";
-const LEFT_OUT: &str = "are near enough for the penalty force, but no force was applied between them";
-const DOUBLED: &str = "are near enough for the penalty force, but the force between them was applied twice";
+const LEFT_OUT: &str = "are close enough for the penalty force, but no force was applied between them";
+const DOUBLED: &str = "are close enough for the penalty force, but the force between them was applied twice";
 const DROPPING: &str = "the course's library drops leading ones below 1e-12";
 
 impl Display for WithoutStep<'_> {
@@ -75,7 +75,7 @@ impl Display for WithoutStep<'_> {
                 expected.coefficients().len()
             ),
             FindingDetail::VanishingPolynomial { place, .. } => {
-                write!(f, "{place}: the reference's coefficients all vanish, the trace's do not")
+                write!(f, "{place}: the reference's coefficients all vanish, but the trace's do not")
             }
             FindingDetail::Coefficient { place, power, expected, actual, .. } => {
                 write!(f, "{place}, {}: {}, expected {}", Power(power), ExactNumber(actual), ExactNumber(expected))
@@ -116,7 +116,7 @@ impl Display for WithoutStep<'_> {
             FindingDetail::PairForce { pair, is_doubled: false } => write!(f, "{} {LEFT_OUT}", PairWords(pair)),
             FindingDetail::PairForce { pair, is_doubled: true } => write!(f, "{} {DOUBLED}", PairWords(pair)),
             FindingDetail::NoResult { error } => {
-                write!(f, "no next state follows from the trace's own one, because {}", WithoutResult(error))
+                write!(f, "no next state follows from the trace's own state, because {}", WithoutResult(error))
             }
         }
     }
@@ -132,10 +132,10 @@ fn write_trimmed_time(f: &mut Formatter<'_>, place: PolynomialPlace, times: [f64
 /// Returns the sentence about the part in which the two records of a step differ.
 const fn difference_of_records(part: RecordPart, is_first: bool) -> &'static str {
     match part {
-        RecordPart::Impulses if is_first => "the first record holds impulses, before anything has moved",
-        RecordPart::Polynomials if is_first => "the first record holds polynomials, before anything has moved",
+        RecordPart::Impulses if is_first => "the first record contains impulses, although nothing has moved yet",
+        RecordPart::Polynomials if is_first => "the first record contains polynomials, although nothing has moved yet",
         RecordPart::State => "the state changes between the step's two records",
-        RecordPart::Impulses => "the step's two records hold different impulses",
+        RecordPart::Impulses => "the step's two records contain different impulses",
         RecordPart::Polynomials => "the mid record's polynomials are not the first ones of the end record",
     }
 }
@@ -359,7 +359,7 @@ mod tests {
         let detail = FindingDetail::RecordsDiffer { part: RecordPart::Impulses };
         assert_eq!(
             Finding { step: 0, frame: 0, detail }.to_string(),
-            "step 0: the first record holds impulses, before anything has moved"
+            "step 0: the first record contains impulses, although nothing has moved yet"
         );
     }
 

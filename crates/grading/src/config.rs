@@ -410,7 +410,7 @@ fn read_speed(problems: &mut Vec<Problem>, raw: Spanned<RawSpeed>) -> SpeedMarki
         // In the course, a program gets full points up to one second, and no points from one minute on.
         (None, None, Some(second)) => (second, 60.0 * second),
         _ => {
-            let text = "speed needs full_at and none_at, or second alone";
+            let text = "speed needs either full_at and none_at, or only second";
             problems.push((span.clone(), text.to_owned()));
             (1.0, 60.0)
         }

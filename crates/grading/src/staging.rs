@@ -284,7 +284,7 @@ fn copy_file(
 
 fn too_large_error() -> CopyError {
     CopyError::Submission(format!(
-        "it holds more than {MAX_FILES} files or {MAX_FOLDER_BYTES} bytes: that is not a submission"
+        "it contains more than {MAX_FILES} files or {MAX_FOLDER_BYTES} bytes, which is too much for a submission"
     ))
 }
 

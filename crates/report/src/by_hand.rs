@@ -94,8 +94,8 @@ fn render_integration(scene: &Scene, step: u32) -> Option<String> {
         Integrator::SymplecticEuler | Integrator::ForwardBackwardEuler => "v becomes v + h a, then x becomes x + h v",
         Integrator::LinearizedImplicitEuler => "v becomes v + d, then x becomes x + h v",
         Integrator::ImplicitEuler => {
-            "v becomes v + d, then x becomes x + h v; Newton's method adds its d up until they are short, each with \
-             b = -M d - h gradient and A at x + h (v + d) and v + d; this is the first"
+            "v becomes v + d, then x becomes x + h v. Newton's method adds up corrections d until they are small; \
+                each solves A d = b, with b = -M d - h gradient and A at x + h (v + d) and v + d. This is the first one"
         }
     };
     text += &format!("\nStep {step}, h = {}: {words}\n", format_short(h));

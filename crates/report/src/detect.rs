@@ -79,12 +79,15 @@ impl Detect<'_> {
                 format!("they collide at time {time} with normal ({x}, {y})")
             }
             Decision::Miss { .. } if answer.decision.time() <= 1.0 => {
-                format!("no collision: all are positive from time {time}, but the normal is zero there")
+                format!("no collision: all polynomials are positive from time {time}, but the normal is zero there")
             }
             Decision::Miss { .. } if answer.decision.time().is_finite() => {
-                format!("no collision in this step: all are positive from time {time} on, which is after it")
+                format!(
+                    "no collision in this step: all polynomials are positive from time {time} on, which is after \
+                    it"
+                )
             }
-            Decision::Miss { .. } => "no collision: there is no time from 0 on at which all are positive".to_owned(),
+            Decision::Miss { .. } => "no collision: at no time from 0 on are all polynomials positive".to_owned(),
         }
     }
 

@@ -41,7 +41,7 @@ impl Diagnosis {
     pub fn text(&self, style: Style) -> String {
         let smallest: String = self.smallest.iter().map(|one| format!("\n{}", smallest::text(one, style))).collect();
         match &self.cases[..] {
-            [] if smallest.is_empty() => return "No smaller scene shows again what is wrong.\n".to_owned(),
+            [] if smallest.is_empty() => return "No smaller scene shows the same fault.\n".to_owned(),
             [] => return smallest.trim_start().to_owned(),
             [case] => return render_single(case, style) + &smallest,
             _ => {}
@@ -116,7 +116,15 @@ fn render_single(case: &Case, style: Style) -> String {
         let _ = writeln!(text, "{note}");
     }
     if *accepted {
-        let _ = writeln!(text, "{}", style.paint(Look::Good, "There is nothing to explain: the fair rules accept it."));
+        let _ = writeln!(
+            text,
+            "{}",
+            style.paint(
+                Look::Good,
+                "There is nothing to explain: the fair rules accept the \
+            trace."
+            )
+        );
         return text;
     }
     if let Some(first) = first {

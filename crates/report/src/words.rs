@@ -20,7 +20,7 @@ use fosssim_model::assignments::Assignment;
 
 /// The text about a trace that lacks the lists that its scene requires.
 pub const STATES_ONLY: &str =
-    "the trace holds only positions and velocities, like that of a program without collisions";
+    "the trace contains only positions and velocities, like the trace of a program without collisions";
 
 /// The exit code of a shell or a loader that cannot find its program.
 const NOT_FOUND_CODE: i32 = 127;
@@ -37,7 +37,7 @@ pub fn summarize(result: &SceneResult) -> String {
         Reason::LeftOut(why) => describe_left_out(*why),
         Reason::Stopped => "grading was stopped".to_owned(),
         Reason::Withheld => "details of single scenes are not shown, because the suite has hidden groups".to_owned(),
-        Reason::DoesNotBuild => "the sources do not build".to_owned(),
+        Reason::DoesNotBuild => "the sources cannot be built".to_owned(),
         Reason::Unusable(why) => describe_unusable(why),
         Reason::Failed(failure) => describe_failure(failure),
     }
@@ -116,7 +116,7 @@ fn describe_unwritten(grade: &Grade) -> String {
         Some((likely, _)) if likely.is_unfinished() => explanation::describe(likely),
         _ => "Not written yet: the detection.".to_owned(),
     };
-    format!("{missing} No trace of its {scenes} holds a polynomial or a collision.")
+    format!("{missing} No trace of its {scenes} contains a polynomial or a collision.")
 }
 
 /// Describes in one sentence why a grade is not fully accepted; `None` if it is.
@@ -152,7 +152,7 @@ fn spell_number(count: u64) -> String {
 fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
     match wrong {
         WrongTrace::Untold => "the trace is wrong".to_owned(),
-        WrongTrace::Nothing => "the trace holds no polynomials and no collisions, so no pair is tested".to_owned(),
+        WrongTrace::Nothing => "the trace contains no polynomials and no collisions, so no pair is tested".to_owned(),
         WrongTrace::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
         WrongTrace::Steps { wrong, first, kind } => {
             format!("{}, first step {first}: {kind}", share::describe_wrong(*wrong, steps, spell_number))
@@ -173,7 +173,7 @@ fn describe_bad_trace(bad: &BadTrace) -> String {
         BadTrace::Unreadable { frame, step, cause, offset, damage } => {
             let what = match cause {
                 ReadFailure::State | ReadFailure::Impulses => "the trace ends too early",
-                ReadFailure::Memory => "the trace holds a count that it cannot satisfy",
+                ReadFailure::Memory => "a list in the trace claims more entries than the file contains",
                 ReadFailure::Limit => "the trace is beyond a limit of this grader",
                 ReadFailure::Io => "the trace could not be read",
             };

@@ -86,11 +86,11 @@ problems! {
         format!("there is no such {what}, or you may not see it"),
         "check the address";
     /// The named thing existed, but has been removed.
-    removed(): 410, "removed", "No longer kept",
+    removed(): 410, "removed", "Removed",
         "the upload and its reports were removed; the grade and its history stay",
         "ask the course's staff about the grade";
     /// A part of the request is invalid.
-    invalid(detail: impl Into<String>): 400, "invalid", "Not understood",
+    invalid(detail: impl Into<String>): 400, "invalid", "Invalid request",
         detail,
         "correct it and send it again";
     /// The action is not possible in the present state.
@@ -118,11 +118,11 @@ problems! {
         format!("more than the {} that are allowed", format_size(most as u64)),
         "send less in one request";
     /// The address does not support the method.
-    wrong_method(method: &str): 405, "wrong-method", "Not done so",
+    wrong_method(method: &str): 405, "wrong-method", "Not supported here",
         format!("this address does not accept {method}"),
         "go back, and use the button on the page; programs find the methods in /api/openapi.json";
     /// The disk is nearly full.
-    no_room(): 507, "no-room", "No room",
+    no_room(): 507, "no-room", "Not enough space",
         "the server's disk is nearly full; nothing was stored",
         "tell the administrator, and send the request again later";
     /// The limit of stored bytes is reached.

@@ -1,10 +1,10 @@
-//! A search for near pairs that misses some pairs, or finds some twice.
+//! A search for nearby pairs that misses some pairs, or finds some twice.
 use fosssim_model::sim::PairKind;
 use fosssim_num::vector::{Vec2, vector_at};
 
 use super::{StepMistake, world::World};
 
-/// The search for near pairs at certain positions.
+/// The search for nearby pairs at certain positions.
 pub struct NearPairSearch<'a> {
     world: &'a World,
     h: f64,
@@ -41,7 +41,7 @@ impl<'a> NearPairSearch<'a> {
         Self { world, h, x, ranks }
     }
 
-    /// Returns how many times a near pair is found.
+    /// Returns how many times a nearby pair is found.
     pub fn pair_count(&self, kind: PairKind, one: usize, other: usize) -> u32 {
         if !self.is_found(kind, one, other) {
             return 0;
@@ -98,7 +98,7 @@ impl<'a> NearPairSearch<'a> {
             StepMistake::NearPairsOfStart,
             StepMistake::NearPairsOfLastStep,
         ];
-        // The box of a near pair always overlaps.
+        // The box of a nearby pair always overlaps.
         !looks.into_iter().any(makes)
             || (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
     }

@@ -55,7 +55,7 @@ TRACE is a file (.zst and .gz files are unpacked), - for standard input, or asse
 pub(super) enum Command {
     /// Simulates a scene, and records its trace.
     Simulate(SimulateArguments),
-    /// Shows the faults of a trace and their places, by the original's rules and by fair ones.
+    /// Shows the faults of a trace and their places, by the original's rules and by fair rules.
     Check(CheckArguments),
     /// Names the likely mistake of a program, from its trace or by running it.
     Explain(ExplainArguments),

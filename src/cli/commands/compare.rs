@@ -37,7 +37,8 @@ pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
     };
     if grades.is_empty() {
         bail!(
-            "{shown} holds no grades: give --compare an output folder, its {FILE_NAME}, or the output of --format json"
+            "{shown} contains no grades: give --compare an output folder, its {FILE_NAME}, or the output of --format \
+             json"
         );
     }
     Ok(grades)

@@ -340,7 +340,7 @@ impl GradingSession<'_> {
                 return Ok(code);
             }
             earlier = grades.iter().map(EarlierGrade::from).collect();
-            console::print_error("waiting for a change; Ctrl-C ends\n");
+            console::print_error("waiting for a change; press Ctrl-C to end\n");
             // A file is used only after it has stopped changing, because a linker writes in several steps.
             let mut last = seen.clone();
             loop {

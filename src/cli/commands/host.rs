@@ -148,7 +148,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     let table = selftest::run_chosen(&backend, Path::new(&arguments.compiler), folder.path(), chosen, |promise| {
         done += 1;
         if let selftest::PromiseState::Broken(how) = &promise.state {
-            console::print_error(format!("not held: {}: {how}\n", promise.attack));
+            console::print_error(format!("broken: {}: {how}\n", promise.attack));
         } else if done % 20 == 0 {
             console::print_error(format!("{done} attacks so far\n"));
         }
@@ -156,8 +156,8 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     let mut text = String::new();
     for promise in &table.promises {
         let (state, why) = match &promise.state {
-            selftest::PromiseState::Held => ("held", String::new()),
-            selftest::PromiseState::Broken(how) => ("NOT HELD", format!(" [{how}]")),
+            selftest::PromiseState::Held => ("kept", String::new()),
+            selftest::PromiseState::Broken(how) => ("BROKEN", format!(" [{how}]")),
             selftest::PromiseState::NotTested(why) => ("not tested", format!(" [{why}]")),
         };
         let _ = writeln!(text, "{state:<11} {:<28} {}{why}", promise.attack, promise.promise);
@@ -165,7 +165,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     let broken = table.broken().count();
     let held = format_count(table.count_held() as u64, "promise");
     let untested = table.promises.len() - table.count_held() - broken;
-    let _ = writeln!(text, "\n{held} held, {broken} not held, {untested} not tested here");
+    let _ = writeln!(text, "\n{held} kept, {broken} broken, {untested} not tested here");
     console::report(&text)?;
     Ok(if broken == 0 && table.count_held() > 0 { exit::ACCEPTED } else { exit::NOT_ACCEPTED })
 }

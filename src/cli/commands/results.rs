@@ -148,7 +148,7 @@ impl Results<'_> {
             tables.into_iter().for_each(&mut keep);
             keep(first.and_then(|first| first).map(|first| {
                 if let Some(first) = first {
-                    console::print_remark(format!("to look at: {}\n", first.display()));
+                    console::print_remark(format!("open in a browser: {}\n", first.display()));
                 }
             }));
         }

@@ -22,7 +22,7 @@ const RESULT_FILES: [&str; 2] = [".lock", "journal.jsonl"];
 const RESULT_FOLDERS: [&str; 5] = ["logs", "faults", "traces", "cards", "reports"];
 
 /// The reason why a folder with results is not a submission.
-const RESULTS_OF_A_GRADING: &str = "it holds the results of a grading";
+const RESULTS_OF_A_GRADING: &str = "it contains the results of a grading";
 
 /// The maximum number of entries in a class's folder.
 const MAX_ENTRIES: usize = 100_000;
@@ -169,7 +169,8 @@ impl<'a> Search<'a> {
         }
         if found.len() == before {
             bail!(
-                "{} holds no submission: no program, no archive ({}), no folder, and no {}; with --single the folder \
+                "{} contains no submission: no program, no archive ({}), no folder, and no {}; with --single the \
+                    folder \
                  itself is one",
                 folder.display(),
                 fosssim_intake::KNOWN_EXTENSIONS,
@@ -240,7 +241,7 @@ fn refuse_scene(path: &Path) -> Result<()> {
 
 fn skip_entry(passed_over: &mut Vec<SkippedEntry>, path: &Path, why: &str) {
     let name = names::printable(path.file_name().unwrap_or(path.as_os_str()));
-    console::print_error(format!("passed over {name}: {why}\n"));
+    console::print_error(format!("skipped {name}: {why}\n"));
     passed_over.push(SkippedEntry { name, why: why.to_owned() });
 }
 

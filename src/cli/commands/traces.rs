@@ -158,7 +158,7 @@ fn read(folder: &Folder, scene: &str, most: u64) -> io::Result<(Vec<u8>, Option<
         match folder.open_file(OsStr::new(&name), u64::MAX) {
             Ok((file, _)) => match unpack(file, most)? {
                 Ok(trace) => return Ok((trace, None)),
-                Err(why) => passed_over = passed_over.or_else(|| Some(format!("{name} is passed over: {why}"))),
+                Err(why) => passed_over = passed_over.or_else(|| Some(format!("{name} is skipped: {why}"))),
             },
             Err(FileError::Missing { .. }) => {}
             Err(FileError::System { source, .. }) => return Err(source),

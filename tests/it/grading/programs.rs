@@ -28,7 +28,7 @@ fn what_can_not_be_run_is_explained() {
     }
     for (words, arguments) in [
         ("no submission at missing", vec!["grade", "missing"]),
-        ("holds no submission", vec!["grade", "empty"]),
+        ("contains no submission", vec!["grade", "empty"]),
         ("no suite t9m9: it is neither a file nor one of", vec!["grade", "text", "--suite", "t9m9"]),
         ("no suite nowhere.toml", vec!["grade", "text", "--suite", "nowhere.toml"]),
         ("did you mean t2m2?", vec!["grade", "text", "--suite", "tm2m2"]),

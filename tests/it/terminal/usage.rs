@@ -182,8 +182,8 @@ fn slips_in_names_of_scenes_and_pairs_find_what_was_meant() {
 fn whoever_writes_into_a_file_is_told_where() {
     let workspace = Workspace::with_trace(BOUNCE);
     for (command, says) in [
-        (&["check", "scene.xml", "trace.bin", "--format", "html", "-o", "page.html"][..], "to look at: "),
-        (&["explain", "scene.xml", "trace.bin", "--format", "html", "-o", "page.html"], "to look at: "),
+        (&["check", "scene.xml", "trace.bin", "--format", "html", "-o", "page.html"][..], "open in a browser: "),
+        (&["explain", "scene.xml", "trace.bin", "--format", "html", "-o", "page.html"], "open in a browser: "),
         (&["check", "scene.xml", "trace.bin", "-o", "report.txt"], "written: "),
         (&["suite", "init", "-o", "course.toml"], "written: "),
     ] {

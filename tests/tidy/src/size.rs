@@ -27,7 +27,7 @@ const HUNDREDS: [(&str, usize); 22] = [
     ("lab", 5),
     // The worth of a mistake, and the smallest scenes that students see; nothing was removed for them here.
     ("mistakes", 64),
-    // The least work of Newton's iterations; the search for near pairs without a contest went.
+    // The least work of Newton's iterations; the search for nearby pairs without a contest went.
     ("model", 91),
     ("num", 37),
     ("original", 9),

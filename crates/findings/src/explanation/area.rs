@@ -16,7 +16,7 @@ fosssim_num::closed_set! {
         /// The repulsive force between bodies that are close to each other.
         Penalty = "Penalty force", "Look at what the penalty force adds to the gradient, for each kind of pair.";
         /// The search for the nearby pairs between which the penalty force acts.
-        NearPairs = "Search for near pairs", "Look at which pairs the search for near bodies finds, and how often.";
+        NearPairs = "Search for nearby pairs", "Look at which pairs the search for nearby pairs finds, and how often.";
         /// The polynomials of two particles.
         ParticleParticle = "Particle-particle",
             "Look at the coefficients that the particle-particle detection computes.";

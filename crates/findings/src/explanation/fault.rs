@@ -177,7 +177,8 @@ fosssim_num::closed_set! {
         Superfluous = "contacts are counted that its polynomials do not show",
             "collisions are found between bodies that do not overlap, or do not approach each other";
         /// Some contacts are missed, and others are reported that do not exist.
-        Both = "the polynomials are right, the decisions are not: contacts are missed, others are superfluous",
+        Both = "the polynomials are right, but the decisions are not: some contacts are missed, and others are \
+            superfluous",
             "some collisions are missed, and others are found that do not exist";
     }
     /// Returns the sentence for bodies that overlap at the end of a step.

@@ -44,8 +44,8 @@ impl NearPair {
     }
 }
 
-/// Returns how many times a step from `before` applied the force of each near pair: never, once or twice. The reference
-/// ends in `own`. Pairs whose velocities do not show the number are not included.
+/// Returns how often a step from `before` applied the force of each nearby pair: never, once or twice. The reference's
+/// step ends in `own`. Pairs whose velocities do not show the number are left out.
 #[must_use]
 pub fn count_applications(scene: &Scene, before: &State, own: &State, logged: &State) -> Vec<(Pair, usize)> {
     let context = Context::new(scene);
@@ -96,7 +96,7 @@ pub(super) fn explain(
     is_explained.then_some((found, faulty))
 }
 
-/// The near pairs of a step.
+/// The nearby pairs of a step.
 struct NearPairs {
     /// The pairs whose particles all have wrong velocities.
     candidates: Vec<NearPair>,

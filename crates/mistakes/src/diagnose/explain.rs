@@ -47,7 +47,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         return non_finite::explain_source(scene, source);
     }
     let TraceSamples { mut reference, not_finite, scan, detections } = sample_trace(scene, source);
-    // In the contest, students write only the search for near pairs.
+    // In the contest, students write only the search for nearby pairs.
     let is_contest = scene.assignment() == Assignment::T2M3;
     let pairs = if is_contest { near_pairs::explain(&mut reference, scene, &scan) } else { None };
     let KnownMistakes { explanations: mut known, unexplained: open, contradicted_keys: denies } =

@@ -8,7 +8,7 @@ fosssim_num::closed_set! {
         None = "none",
         /// Impulses on overlap at the end of the step.
         Simple = "simple",
-        /// A repelling force between near bodies.
+        /// A repulsive force between bodies that are close to each other.
         Penalty = "penalty",
         /// Continuous-time detection, one pass.
         ContinuousTime = "continuous-time",

@@ -26,7 +26,7 @@ pub enum Part {
     Zones,
     /// The rigid motion of one zone.
     Failsafe,
-    /// The contest's search for near pairs.
+    /// The contest's search for nearby pairs.
     NearPairs,
 }
 

@@ -96,7 +96,7 @@ impl PolynomialPlot<'_> {
             .map(|curve| format!("{} is positive {}", curve.name, clip_to_step(curve.positive)))
             .collect();
         if let Some(common) = self.common {
-            words.push(format!("all are positive {}", clip_to_step(common)));
+            words.push(format!("all polynomials are positive {}", clip_to_step(common)));
         }
         if let Some(time) = self.impact {
             words.push(format!("the time of impact is {}", format_short(time)));
@@ -208,7 +208,8 @@ mod tests {
         let plot = PolynomialPlot { title: "A ball", curves: &curves, common: Some(&both), impact: Some(0.5) };
         let svg = plot.svg(PlotTarget::File);
         assert!(svg.contains(
-            "<desc>overlap is positive from 0.5 to 1; approach is positive from 0 to 1; all are positive from 0.5 to \
+            "<desc>overlap is positive from 0.5 to 1; approach is positive from 0 to 1; all polynomials are positive \
+                from 0.5 to \
              1; the time of impact is 0.5. Each curve is scaled to its own largest value on the step.</desc>"
         ), "{svg}");
         insta::assert_snapshot!("curves", svg);

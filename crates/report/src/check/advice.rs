@@ -131,9 +131,9 @@ fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'s
 const fn pair_advice(is_doubled: bool) -> &'static [&'static str] {
     match is_doubled {
         false => &[
-            "the search for near pairs: it leaves this pair out",
+            "the search for nearby pairs: it leaves this pair out",
             "its bounds must include the radii and the thickness, and each body must be in every cell that it reaches",
         ],
-        true => &["the search for near pairs: it finds this pair twice, and the force is applied each time"],
+        true => &["the search for nearby pairs: it finds this pair twice, and the force is applied each time"],
     }
 }

@@ -137,8 +137,8 @@ fn format_percent(share: f64) -> String {
 /// Returns a sentence about which rule book accepts the trace, and which one rejects it.
 pub(crate) const fn describe_sides(cause: Cause) -> &'static str {
     if cause.original_fails() {
-        "the original fails this trace, the fair rules accept it"
+        "the original rejects this trace, but the fair rules accept it"
     } else {
-        "the original passes this trace, the fair rules reject it"
+        "the original accepts this trace, but the fair rules reject it"
     }
 }

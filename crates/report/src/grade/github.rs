@@ -97,7 +97,7 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
         if grade.unfit().is_some() {
             continue;
         }
-        let _ = writeln!(text, "| scenes | verdict | points | what happened |\n|---|---|---:|---|");
+        let _ = writeln!(text, "| scenes | verdict | points | reason |\n|---|---|---:|---|");
         let sum = |scenes: &[&SceneGrade]| format_optional_points(scenes.iter().map(|scene| scene.points).sum());
         for alike in by_cause(grade) {
             let names: Vec<&str> = alike.iter().map(|scene| scene.scene.as_str()).collect();

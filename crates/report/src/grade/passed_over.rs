@@ -11,7 +11,7 @@ use fosssim_findings::{Grade, SkippedEntry};
 /// skipped entries.
 pub fn add_warnings(grades: &mut [Grade], passed_over: &[SkippedEntry]) {
     if let [grade] = grades {
-        let words = |entry: &SkippedEntry| format!("passed over {}: {}", entry.name, entry.why);
+        let words = |entry: &SkippedEntry| format!("skipped {}: {}", entry.name, entry.why);
         grade.warnings.extend(passed_over.iter().map(words));
     }
 }

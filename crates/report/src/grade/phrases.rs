@@ -21,7 +21,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
         if mistake.is_not_finite() {
             return format!("{what} (in {explained} of {wrong})");
         }
-        let worth = describe_worth(grade, &mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
+        let worth = describe_worth(grade, &mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
         format!("{}: {what} (explains {explained} of {wrong}{worth})", std::mem::replace(&mut rank, "also likely"))
     };
     let located = grade.located.as_ref().map(words::describe_located);
@@ -59,9 +59,9 @@ pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
 pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
     scene.differs.map(|cause| {
         let verdicts = if cause.original_fails() {
-            "the original rejects it, the fair rules accept it"
+            "the original rejects it, but the fair rules accept it"
         } else {
-            "the original accepts it, the fair rules reject it"
+            "the original accepts it, but the fair rules reject it"
         };
         format!("the rule books differ: {verdicts}: {cause}")
     })

@@ -164,9 +164,9 @@ fn describe_books(grade: &Grade) -> String {
     match (grade.rules, grade.differing()) {
         (fosssim_judge::Rules::Parity, _) => "by the original's rules".to_owned(),
         (fosssim_judge::Rules::Fair, 0) => "by the fair rules".to_owned(),
-        (fosssim_judge::Rules::Both, 0) => "by the original's rules; the fair ones agree".to_owned(),
-        (fosssim_judge::Rules::Fair, _) => format!("by the fair rules; the original's differ in {other}"),
-        (fosssim_judge::Rules::Both, _) => format!("by the original's rules; the fair ones differ in {other}"),
+        (fosssim_judge::Rules::Both, 0) => "by the original's rules; the fair rules agree".to_owned(),
+        (fosssim_judge::Rules::Fair, _) => format!("by the fair rules; the original's rules differ in {other}"),
+        (fosssim_judge::Rules::Both, _) => format!("by the original's rules; the fair rules differ in {other}"),
     }
 }
 
@@ -207,7 +207,7 @@ impl<'a> Article<'a> {
         let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
         let details = words::list_details(scene).into_iter().skip(usize::from(is_shown));
         let mistakes = mistakes(&scene.settled, is_shown);
-        let no_room = |what: &str| format!("<p class=\"hint\">This page has no room for {what}.</p>\n");
+        let no_room = |what: &str| format!("<p class=\"hint\">This page has no space for {what}.</p>\n");
         let shown = match (card, room) {
             (None, _) => mistakes,
             (Some(card), Room::Words) if card.sizes().0 > 0 => mistakes + &no_room("the pictures and the motion"),
@@ -243,7 +243,7 @@ fn render_output(heading: &str, output: &str, room: &mut usize) -> String {
     let shown = text(&shown);
     if shown.len() > *room {
         *room = 0;
-        return "<p class=\"hint\">This page has no room for the output of programs in this scene and the next \
+        return "<p class=\"hint\">This page has no space for the output of programs in this scene and the next \
             ones.</p>\n"
             .to_owned();
     }

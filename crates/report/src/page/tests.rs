@@ -335,11 +335,11 @@ fn a_page_stays_below_its_budget_and_says_what_it_leaves_out() {
         assert!(html.len() < 3_000_000, "{count}: {}", html.len());
         assert_eq!(html.matches("<article").count(), count);
         let with = html.matches("id=\"submission-").count();
-        let lines = ["no room for the motion", "no room for the pictures and the motion"];
+        let lines = ["no space for the motion", "no space for the pictures and the motion"];
         let without: usize = lines.iter().map(|line| html.matches(line).count()).sum();
         assert_eq!(with + without, count);
         assert_eq!(html.contains("The page would grow beyond 3 MB"), count > 1);
-        assert_eq!(html.contains("no room for the output of programs in this scene and the next ones"), count > 1);
+        assert_eq!(html.contains("no space for the output of programs in this scene and the next ones"), count > 1);
         assert!(with > 0 && html.contains("Coefficients"), "{with}");
     }
 }

@@ -95,7 +95,7 @@ fn prepare(plan: &mut ChildPlan) -> Result<(Strings, Strings), Failure> {
     }
     // A change of user resets the parent-death signal, so the signal is set afterwards. If the parent has ended before,
     // this is detected here.
-    sys::die_with_parent().map_err(failure_at("bind the program's life to the supervisor's"))?;
+    sys::die_with_parent().map_err(failure_at("make the program end with the supervisor"))?;
     if std::os::unix::process::parent_id() != plan.supervisor {
         sys::exit_now(125);
     }

@@ -57,7 +57,7 @@ pub(super) fn build(order: &RunOrder) -> Result<(), Failure> {
             let real = real.ok_or(io::ErrorKind::NotFound)?;
             mount_copy(&real, &host_path(&real), order)
         });
-        laid.map_err(failure_at("put the working folder into memory"))?;
+        laid.map_err(failure_at("copy the working folder into memory"))?;
     }
     hide_own_files(order, Path::new("/"))?;
     add_processes(order)?;
@@ -100,7 +100,7 @@ pub(super) fn complete_view(
     let from = PathBuf::from(format!("/proc/self/fd/{}", folder.as_raw_fd()));
     mount_copy(&real, &from, order)
         .and_then(|()| memory_folder::add_files(&real, files))
-        .map_err(failure_at("put the working folder into memory"))?;
+        .map_err(failure_at("copy the working folder into memory"))?;
     hide_own_files(order, &real)?;
     close_root()
 }
@@ -109,7 +109,7 @@ pub(super) fn complete_view(
 /// that is in memory.
 fn new_root(order: &RunOrder) -> Result<FileView, Failure> {
     sys::set_file_mask(0o022);
-    mounts::make_mounts_private().map_err(failure_at("keep mounts to itself"))?;
+    mounts::make_mounts_private().map_err(failure_at("make the mounts private"))?;
     let (site, room) = (text(Path::new(BUILD_ROOT))?, text(Path::new(ROOT_OPTIONS))?);
     mounts::mount(c"tmpfs", &site, &room, false).map_err(failure_at("make a root folder"))?;
     let old = PathBuf::from(format!("{BUILD_ROOT}{OLD_ROOT_NAME}"));
@@ -148,7 +148,7 @@ fn hide_own_files(order: &RunOrder, beneath: &Path) -> Result<(), Failure> {
         return Ok(());
     }
     // The sample program may be graded at its own path, to demonstrate grading.
-    let program = wire::to_path(&order.program).canonicalize().map_err(failure_at("look at the program"))?;
+    let program = wire::to_path(&order.program).canonicalize().map_err(failure_at("examine the program"))?;
     for path in own.iter().filter(|path| **path != program) {
         hide(path).map_err(failure_at("hide the grader's own files"))?;
     }
@@ -202,8 +202,8 @@ pub(super) fn leave_processes(order: &RunOrder) -> Result<(), Failure> {
 }
 
 fn leave_host() -> Result<(), Failure> {
-    mounts::detach(&text(Path::new(OLD_ROOT_NAME))?).map_err(failure_at("leave the host's files"))?;
-    std::fs::remove_dir(OLD_ROOT_NAME).map_err(failure_at("leave the host's files"))
+    mounts::detach(&text(Path::new(OLD_ROOT_NAME))?).map_err(failure_at("detach the host's files"))?;
+    std::fs::remove_dir(OLD_ROOT_NAME).map_err(failure_at("detach the host's files"))
 }
 
 fn close_root() -> Result<(), Failure> {

@@ -155,7 +155,7 @@ impl Keeper {
     fn supervise(&mut self, request: RunRequest) -> u8 {
         let RunRequest { order, control, mut answers, folder, files } = request;
         let Some(held) = self.resources.take() else { return 1 };
-        let bound = sys::die_with_parent().map_err(failure_at("bind the supervisor's life to its keeper's"));
+        let bound = sys::die_with_parent().map_err(failure_at("make the supervisor end with its keeper"));
         let finished = bound
             .and_then(|()| file_view::complete_view(&order, folder.as_fd(), &files))
             .and_then(|()| Run::start(order, control, held, &self.prepared))

@@ -58,12 +58,12 @@ pub(super) fn fork_into_namespaces() -> Result<Fork, Failure> {
             ("/proc/self/uid_map", format!("{user} {user} 1")),
             ("/proc/self/gid_map", format!("{group} {group} 1")),
         ] {
-            std::fs::write(file, text).map_err(failure_at("name the user in its namespace"))?;
+            std::fs::write(file, text).map_err(failure_at("map the user into its namespace"))?;
         }
     }
     let side = sys::fork().map_err(failure_at("fork"))?;
     if matches!(side, Fork::Child) {
-        sys::die_with_parent().map_err(failure_at("bind the supervisor's life to its guardian's"))?;
+        sys::die_with_parent().map_err(failure_at("make the supervisor end with its guardian"))?;
     }
     Ok(side)
 }

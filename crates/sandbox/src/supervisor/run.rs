@@ -262,7 +262,7 @@ impl Run {
         );
         let out_of_memory = self.group.as_ref().is_some_and(Group::was_out_of_memory);
         self.record_cause(out_of_memory, RunEnd::MemoryLimit);
-        let (cpu, largest) = sys::children_usage().map_err(failure_at("ask for the usage"))?;
+        let (cpu, largest) = sys::children_usage().map_err(failure_at("read the resource usage"))?;
         let report = Report {
             cause: self.cause.take(),
             status: main_status.unwrap_or(0),

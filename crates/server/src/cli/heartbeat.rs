@@ -31,7 +31,7 @@ pub(super) fn say_stopping() {
 
 fn notify_systemd(state: &[NotifyState<'_>]) {
     if let Err(error) = sd_notify::notify(state) {
-        tracing::warn!(%error, "systemd can't be told");
+        tracing::warn!(%error, "systemd can't be notified");
     }
 }
 

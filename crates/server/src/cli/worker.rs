@@ -57,7 +57,7 @@ async fn work_for(server: &str, token_file: &Path, arguments: &WorkerArguments, 
     let token = token.trim();
     // The file's text is not repeated in the message, because it may be another secret.
     if !token.starts_with("fsw_") || !token.bytes().all(|c| c.is_ascii_alphanumeric() || c == b'_') {
-        bail!("{} holds no worker's token (fsw_...)", token_file.display());
+        bail!("{} contains no worker's token (fsw_...)", token_file.display());
     }
     let grader = find_grader(arguments.work.grader.as_deref())?;
     let folders = ServiceFolders::open(&arguments.place)?;

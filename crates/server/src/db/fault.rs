@@ -14,7 +14,7 @@ pub enum DbError {
     #[error("it exists already: {0}")]
     Conflict(String),
     /// A statement is wrong, or a value has an unexpected form.
-    #[error("the database refused: {0}")]
+    #[error("the database rejected the statement: {0}")]
     Other(String),
 }
 

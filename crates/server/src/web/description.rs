@@ -178,11 +178,11 @@ fn complete_parameter(parameter: &mut Parameter) {
         (ParameterIn::Path, "assignment") => (named("Slug"), "The assignment's name in addresses"),
         (ParameterIn::Path, "login") => (named("Slug"), "The account's login"),
         (ParameterIn::Path, "digest") => (named("Digest"), "The SHA-256 of the file's bytes"),
-        (ParameterIn::Path, "name") => (named("Slug"), "What it is called"),
+        (ParameterIn::Path, "name") => (named("Slug"), "Its name"),
         (ParameterIn::Path, "id") => (number_schema(1), "The number"),
         (ParameterIn::Query, "before") => (number_schema(0), "Only entries before this one"),
         (ParameterIn::Query, "format") => (text("^(csv|jsonl)$"), "`csv` or `jsonl`"),
-        (ParameterIn::Query, "form") => (text("^(program|sources|traces)$"), "The kind of the thing"),
+        (ParameterIn::Query, "form") => (text("^(program|sources|traces)$"), "The kind of the object"),
         (ParameterIn::Header, "Idempotency-Key") => (text("^[!-~]{1,200}$"), "A name that the sender chooses"),
         (ParameterIn::Header, "Fosssim-Lease") => {
             (text("^[0-9]{1,15}:[0-9]{1,15}:[0-9a-f]+$"), "The lease of the job, as JOB:ATTEMPT:KEY")

@@ -78,7 +78,7 @@ async fn check_in_turn(member: &Member, file: &Path, words: &[&str]) -> Result<R
         Ok(output) => serde_json::from_slice(&output?.stdout).ok(),
         Err(_) => None,
     };
-    let answer = answer.unwrap_or_else(|| Err("checking it takes too long, or too much memory".to_owned()));
+    let answer = answer.unwrap_or_else(|| Err("checking the file takes too long, or needs too much memory".to_owned()));
     if answer.is_ok() {
         member.note_right_archive();
     }

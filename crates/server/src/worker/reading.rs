@@ -16,7 +16,7 @@ pub(super) fn read_grade(file: &Path) -> Result<Outcome, String> {
         return Err(format!("grade.json has schema {}, this server reads {first} to {last}", report.schema));
     }
     let [grade] = report.grades.as_slice() else {
-        return Err(format!("grade.json holds {} grades instead of one", report.grades.len()));
+        return Err(format!("grade.json contains {} grades instead of one", report.grades.len()));
     };
     if grade.code == crate::task::JUDGE_ERROR {
         return Err("the grade is a judge error".to_owned());

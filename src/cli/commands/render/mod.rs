@@ -91,7 +91,8 @@ fn output_format(arguments: &RenderArguments) -> Result<RenderFormat> {
             output.display()
         ),
         None => bail!(
-            "say what to make of {}: --format svg or --format png for a folder with a picture per step, or a name that \
+            "choose the format of {}: --format svg or --format png for a folder with a picture per step, or a name \
+                that \
              ends in .gif or .mp4",
             output.display()
         ),
@@ -256,7 +257,7 @@ impl RenderTarget {
                 })?;
                 if folder.contains(&names(pictures + 1)) {
                     let line =
-                        format!("{} also holds older pictures, from {} on\n", folder.name(), names(pictures + 1));
+                        format!("{} also contains older pictures, from {} on\n", folder.name(), names(pictures + 1));
                     console::print_error(&line);
                 }
                 let files = match pictures {

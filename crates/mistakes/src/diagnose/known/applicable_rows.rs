@@ -11,7 +11,7 @@ use fosssim_student::{Area, Mistake, Row, RowKind, StepMistake, Term, all_rows};
 const MAX_DISTANT_PAIRS: usize = 5_000;
 
 /// Returns the rows that may explain a trace of the scene, in the order of the catalogue: mistakes in the code of the
-/// student of the scene's assignment. Missing records and near pairs are searched separately
+/// student of the scene's assignment. Missing records and nearby pairs are searched separately
 /// ([`near`](super::super::near)).
 pub(super) fn applicable_rows(scene: &Scene) -> impl Iterator<Item = &'static Row> {
     let is_tried = |row: &&Row| {

@@ -27,8 +27,8 @@ impl ApproachForm {
 }
 
 /// Returns the cost of a step without its polynomials, in units of a polynomial. Forces between all pairs are much
-/// cheaper than polynomials, and penalty forces check only near pairs. Solves of implicit integrators are counted when
-/// they happen.
+/// cheaper than polynomials, and penalty forces check only nearby pairs. Solves of implicit integrators are counted
+/// when they happen.
 pub(super) fn step_work(scene: &Scene) -> u64 {
     let of_pairs = match scene.collision {
         Collision::None => 0,

@@ -1,4 +1,4 @@
-//! The positions and boxes of the bodies of near pairs.
+//! The positions and boxes of the bodies of nearby pairs.
 use fosssim_model::{
     scene::{Edge, HalfPlane, Scene},
     sim::{Pair, PairKind, State},
@@ -22,7 +22,7 @@ pub(super) struct StepGeometry<'a> {
     boxes: Vec<BoundingBox>,
 }
 
-/// A near pair in a step, with its geometry.
+/// A nearby pair in a step, with its geometry.
 #[derive(Clone, Copy)]
 pub(super) struct PlacedPair<'a> {
     pub geometry: &'a StepGeometry<'a>,

@@ -1,7 +1,7 @@
-//! Finds the faults of a contest's search for near pairs.
+//! Finds the faults of a contest's search for nearby pairs.
 //!
 //! The search is the only code that a contest's student writes, so the force and the integrator are never named. The
-//! fair rules find how many times a step applied the force of each near pair. The trait of [`traits`] that best
+//! fair rules find how many times a step applied the force of each nearby pair. The trait of [`traits`] that best
 //! distinguishes wrong pairs from right ones shows where the search fails. All traces of a program are counted
 //! together.
 mod geometry;
@@ -52,7 +52,7 @@ pub struct PairTrait {
     pub exceptions: u64,
 }
 
-/// Returns the near pairs that wrong steps omit or apply twice, and those that they apply once.
+/// Returns the nearby pairs that wrong steps omit or apply twice, and those that they apply once.
 pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan) -> Option<Explanation> {
     let steps = scan.wrong_steps.iter().take(MAX_STEPS).chain(scan.right_steps.iter().take(MAX_STEPS / 4));
     let mut left = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);

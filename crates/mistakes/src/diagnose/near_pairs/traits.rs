@@ -141,9 +141,9 @@ traits! {
         "A multiple of {n} times the largest diameter from the smallest {axis} of all is between their smallest {axis}"
         |pair, axis, n| are_split(corners(pair), axis, n * pair.geometry.largest_size, pair.geometry.corner[axis]);
     ANY_AXIS TRAIT_LENGTHS "both bodies contain the same multiple of a round number {axis}"
-        "Both hold a multiple of {n} on {axis}" |pair, axis, n| have_common_border(pair, axis, n);
+        "Both contain a multiple of {n} on {axis}" |pair, axis, n| have_common_border(pair, axis, n);
     ANY_AXIS TRAIT_FACTORS "both bodies contain the same multiple of the largest diameter {axis}"
-        "Both hold a multiple of {n} times the largest diameter on {axis}"
+        "Both contain a multiple of {n} times the largest diameter on {axis}"
         |pair, axis, n| have_common_border(pair, axis, n * pair.geometry.largest_size);
     ANY_AXIS NO_NUMBER "a body extends to negative coordinates {axis}" "Its {axis} is less than 0"
         |pair, axis, _| pair.boxes().iter().any(|[low, _]| low[axis] < 0.0);

@@ -2,7 +2,7 @@
 //!
 //! Particles are sorted into strips by size ([`strips`]); edges, and particles of larger sizes, search for smaller
 //! particles in the rectangle that they reach. If particles are spread evenly, the time is proportional to their
-//! number. The result is a superset of the near pairs, with the same rounding as in the forces, so omitting the other
+//! number. The result is a superset of the nearby pairs, with the same rounding as in the forces, so omitting the other
 //! pairs never changes a bit.
 mod strips;
 #[cfg(test)]

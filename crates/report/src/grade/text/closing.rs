@@ -47,7 +47,7 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         }
         let verb = if mistake.is_not_finite() || mistake.is_unexplained() { "in" } else { "explains" };
         let what = strip_control_characters(&words::explanation::what_or(mistake));
-        let worth = describe_worth(grade, mistake).map(|worth| format!("; mending it is {worth}")).unwrap_or_default();
+        let worth = describe_worth(grade, mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
         let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");
         if let Some(note) = grade.note(mistake) {
             let _ = writeln!(text, "    The course: {}", one_line(&note.to_string()));

@@ -157,7 +157,7 @@ fn describe_rules(grade: &Grade) -> String {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
         (Rules::Fair | Rules::Both, 0) => String::new(),
         (Rules::Fair, differing) => {
-            format!(", by the fair rules (the original's differ in {})", format_count(differing, "scene"))
+            format!(", by the fair rules (the original's rules differ in {})", format_count(differing, "scene"))
         }
         (Rules::Both, differing) => {
             format!(", by the original's rules (the fair rules differ in {})", format_count(differing, "scene"))

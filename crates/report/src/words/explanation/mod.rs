@@ -43,10 +43,10 @@ pub fn what_or(explanation: &Explanation) -> String {
     let sentence = describe(explanation);
     match rivals.as_slice() {
         [] => sentence,
-        [one] => format!("{sentence} Or, with the same traces: {one}"),
-        [one, other] => format!("{sentence} Or, with the same traces: {one} Or: {other}"),
+        [one] => format!("{sentence} Another mistake gives the same traces: {one}"),
+        [one, other] => format!("{sentence} Two other mistakes give the same traces: {one} {other}"),
         [one, others @ ..] => {
-            format!("{sentence} Or, with the same traces: {one} Or one of {} other mistakes.", others.len())
+            format!("{sentence} Another mistake gives the same traces: {one} So do {} more mistakes.", others.len())
         }
     }
 }

@@ -39,7 +39,7 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
     let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
     // Velocities of pairs that press on each other are not mentioned, because they may reveal too much.
     if 50 * (once + twice) <= missing {
-        return "Not written yet: the search for near pairs. No pair is reported.".to_owned();
+        return "Not written yet: the search for nearby pairs. No pair is reported.".to_owned();
     }
     let of_fault = |fault: &PairFault<'_>| {
         let names = fault.kinds.iter().map(|pairs| kind_name(pairs.kind)).collect::<Vec<_>>().join(" and ");
@@ -107,7 +107,7 @@ mod tests {
         let told = |kinds: [PairCounts; 3]| describe(&WrongPairs { first: None, kinds: kinds.into() });
         assert_eq!(
             told([pairs(particles, [90, 1, 0]), pairs(edges, [4, 0, 0]), pairs(half_planes, [0; 3])]),
-            "Not written yet: the search for near pairs. No pair is reported."
+            "Not written yet: the search for nearby pairs. No pair is reported."
         );
         assert_eq!(
             told([pairs(particles, [3, 5, 0]), pairs(edges, [4, 0, 0]), pairs(half_planes, [0, 1, 30])]),

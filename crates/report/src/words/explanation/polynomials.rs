@@ -10,7 +10,7 @@ pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> 
     let place = capitalize(&names);
     match found {
         OfPolynomials::Guess(guess) => format!("{place}: {}.", describe_guess(guess)),
-        OfPolynomials::Missing => format!("Polynomials are not handed over: {names}."),
+        OfPolynomials::Missing => format!("Polynomials are not passed to the root finder: {names}."),
         OfPolynomials::NearlyRight => {
             format!("{place}: The formula is right, but has more round-off than the rules allow.")
         }

@@ -47,15 +47,15 @@ fn describe_fault(fault: &StageFault) -> String {
                 Some(LoopEnd::Settled) => " when nothing collides any more",
                 None => "",
             };
-            return format!("the polynomials of the rounds are right, but not the {what} that they hand over{when}");
+            return format!("the polynomials of the rounds are right, but not the {what} that they pass on{when}");
         }
         StageFault::FirstRound => "the polynomials of the first round are right, but not the state after it",
         StageFault::LaterRounds => {
             "isolated contacts of the first round are resolved correctly, but the state after the whole round is wrong"
         }
         StageFault::RoundsOfPrediction => {
-            "rounds after the first one detect on the predicted positions again, not on those after the preceding \
-            round"
+            "rounds after the first one detect collisions at the predicted positions again, not at the positions \
+                after the preceding round"
         }
         StageFault::BehindFirstRound => {
             "the first round is right, as the polynomials of the second one show, but later rounds are wrong"

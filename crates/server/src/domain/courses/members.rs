@@ -93,7 +93,7 @@ impl Staff {
         let Some(row) = transaction.row(statement, values).await? else { return Ok(()) };
         let (who, what) = (row.maybe_text("login")?.unwrap_or_default(), row.text("text")?);
         Err(Problem::conflict(
-            format!("{who} changed it meanwhile: {what}"),
+            format!("{who} has changed it in the meantime: {what}"),
             "load the page again, and change it there",
         ))
     }

@@ -215,7 +215,7 @@ impl Admin {
             let text = without_name(&row.text("text")?, login, &nobody);
             transaction.execute("UPDATE event SET text = ? WHERE id = ?", values![text, row.int("id")?]).await?;
         }
-        self.note(&mut transaction, "removed", "a person with all that was kept of them").await?;
+        self.note(&mut transaction, "removed", "a person with all their data").await?;
         Ok(transaction.commit().await?)
     }
 }

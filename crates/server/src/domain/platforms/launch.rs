@@ -76,7 +76,7 @@ impl App {
             return Ok(());
         }
         let remedy = "start the server with --public-url https://...";
-        Err(Problem::conflict("people come from learning platforms by HTTPS only", remedy))
+        Err(Problem::conflict("learning platforms can be used only over HTTPS", remedy))
     }
 
     /// Returns the address on this service to which platforms send people.

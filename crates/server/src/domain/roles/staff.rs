@@ -67,7 +67,11 @@ async fn check_revision(
     let last = transaction.row(statement, values![assignment.id]).await?;
     let last = last.map(|row| Ok::<_, DbError>((row.maybe_text("login")?.unwrap_or_default(), row.text("text")?)));
     let (who, what) = last.transpose()?.unwrap_or_default();
-    Err(Problem::conflict(format!("{who} changed it meanwhile: {what}"), "load the page again, and change it there"))
+    Err(Problem::conflict(
+        format!("{who} has changed it in the meantime: {what}"),
+        "load the page again, and change \
+        it there",
+    ))
 }
 
 impl Deref for Staff {

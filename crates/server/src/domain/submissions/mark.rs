@@ -104,7 +104,7 @@ impl Staff {
         let marked_at = submission.mark.as_ref().and_then(|mark| mark.marked_at);
         if let Some(mark) = submission.mark.as_ref().filter(|_| seen.is_some_and(|seen| seen != marked_at)) {
             let who = mark.by.as_deref().unwrap_or("somebody");
-            let detail = format!("{who} marked it meanwhile: {}", mark.comment);
+            let detail = format!("{who} has marked it in the meantime: {}", mark.comment);
             return Err(Problem::conflict(detail, "load the page again, and mark it there"));
         }
         let early = Problem::conflict("it is not graded yet", "wait for its grade");

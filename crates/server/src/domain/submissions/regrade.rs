@@ -169,7 +169,7 @@ impl Staff {
             self.app.0.notifier.commit(transaction).await?;
             return Err(Problem::conflict(
                 match missing {
-                    1 => "1 submission arrived meanwhile, and is graded now".to_owned(),
+                    1 => "1 submission arrived in the meantime, and is being graded".to_owned(),
                     _ => format!("{missing} submissions arrived since the regrade began, and are being graded"),
                 },
                 "check them, then apply",
@@ -339,7 +339,7 @@ fn describe_rules(rules: &Option<String>) -> String {
     match rules.as_deref() {
         None => "the suite's",
         Some("parity") => "the original's",
-        Some("both") => "the original's with the fair ones shown",
+        Some("both") => "the original's rules, with the fair rules shown",
         Some(other) => other,
     }
     .to_owned()

@@ -68,7 +68,7 @@ pub(super) async fn page(
         Err(_) => staff.student_history(&assignment.slug, asked.with.trim()).await?.submissions.into_iter().next(),
     };
     let missing = || {
-        let detail = format!("nothing graded of {:?} is here", asked.with.trim());
+        let detail = format!("there is no graded submission of {:?}", asked.with.trim());
         let remedy = "go back, and name the login of a member, or the number of a submission".to_owned();
         Problem { detail, remedy, ..Problem::not_found("") }
     };

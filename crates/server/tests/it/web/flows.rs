@@ -222,7 +222,7 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     let late = ada.submit("physics", &program("WA", 60));
     assert_eq!(ada.wait_for_grade("physics", late)["grade"]["points"], "60");
     let problem = admin.post_json(&format!("{base}/{id}/apply"), "").expect(409).json();
-    assert_eq!(problem["detail"], "1 submission arrived meanwhile, and is graded now");
+    assert_eq!(problem["detail"], "1 submission arrived in the meantime, and is being graded");
     assert_eq!(finished()["submissions"], 3);
     let page = admin.get(&format!("/c/physics/a/m1/regrades/{id}")).expect(200).text();
     assert!(page.contains("Why: rules: the suite"), "{page}");

@@ -86,7 +86,7 @@ async fn a_person_is_removed_by_name_too(fresh: Fresh) {
         let text = admin.get(place).expect(200).text();
         assert!(!text.contains("lovelace"), "{place}: {text}");
     }
-    assert!(admin.get("/api/v1/audit").expect(200).text().contains("a person with all that was kept of them"));
+    assert!(admin.get("/api/v1/audit").expect(200).text().contains("a person with all their data"));
     // The name is free again, for somebody who is new.
     let other = server.member(&admin, "physics", "ada.lovelace", "student");
     assert_eq!(

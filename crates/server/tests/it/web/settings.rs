@@ -89,7 +89,10 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
          &per_hour=0&late_days=0&late_percent=0&due=&due_zone=0&revision={seen}"
     );
     let refused = admin.post_form("/c/physics/a/m1/settings", &form).expect(409).text();
-    assert!(refused.contains("colleague changed it meanwhile") && refused.contains("attempts 3"), "{refused}");
+    assert!(
+        refused.contains("colleague has changed it in the meantime") && refused.contains("attempts 3"),
+        "{refused}"
+    );
     let stale = format!(r#"{{"title": "M", "settings": {{"attempts": 9}}, "revision": {seen}}}"#);
     admin.send("PUT", path, JSON, stale.as_bytes()).expect(409);
     // A field is a field: what others set stays, also without a revision.
@@ -103,7 +106,7 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     server.member(&colleague, "physics", "bob", "staff");
     let demoted = format!("login=bob&name=Bob&role=student&seen={seen}");
     let refused = admin.post_form("/c/physics/members", &demoted).expect(409).text();
-    assert!(refused.contains("colleague changed it meanwhile: bob is staff"), "{refused}");
+    assert!(refused.contains("colleague has changed it in the meantime: bob is staff"), "{refused}");
     admin.post_form("/c/physics/members/bob/remove", &format!("seen={seen}")).expect(409);
     let wish = format!(r#"{{"name": "Bob", "role": "student", "seen": {seen}}}"#);
     admin.send("PUT", "/api/v1/courses/physics/members/bob", JSON, wish.as_bytes()).expect(409);
@@ -123,7 +126,8 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     colleague.send("PUT", extension, JSON, br#"{"due_at": "2026-12-08T22:59Z"}"#).expect(204);
     let form = format!("due=2026-12-03T12:00&due_zone=0&seen={seen}");
     let refused = admin.post_form("/c/physics/a/m1/students/ada/extension", &form).expect(409).text();
-    assert!(refused.contains("colleague changed it meanwhile: ada hands in until 2026-12-08 22:59"), "{refused}");
+    let words = "colleague has changed it in the meantime: ada hands in until 2026-12-08 22:59";
+    assert!(refused.contains(words), "{refused}");
     let wish = format!(r#"{{"due_at": null, "seen": {seen}}}"#);
     admin.send("PUT", extension, JSON, wish.as_bytes()).expect(409);
     admin.send("DELETE", &format!("{extension}?seen={seen}"), &[], b"").expect(409);
@@ -138,7 +142,7 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     let seen = seen["mark"]["marked_at"].as_i64().expect("a moment");
     let other = format!(r#"{{"comment": "poor", "marked_at": {}}}"#, seen - 1);
     let refused = admin.send("PUT", &mark, JSON, other.as_bytes()).expect(409).text();
-    assert!(refused.contains("colleague marked it meanwhile: well done"), "{refused}");
+    assert!(refused.contains("colleague has marked it in the meantime: well done"), "{refused}");
     let form = format!("points=&comment=poor&marked_at={}", seen - 1);
     admin.post_form(&format!("/c/physics/s/{id}/mark"), &form).expect(409);
     admin.post_form(&format!("/c/physics/s/{id}/mark"), &format!("points=&comment=poor&marked_at={seen}")).expect(303);

@@ -32,7 +32,7 @@ slips! {
     /// Multiplies the term by this power of the distance.
     Length(i8) "has another factor";
     FirstMass "is multiplied by the mass of the first of its two bodies";
-    MassOfFirst "has the mass of the first particle for all";
+    MassOfFirst "uses the mass of the first particle for all particles";
     XOnly "loses its vertical component";
     YOnly "loses its horizontal component";
     Exchanged "has its two components exchanged";
@@ -71,7 +71,7 @@ slips! {
     Negated "measures the closest point of an edge in the wrong direction from its first end";
     Middle "uses the middle of the edge instead of its closest point";
     EndsOut "finds nothing beyond the ends of an edge";
-    ToPoint "goes to the point that defines the half-plane instead of its closest point";
+    ToPoint "uses the point that defines the half-plane instead of its closest point";
     Undivided "has the half-plane's normal with its own length instead of a unit vector";
     OneSided "has the direction of the half-plane's normal, on both of its sides";
     OneSidedLong "is along the half-plane's normal as it is given, on both of its sides";

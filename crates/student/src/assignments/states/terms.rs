@@ -136,7 +136,7 @@ terms! {
             &[SUM, BLOCKS, DISTANCE] ;
         JacobianDampingOuter "jacobian-damping-outer"
             "In the derivative of a spring's damping by positions the outer product with the velocity":
-            "n w^T (w n^T instead of it comes to nothing)" [0 0 0] false &[SUM] ;
+            "n w^T (using w n^T instead makes no difference)" [0 0 0] false &[SUM] ;
         JacobianDampingScalar "jacobian-damping-scalar"
             "In the derivative of a spring's damping by positions the term of the speed along the spring": "(n . w) I"
             [0 0 0] false &[SUM] ;

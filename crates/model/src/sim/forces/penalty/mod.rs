@@ -28,7 +28,7 @@ pub use pairs::PenaltyPairs;
 pub use sweep::SweepOrder;
 pub use terms::PenaltyTerms;
 
-/// The penalty force of a scene, with the memory to find near pairs.
+/// The penalty force of a scene, with the memory to find nearby pairs.
 #[derive(Debug, Clone)]
 pub(super) struct Penalty {
     parameters: PenaltyParameters,

@@ -1,7 +1,7 @@
 //! The pairs that a penalty force sums, and their order.
 //!
 //! The default is the order of a detection pass (collisions.md 1). In the contest (Theme 2, Milestone 3) the original
-//! searches for near pairs ([`Sweep`]), and sums pairs of particles, then particles with edges, then particles with
+//! searches for nearby pairs ([`Sweep`]), and sums pairs of particles, then particles with edges, then particles with
 //! half-planes.
 use super::sweep::{Sweep, SweepOrder};
 use crate::{
@@ -14,7 +14,7 @@ use crate::{
 };
 use fosssim_num::vector::{Vec2, vector_at};
 
-/// The pairs of a scene's penalty force, with the memory to find near pairs.
+/// The pairs of a scene's penalty force, with the memory to find nearby pairs.
 #[derive(Debug, Clone)]
 pub struct PenaltyPairs {
     radii: Vec<f64>,

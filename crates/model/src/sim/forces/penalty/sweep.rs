@@ -1,4 +1,4 @@
-//! The contest's search for near pairs, and the order in which it finds them (simulation.md 3.1).
+//! The contest's search for nearby pairs, and the order in which it finds them (simulation.md 3.1).
 //!
 //! Each body has a box of its radius without the layer; boxes that overlap on x and on y are near. If the scene has at
 //! least one edge per hundred particles, boxes must overlap on x + y and x - y as well. The search visits bodies in the
@@ -24,7 +24,7 @@ pub struct SweepOrder {
     edges: Vec<u32>,
 }
 
-/// The search for near pairs, with its memory.
+/// The search for nearby pairs, with its memory.
 #[derive(Debug, Clone)]
 pub(super) struct Sweep {
     has_four_axes: bool,
@@ -104,7 +104,7 @@ impl Sweep {
         }));
     }
 
-    /// Calls `visit` for all near pairs of particles, with the smaller number first.
+    /// Calls `visit` for all nearby pairs of particles, with the smaller number first.
     pub fn visit_particles(&self, mut visit: impl FnMut(usize, usize)) {
         let boxes = &self.particle_boxes[..];
         let mut hear_if_near = |one: &BodyExtent, other: &BodyExtent| {

@@ -29,14 +29,19 @@ const SUPPLIED_APPROACH: FamilyCell = No("the approach of edges is supplied, so 
 const SEPARATE_PRODUCTS: FamilyCell = No("the products of the overlap are separate rows");
 const ONE_RADIUS: FamilyCell = No("a half-plane has no radius");
 const AT_REST: FamilyCell = No("half-planes do not move");
-const ONE_IS_ENOUGH: FamilyCell = No("it holds a tolerance of the rules, for which one kind is enough");
+const ONE_IS_ENOUGH: FamilyCell = No("the row tests a tolerance of the rules, for which one kind of pair is enough");
 
 const PAIR_FAMILY: MistakeFamily = MistakeFamily {
     sides: &["pp-", "pe-", "ph-"],
     rows: &[
         (
             "displacements reversed",
-            &[Is("pp-displacements-swapped"), No("it affects all inputs"), No("it affects all inputs")],
+            &[
+                Is("pp-displacements-swapped"),
+                No("the mistake affects all inputs"),
+                No("the mistake affects all \
+                inputs"),
+            ],
         ),
         ("positions' index", &[Is("pp-position-index"), Is("pe-position-index"), Is("ph-position-index")]),
         ("lowest power first", &[Is("pp-reversed"), Is("pe-reversed"), Is("ph-reversed")]),
@@ -83,13 +88,21 @@ const PAIR_FAMILY: MistakeFamily = MistakeFamily {
         ("leading coefficient missing", &[Is("pp-no-quadratic"), Is("pe-three-terms"), Is("ph-no-quadratic")]),
         ("constant sign", &[Is("pp-constant-sign"), Is("pe-constant-minus-aa"), Is("ph-constant-sign")]),
         ("tiny error", &[Is("pp-tiny-error"), ONE_IS_ENOUGH, ONE_IS_ENOUGH]),
-        ("one component only", &[Is("pp-x-only"), No("it affects all inputs"), No("it affects all inputs")]),
+        (
+            "one component only",
+            &[
+                Is("pp-x-only"),
+                No("the mistake affects all inputs"),
+                No("the mistake affects all \
+            inputs"),
+            ],
+        ),
         ("approach negated", &[Is("pp-approach-negated"), Is("pe-approach-negated"), Is("ph-approach-negated")]),
         ("approach, slope's sign", &[Is("pp-approach-slope-sign"), SUPPLIED_APPROACH, Is("ph-approach-slope-sign")]),
         ("approach, slope twice", &[Is("pp-approach-slope-twice"), SUPPLIED_APPROACH, Is("ph-approach-slope-twice")]),
         (
             "approach, constant's sign",
-            &[Is("pp-separating"), SUPPLIED_APPROACH, No("its sign comes with a factor: ph-approach-no-speed")],
+            &[Is("pp-separating"), SUPPLIED_APPROACH, No("its sign is part of a factor: ph-approach-no-speed")],
         ),
         (
             "approach at the start",
@@ -200,7 +213,7 @@ const SUM_FAMILY: MistakeFamily = MistakeFamily {
             &[
                 Is("failsafe-center-at-end"),
                 No("a motion has no end"),
-                No("it is the same momentum up to round-off: momentum-from-end"),
+                No("the momentum is the same up to round-off: momentum-from-end"),
                 Is("failsafe-inertia-at-end"),
             ],
         ),
@@ -210,14 +223,14 @@ const SUM_FAMILY: MistakeFamily = MistakeFamily {
                 No("positions are already available"),
                 Is("failsafe-momentum-velocity"),
                 Is("failsafe-angular-velocity"),
-                No("it has no motion"),
+                No("the moment of inertia uses no motion"),
             ],
         ),
         (
             "about the origin",
             &[
                 No("the point is the center itself"),
-                No("it is about no point"),
+                No("the linear momentum is not about a point"),
                 Is("failsafe-about-origin"),
                 Is("failsafe-inertia-about-origin"),
             ],
