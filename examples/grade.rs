@@ -20,19 +20,19 @@ pub fn run(folder: &Path, suite: &str, supervisor: Supervisor) -> Result<String,
         submissions.push(Submission { name, path: entry.path(), program: None, file: None });
     }
     let grader = Grader {
-        plan: &plan::find(suite)?,
+        plan: &plan::find_suite(suite)?,
         backend: &Backend::with_all_layers(supervisor)?,
         program: "FOSSSim",
-        options: Options { jobs: 2, fail_fast: false, recorded: false },
-        faults: &Place::new(folder, "faults"),
-        traces: None,
+        options: Options { jobs: 2, fail_fast: false, uses_recordings: false },
+        fault_folder: &Place::new(folder, "faults"),
+        trace_file: None,
         cards: None,
         smallest: None,
         finish: None,
         timings: None,
         reference: None,
     };
-    let graded = batch::run(&grader, &submissions, None, &Cancellation::default(), &mut |_| {});
+    let graded = batch::grade_all(&grader, &submissions, None, &Cancellation::default(), &mut |_| {});
     let line = |grade: &fosssim_oracle::suite::Grade| {
         format!("{}: {:?}, {:?} of {} points\n", grade.submission, grade.verdict, grade.points, grade.max_points)
     };

@@ -89,7 +89,7 @@ pub fn trace(bytes: &[u8]) {
     let options = replay::Options { threads: 1, ..replay::Options::default() };
     let outcome = replay::judge(&scene, trace, &options, &mut ());
     let has_verdict = outcome.parity.overall != fosssim_oracle::judge::Overall::None;
-    assert_eq!(has_verdict, outcome.stop.is_none() && outcome.parity.endless.is_none());
+    assert_eq!(has_verdict, outcome.stop.is_none() && outcome.parity.endless_step.is_none());
 }
 
 /// The numbers at which arithmetic overflows, underflows, or has left the numbers: seeds of [`judge`].

@@ -1,5 +1,5 @@
 //! Selects scenes by name, for `grade --scene` and `scene list`.
-use crate::suite::{library, near};
+use crate::suite::{library, suggestions};
 use anyhow::{Context, Result, bail};
 use glob::Pattern;
 
@@ -46,7 +46,7 @@ const MAX_EXAMPLES: usize = 3;
 
 /// Returns the names that are most similar to a typed one, as words for a message.
 fn nearest_names(typed: &str, names: &[&str]) -> String {
-    let shown = near::nearest(typed, names.iter().copied(), MAX_EXAMPLES).join(", ");
+    let shown = suggestions::find_nearest(typed, names.iter().copied(), MAX_EXAMPLES).join(", ");
     if names.len() > MAX_EXAMPLES { format!("{shown} and {} more", names.len() - MAX_EXAMPLES) } else { shown }
 }
 

@@ -2,7 +2,7 @@
 use super::pin;
 use crate::{
     student::{self, Mistake, Student, all_rows},
-    suite::near,
+    suite::suggestions,
 };
 use clap::Parser;
 use std::{
@@ -93,7 +93,7 @@ fn student(pinned: Option<&str>, option: Option<String>, program: Option<&Path>)
 }
 
 fn parse_mistake(source: &str, id: &str) -> Result<Mistake, String> {
-    let meant = || near::suggest(id, all_rows().map(|row| row.id));
+    let meant = || suggestions::suggest(id, all_rows().map(|row| row.id));
     let unknown = || format!("{source} names the mistake '{id}', which does not exist; --list shows all{}", meant());
     student::find(id).map(|row| row.mistake).ok_or_else(unknown)
 }

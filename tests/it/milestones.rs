@@ -33,7 +33,7 @@ fn accepts(scene: &Scene, trace: &[u8]) -> bool {
 
 /// The scenes of a suite, without those that are large so that they can be timed.
 fn scenes(assignment: Assignment) -> Vec<(String, Scene)> {
-    let plan = plan::find(assignment.key()).unwrap_or_else(|error| panic!("{assignment:?}: {error}"));
+    let plan = plan::find_suite(assignment.key()).unwrap_or_else(|error| panic!("{assignment:?}: {error}"));
     let tasks = plan.scenes().filter(|task| task.scene.particles.len() < 1_000);
     tasks.map(|task| (task.name.clone(), task.scene.clone())).collect()
 }

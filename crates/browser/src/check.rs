@@ -44,7 +44,7 @@ pub(crate) fn answer(request: &CheckRequest, xml: Option<&[u8]>, host: &dyn Page
     // If bytes can't be read, this is noticed below.
     let _ = trace.by_ref().take(SNIFFED_BYTES).read_to_end(&mut start);
     let looks_like = looks_like(&start);
-    let options = Options { threads: 1, uses_fair_rules: request.rules.ask_fair(), ..Options::default() };
+    let options = Options { threads: 1, uses_fair_rules: request.rules.includes_fair(), ..Options::default() };
     let (mut told, mut wrong) = (PageProgress { host, all: scene.step_count() }, WrongSteps::new(StepChoice::None));
     let heard = &mut ObserverPair(&mut told, &mut wrong);
     let examined = examine(&scene, Cursor::new(start).chain(trace), KeptPart::All, &options, heard);

@@ -27,7 +27,7 @@ impl CourseSuite {
         let scenes = || groups.iter().flat_map(|group| &group.scenes);
         let own: Vec<&SceneTask> = scenes().filter(|task| !is_inside(task)).collect();
         let text = text(plan, &groups);
-        let read = plan::load_by(&text, &mut |pattern| {
+        let read = plan::load_with(&text, &mut |pattern| {
             let found = own.iter().filter(|task| pattern == glob::Pattern::escape(&file(task)));
             Ok(found.map(|task| (task.name.clone(), task.xml.clone())).collect())
         });
@@ -88,7 +88,7 @@ fn text(plan: &Plan, groups: &[&PlannedGroup]) -> String {
             string(&group.name),
             scenes.join(", "),
             group.marking.points,
-            group.marking.extra,
+            group.marking.is_extra,
             json!(group.marking.credit),
             group.marking.hints.describe().0
         );

@@ -3,7 +3,7 @@ use crate::{
     dropped::{PageHost, ReadFault, open},
     parts::PageAnswer,
 };
-use fosssim_grading::{library, near};
+use fosssim_grading::{library, suggestions};
 use fosssim_model::{
     assignments::Assignment,
     scene,
@@ -34,7 +34,7 @@ pub(crate) fn list() -> Value {
 /// Returns the XML of a scene. The name is `Group/name`.
 pub(crate) fn xml(name: &str) -> Result<&'static [u8], String> {
     library::scene(name).ok_or_else(|| {
-        let near = near::nearest(name, library::all_names(), 3).join(", asset:");
+        let near = suggestions::find_nearest(name, library::all_names(), 3).join(", asset:");
         format!("there is no scene asset:{name}; the nearest are asset:{near}")
     })
 }

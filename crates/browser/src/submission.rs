@@ -59,12 +59,13 @@ impl DroppedSubmission {
                 (std::str::from_utf8(text).map_err(|_| "the suite is not UTF-8")?, dropped)
             }
             _ => (
-                plan::built_in(&name).ok_or_else(|| format!("there is no suite {name}{}", plan::suggest(&name)))?,
+                plan::find_built_in_suite(&name)
+                    .ok_or_else(|| format!("there is no suite {name}{}", plan::suggest(&name)))?,
                 &[][..],
             ),
         };
         let mut files = |pattern: &str| matching(pattern, &asked.scenes, dropped);
-        let plan = plan::load_by(text, &mut files).map_err(|error| {
+        let plan = plan::load_with(text, &mut files).map_err(|error| {
             error.problems.iter().map(|(at, words)| format!("suite.toml:{at}: {words}\n")).collect::<String>()
         })?;
         let group = |group: &PlannedGroup| -> Value {
@@ -115,19 +116,20 @@ impl DroppedSubmission {
             |points, most| json!({ "points": grade::format_optional_points(points), "of": grade::format_points(most) });
         let scene = |scene: &SceneGrade| -> Value {
             let (points, most) = (grade::format_optional_points(scene.points), grade::format_points(scene.max_points));
-            json!({ "points": points, "of": most, "likely": scene.settled.first().map(explanation::describe) })
+            let likely = scene.corrected_explanations.first().map(explanation::describe);
+            json!({ "points": points, "of": most, "likely": likely })
         };
         let scenes: Vec<Value> = graded.scenes().map(scene).collect();
         let groups: Vec<Value> = graded.groups.iter().map(|group| points(group.points, group.max_points)).collect();
         let cause = |scenes: &grade::AlikeScenes<'_>| -> Value {
             let names: Vec<&str> = scenes.iter().map(|scene| scene.scene.as_str()).collect();
-            let likely: Vec<String> = scenes[0].settled.iter().map(explanation::describe).collect();
+            let likely: Vec<String> = scenes[0].corrected_explanations.iter().map(explanation::describe).collect();
             let words = if likely.is_empty() { words::summarize(scenes[0]) } else { likely.join(" ") };
             json!({ "words": words, "scenes": names })
         };
         let causes: Vec<Value> = grade::by_cause(&graded)
             .iter()
-            .filter(|scenes| !scenes[0].settled.is_empty() || scenes.len() > 1)
+            .filter(|scenes| !scenes[0].corrected_explanations.is_empty() || scenes.len() > 1)
             .map(cause)
             .collect();
         let value = json!({

@@ -1,6 +1,6 @@
 //! The changes of a submission since an earlier grading.
 use super::{
-    earlier::{EarlierGrade, EarlierGroup, EarlierScene},
+    earlier_grade::{EarlierGrade, EarlierGroup, EarlierScene},
     grade::{Grade, SceneGrade},
     verdict::Verdict,
 };
@@ -30,12 +30,12 @@ pub struct Changes<'a> {
     /// The points that the compared groups are worth.
     pub max_points: f64,
     /// The scenes that were not accepted before and are now.
-    pub right: Vec<&'a SceneGrade>,
+    pub newly_right: Vec<&'a SceneGrade>,
     /// The scenes that were accepted before and are not now.
-    pub broke: Vec<&'a SceneGrade>,
+    pub newly_wrong: Vec<&'a SceneGrade>,
     /// The scenes that were not accepted before and are not now, but have another verdict. Each has the earlier
     /// verdict.
-    pub others: Vec<(&'a SceneGrade, Verdict)>,
+    pub other_changes: Vec<(&'a SceneGrade, Verdict)>,
 }
 
 impl Grade {
@@ -43,7 +43,7 @@ impl Grade {
     /// counts as unchanged. Groups that are left out of this grade are not compared.
     #[must_use]
     pub fn changes(&self) -> Option<Changes<'_>> {
-        let before = self.before.as_ref()?;
+        let before = self.earlier_grade.as_ref()?;
         let is_here = |group: &&EarlierGroup| self.groups.iter().any(|own| own.name == group.name);
         let groups: Vec<&EarlierGroup> = before.groups.iter().filter(is_here).collect();
         let counted = || groups.iter().filter(|group| !group.extra);
@@ -52,17 +52,17 @@ impl Grade {
         let mut changes = Changes {
             points: counted().map(|group| group.points).sum(),
             max_points: counted().map(|group| group.max_points).sum(),
-            right: Vec::new(),
-            broke: Vec::new(),
-            others: Vec::new(),
+            newly_right: Vec::new(),
+            newly_wrong: Vec::new(),
+            other_changes: Vec::new(),
         };
         for scene in self.scenes().filter(|scene| scene.verdict != Verdict::NotRun) {
             let then = verdicts.get(&*scene.scene).and_then(|code| Verdict::from_code(code));
             match then.filter(|then| ![Verdict::NotRun, scene.verdict].contains(then)) {
                 None => {}
-                Some(_) if scene.verdict.is_accepted() => changes.right.push(scene),
-                Some(Verdict::Accepted) => changes.broke.push(scene),
-                Some(then) => changes.others.push((scene, then)),
+                Some(_) if scene.verdict.is_accepted() => changes.newly_right.push(scene),
+                Some(Verdict::Accepted) => changes.newly_wrong.push(scene),
+                Some(then) => changes.other_changes.push((scene, then)),
             }
         }
         Some(changes)

@@ -98,7 +98,7 @@ pub struct Judgement {
     pub findings: BookFindings,
     /// The first step that was not judged, because it would take too much work, or because the scene has no result
     /// there; `None` if all steps were judged.
-    pub given_up: Option<u32>,
+    pub first_unjudged_step: Option<u32>,
     /// The number of decisions about pairs in the trace, over all steps and passes.
     pub decisions: u64,
     /// The number of borderline decisions that differ from the reference's.
@@ -111,7 +111,7 @@ pub struct Judgement {
     /// The form of the approach polynomial that the trace uses.
     pub form: Form,
     /// The number of polynomials in which small coefficients are present on one side and dropped on the other.
-    pub lost: u64,
+    pub lost_decisions: u64,
     /// The shares of the tolerances that accepted values use.
     pub shares: Shares,
 }

@@ -1,11 +1,11 @@
 //! The grade of one submission, with the results of all scenes.
 use super::{
     Hints, Rules,
-    earlier::EarlierGrade,
+    earlier_grade::EarlierGrade,
     explanation::Explanation,
-    located::LocatedFailure,
+    located_failure::LocatedFailure,
     result::{BuildEnd, SceneResult},
-    smallest::SmallestScene,
+    smallest_scene::SmallestScene,
     speed::{SpeedGrade, SpeedSource},
     verdict::Verdict,
 };
@@ -93,18 +93,22 @@ pub struct Grade {
     /// The wall time of all runs together. It includes the runs whose results were reused.
     pub wall: Duration,
     /// The keys of mistakes that accepted scenes refute.
-    pub refuted: Vec<String>,
+    #[serde(rename = "refuted")]
+    pub refuted_keys: Vec<String>,
     /// The milestone that the program probably implements, if it is another one than the suite's.
-    pub looks_like: Option<Assignment>,
+    #[serde(rename = "looks_like")]
+    pub inferred_milestone: Option<Assignment>,
     /// The common contents of the scenes in which the program crashes or exceeds a limit, if the hints allow it.
-    pub located: Option<LocatedFailure>,
+    #[serde(rename = "located")]
+    pub located_failure: Option<LocatedFailure>,
     /// The digest of the program; `None` if the submission has no program that can be run.
     pub program: Option<String>,
     /// The names of other submissions in the class with an identical program, at most 20. Only staff see them.
     pub same_program: Vec<String>,
     /// The earlier grade with which this grade is compared.
     #[serde(default)]
-    pub before: Option<EarlierGrade>,
+    #[serde(rename = "before")]
+    pub earlier_grade: Option<EarlierGrade>,
     /// The smallest scene for each cause, if the user requested it.
     #[serde(default)]
     pub smallest: Vec<SmallestScene>,
@@ -130,7 +134,7 @@ impl Grade {
 
     /// Returns the extra points that the submission gets and the maximum; `None` if the suite has no extra points.
     #[must_use]
-    pub fn extra(&self) -> Option<(f64, f64)> {
+    pub fn extra_points(&self) -> Option<(f64, f64)> {
         let extra = || self.groups.iter().filter(|group| group.extra);
         let reached: Option<f64> = extra().map(|group| group.points).sum();
         extra().next().and(reached).map(|reached| (reached, extra().map(|group| group.max_points).sum()))
@@ -167,7 +171,7 @@ impl Grade {
 
     /// Returns the course's note on a mistake, if there is one.
     #[must_use]
-    pub fn note(&self, mistake: &Explanation) -> Option<&CourseNote> {
+    pub fn course_note(&self, mistake: &Explanation) -> Option<&CourseNote> {
         self.notes.get(&mistake.key)
     }
 
@@ -185,15 +189,15 @@ impl Grade {
     /// Returns whether some scenes were not run. The submission then has no points.
     #[must_use]
     pub fn is_incomplete(&self) -> bool {
-        self.count(Verdict::NotRun) > 0
+        self.count_verdict(Verdict::NotRun) > 0
     }
 
     /// Returns the reason why the submission as a whole could not be graded as usual. Either it has no program that can
     /// be run, it could not be built, it belongs to another milestone, or nothing is written in it yet. `None` if there
     /// is no such reason.
     #[must_use]
-    pub fn unfit(&self) -> Option<SubmissionFault<'_>> {
-        if let Some(other) = self.looks_like {
+    pub fn submission_fault(&self) -> Option<SubmissionFault<'_>> {
+        if let Some(other) = self.inferred_milestone {
             return Some(SubmissionFault::Milestone(other));
         }
         let first = self.scenes().next()?;
@@ -215,7 +219,7 @@ impl Grade {
 
     /// Returns whether both grades have the same scenes, in the same groups and for the same points.
     #[must_use]
-    pub fn is_of_the_suite_of(&self, other: &Self) -> bool {
+    pub fn has_same_suite(&self, other: &Self) -> bool {
         let alike = |(own, other): (&GroupGrade, &GroupGrade)| {
             (&own.name, own.visibility, own.hints, own.max_points)
                 == (&other.name, other.visibility, other.hints, other.max_points)
@@ -228,19 +232,19 @@ impl Grade {
 
     /// Returns the number of scenes whose results were reused from an earlier grading.
     #[must_use]
-    pub fn taken_over(&self) -> usize {
+    pub fn count_reused(&self) -> usize {
         self.scenes().filter(|scene| scene.cached).count()
     }
 
     /// Returns the number of scenes that the two rule books judge differently.
     #[must_use]
-    pub fn differing(&self) -> usize {
-        self.scenes().filter(|scene| scene.differs.is_some()).count()
+    pub fn count_differing(&self) -> usize {
+        self.scenes().filter(|scene| scene.difference_cause.is_some()).count()
     }
 
     /// Returns the number of scenes that have this verdict.
     #[must_use]
-    pub fn count(&self, verdict: Verdict) -> usize {
+    pub fn count_verdict(&self, verdict: Verdict) -> usize {
         self.scenes().filter(|scene| scene.verdict == verdict).count()
     }
 }
@@ -252,7 +256,8 @@ pub struct SkippedEntry {
     /// The name that the entry would have as a submission.
     pub name: String,
     /// The reason why the entry was skipped.
-    pub why: String,
+    #[serde(rename = "why")]
+    pub reason: String,
 }
 
 /// The result of building a submission.
@@ -319,9 +324,12 @@ pub struct SceneGrade {
     pub cached: bool,
     /// The likely mistakes in the scene that reports show, the likeliest first. If all scenes together show a common
     /// mistake, it comes from all of them; otherwise from this scene alone ([`SceneResult::explanations`]).
-    pub settled: Vec<Explanation>,
-    /// The number of explanations at the start of [`settled`](Self::settled) that come from all scenes together.
-    pub agreed: usize,
+    #[serde(rename = "settled")]
+    pub corrected_explanations: Vec<Explanation>,
+    /// The number of explanations at the start of [`corrected_explanations`](Self::corrected_explanations) that come
+    /// from all scenes together.
+    #[serde(rename = "agreed")]
+    pub agreed_count: usize,
 }
 
 impl GroupGrade {
@@ -345,7 +353,7 @@ impl SceneGrade {
     /// ([`SceneResult::withhold`]).
     pub fn withhold(&mut self) {
         self.result.withhold();
-        (self.settled, self.agreed) = (Vec::new(), 0);
+        (self.corrected_explanations, self.agreed_count) = (Vec::new(), 0);
     }
 }
 

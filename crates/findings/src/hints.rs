@@ -55,7 +55,7 @@ impl Hints {
     }
 
     fn disclose_book(self, book: DisclosedBook) -> DisclosedBook {
-        let cut = |finding: DisclosedFinding| self.cut(finding);
+        let cut = |finding: DisclosedFinding| self.limit_finding(finding);
         DisclosedBook {
             first_divergence: book.first_divergence.and_then(cut),
             examples: book.examples.into_iter().filter_map(cut).collect(),
@@ -65,9 +65,9 @@ impl Hints {
 
     /// Reduces a finding to what this level shows. Parts that an earlier level has removed are not restored.
     #[must_use]
-    pub const fn cut(self, finding: DisclosedFinding) -> Option<DisclosedFinding> {
+    pub const fn limit_finding(self, finding: DisclosedFinding) -> Option<DisclosedFinding> {
         match finding {
-            DisclosedFinding::Full(finding) => self.finding(&finding),
+            DisclosedFinding::Full(finding) => self.disclose_finding(&finding),
             DisclosedFinding::Place { .. } => Some(finding),
         }
     }
@@ -75,7 +75,7 @@ impl Hints {
     /// Returns the part of a finding that this level shows: nothing at [`Hints::None`], and no values below
     /// [`Hints::Full`].
     #[must_use]
-    pub const fn finding(self, finding: &Finding) -> Option<DisclosedFinding> {
+    pub const fn disclose_finding(self, finding: &Finding) -> Option<DisclosedFinding> {
         match self {
             Self::None => None,
             Self::Where | Self::What => Some(DisclosedFinding::Place {

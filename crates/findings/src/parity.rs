@@ -66,14 +66,14 @@ pub struct Judgement {
     pub findings: BookFindings,
     /// The first step that has no result, because the original does not terminate or gives up; `None` if all steps have
     /// one. Later steps are not judged.
-    pub endless: Option<StepError>,
+    pub endless_step: Option<StepError>,
 }
 
 impl Judgement {
     /// Sets the verdict (oracle-behavior.md 6). If judging stopped early, there is none.
     pub fn conclude(&mut self, is_stopped: bool, is_complete: bool) {
         self.findings.conclude();
-        if is_stopped || self.endless.is_some() {
+        if is_stopped || self.endless_step.is_some() {
             return;
         }
         let passed = self.findings.counts.collisions() == 0;

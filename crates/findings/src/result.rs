@@ -2,7 +2,7 @@
 use super::{
     cause::Cause,
     disclosure::Disclosure,
-    explanation::{About, Explanation},
+    explanation::{Explanation, ExplanationTopic},
     finding::FindingKind,
     timing::Timing,
     verdict::Verdict,
@@ -29,7 +29,8 @@ pub struct SceneResult {
     /// The way in which the program ended, if it was run.
     pub ended: Option<RunEnd>,
     /// The reason why the two rule books judge the trace differently; `None` if they agree.
-    pub differs: Option<Cause>,
+    #[serde(rename = "differs")]
+    pub difference_cause: Option<Cause>,
     /// The part of the trace that a report may show.
     pub disclosure: Option<Disclosure>,
     /// Likely mistakes, the likeliest first.
@@ -62,7 +63,7 @@ impl SceneResult {
             verdict,
             reason,
             ended: None,
-            differs: None,
+            difference_cause: None,
             disclosure: None,
             explanations: Vec::new(),
             right_steps: 0,
@@ -82,10 +83,10 @@ impl SceneResult {
     pub fn withhold(&mut self) {
         let harmless = match &self.reason {
             Reason::Right | Reason::Wrong(WrongTrace::Nothing) | Reason::NoTrace => true,
-            Reason::LeftOut(_) | Reason::Stopped | Reason::DoesNotBuild | Reason::Unusable(_) => true,
+            Reason::Skipped(_) | Reason::Stopped | Reason::DoesNotBuild | Reason::Unusable(_) => true,
             Reason::Wrong(_) | Reason::Trace(_) | Reason::Program(_) | Reason::Failed(_) | Reason::Withheld => false,
         };
-        self.explanations.retain(|one| matches!(one.about, About::Mistake | About::Unfinished));
+        self.explanations.retain(|one| matches!(one.topic, ExplanationTopic::Mistake | ExplanationTopic::Unfinished));
         for explanation in &mut self.explanations {
             (explanation.details, explanation.example) = (Vec::new(), None);
         }
@@ -124,7 +125,8 @@ pub enum Reason {
     /// The program failed. How it ended is in [`SceneResult::ended`], and the value is how far it came.
     Program(ProgramProgress),
     /// The scene was skipped, for this reason.
-    LeftOut(NotRunReason),
+    #[serde(rename = "LeftOut")]
+    Skipped(NotRunReason),
     /// Grading was interrupted.
     Stopped,
     /// The sources could not be built.
@@ -141,7 +143,8 @@ pub enum Reason {
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 pub enum WrongTrace {
     /// The hints do not show what is wrong.
-    Untold,
+    #[serde(rename = "Untold")]
+    Undisclosed,
     /// The trace logs no polynomials and no collisions.
     Nothing,
     /// The first record is wrong, and nothing else. The value is the kind of finding.
@@ -306,23 +309,29 @@ pub enum SavedTrace {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub enum BuildEnd {
     /// The build produced the program.
-    Made,
+    #[serde(rename = "Made")]
+    Success,
     /// The build ended with an exit code other than 0, or was stopped.
-    Ended(RunEnd),
+    #[serde(rename = "Ended")]
+    Failure(RunEnd),
     /// The build ended well, but did not produce a program of this name.
-    MadeNo(String),
+    #[serde(rename = "MadeNo")]
+    MissingProgram(String),
     /// The program that was built cannot be used, for the given reason.
-    Unusable(String),
+    #[serde(rename = "Unusable")]
+    UnusableProgram(String),
     /// The sources cannot be copied, for the given reason.
-    Sources(String),
+    #[serde(rename = "Sources")]
+    UnusableSources(String),
     /// The sources do not contain the script that builds them. The value is the script's name.
-    NoScript(String),
+    #[serde(rename = "NoScript")]
+    MissingScript(String),
 }
 
 impl BuildEnd {
     /// Returns whether the build produced the program.
     #[must_use]
     pub const fn is_success(&self) -> bool {
-        matches!(self, Self::Made)
+        matches!(self, Self::Success)
     }
 }

@@ -50,7 +50,7 @@ impl Rules {
 
     /// Returns whether the fair rules are requested.
     #[must_use]
-    pub const fn ask_fair(self) -> bool {
+    pub const fn includes_fair(self) -> bool {
         !matches!(self, Self::Parity)
     }
 }
@@ -85,7 +85,7 @@ impl Outcome {
                 Overall::Passed => Ruling::Accepted,
                 Overall::Failed => Ruling::WrongAnswer,
                 Overall::None if matches!(self.stop, Some(Stop::Trace { .. })) => Ruling::BadTrace,
-                Overall::None if self.parity.endless.is_some() || self.parity.findings.counts.total() > 0 => {
+                Overall::None if self.parity.endless_step.is_some() || self.parity.findings.counts.total() > 0 => {
                     Ruling::WrongAnswer
                 }
                 Overall::None => Ruling::Undecided,
@@ -99,7 +99,7 @@ impl Outcome {
     #[must_use]
     pub fn right_steps(&self, book: Book) -> u32 {
         let wrong = u32::try_from(self.findings_by(book).wrong_steps).unwrap_or(u32::MAX);
-        let right = self.judged_by(book).saturating_sub(wrong);
+        let right = self.steps_judged_by(book).saturating_sub(wrong);
         if self.ruling(book) == Ruling::Accepted {
             return right;
         }
@@ -108,17 +108,17 @@ impl Outcome {
 
     /// Returns the reason why judging by a rule book stopped early; `None` if it did not.
     #[must_use]
-    pub fn stop_of(&self, book: Book) -> Option<Stop> {
+    pub fn stop_by(&self, book: Book) -> Option<Stop> {
         let is_parity = book == Book::Parity || self.fair.is_none();
-        self.stop.clone().or(self.parity.endless.filter(|_| is_parity).map(Stop::Step))
+        self.stop.clone().or(self.parity.endless_step.filter(|_| is_parity).map(Stop::Step))
     }
 
     /// Returns the number of steps that were judged by a rule book.
     #[must_use]
-    pub fn judged_by(&self, book: Book) -> u32 {
+    pub fn steps_judged_by(&self, book: Book) -> u32 {
         let end = match (book, &self.fair) {
-            (Book::Fair, Some(fair)) => fair.given_up,
-            _ => self.parity.endless.map(|error| error.step()),
+            (Book::Fair, Some(fair)) => fair.first_unjudged_step,
+            _ => self.parity.endless_step.map(|error| error.step()),
         };
         end.map_or(self.steps_judged, |step| step - 1)
     }
@@ -146,7 +146,7 @@ mod tests {
             assert_eq!(rules.official() == Book::Fair, rules == Rules::Fair);
         }
         assert_eq!(read("kind"), None);
-        assert!(!Rules::Parity.ask_fair());
+        assert!(!Rules::Parity.includes_fair());
     }
 
     /// Points may follow from the steps: a trace that is not accepted never has all of them.

@@ -10,8 +10,8 @@ use std::sync::{
 #[derive(Debug, Default)]
 pub struct Cancellation {
     cancelled: AtomicBool,
-    next: AtomicU64,
-    running: Mutex<Vec<(u64, Canceller)>>,
+    next_number: AtomicU64,
+    running_programs: Mutex<Vec<(u64, Canceller)>>,
 }
 
 impl Cancellation {
@@ -32,7 +32,7 @@ impl Cancellation {
     /// Registers a run, until the returned value is dropped. If the grading has already been stopped, the run is ended
     /// immediately.
     pub(super) fn register(&self, canceller: Canceller) -> impl Drop + '_ {
-        let number = self.next.fetch_add(1, Ordering::Relaxed);
+        let number = self.next_number.fetch_add(1, Ordering::Relaxed);
         self.lock().push((number, canceller.clone()));
         if self.is_cancelled() {
             canceller.cancel();
@@ -41,7 +41,7 @@ impl Cancellation {
     }
 
     fn lock(&self) -> MutexGuard<'_, Vec<(u64, Canceller)>> {
-        self.running.lock().unwrap_or_else(PoisonError::into_inner)
+        self.running_programs.lock().unwrap_or_else(PoisonError::into_inner)
     }
 }
 

@@ -38,7 +38,7 @@ pub struct JudgedTrace<'a> {
 }
 
 /// A function that draws the card of a trace; `None` if there is nothing to show.
-pub type Draw<'a> = dyn Fn(&JudgedTrace<'_>) -> Option<String> + Sync + 'a;
+pub type DrawCard<'a> = dyn Fn(&JudgedTrace<'_>) -> Option<String> + Sync + 'a;
 
 /// The folder in which cards are stored, and the function that draws them.
 #[derive(Clone, Copy)]
@@ -46,7 +46,7 @@ pub struct Cards<'a> {
     /// The folder in which cards are stored. It is created when it is needed.
     pub folder: &'a Place,
     /// The function that draws a card.
-    pub draw: &'a Draw<'a>,
+    pub draw: &'a DrawCard<'a>,
     /// Whether cards for students are drawn as well.
     pub for_students: bool,
 }
@@ -60,8 +60,8 @@ impl Cards<'_> {
     /// # Errors
     ///
     /// Fails if a card can't be written.
-    pub fn keep(&self, judged: &JudgedTrace<'_>, students: Hints) -> io::Result<CardNames> {
-        let card = self.keep_one(judged)?;
+    pub fn store_cards(&self, judged: &JudgedTrace<'_>, students: Hints) -> io::Result<CardNames> {
+        let card = self.store_card(judged)?;
         if students >= judged.hints {
             return Ok((card.clone(), card));
         }
@@ -69,16 +69,16 @@ impl Cards<'_> {
             return Ok((card, None));
         }
         let explanations = limit_explanations(students, judged.explanations.to_vec());
-        Ok((card, self.keep_one(&JudgedTrace { explanations: &explanations, hints: students, ..*judged })?))
+        Ok((card, self.store_card(&JudgedTrace { explanations: &explanations, hints: students, ..*judged })?))
     }
 
-    fn keep_one(&self, judged: &JudgedTrace<'_>) -> io::Result<Option<String>> {
-        (self.draw)(judged).map(|card| store(self.folder, &card)).transpose()
+    fn store_card(&self, judged: &JudgedTrace<'_>) -> io::Result<Option<String>> {
+        (self.draw)(judged).map(|card| store_card_file(self.folder, &card)).transpose()
     }
 
     /// Returns whether a card is missing that an earlier result names. `students` is the level of detail for students.
     pub(super) fn lacks_card(&self, result: &SceneResult, students: Hints) -> bool {
-        let is_missing = |name: &String| !file(self.folder, name).is_file();
+        let is_missing = |name: &String| !card_location(self.folder, name).is_file();
         let shows_students = self.for_students && students > Hints::None;
         result.card.as_ref().is_some_and(|card| {
             is_missing(card) || shows_students && result.card_for_students.as_ref().is_none_or(is_missing)
@@ -91,9 +91,9 @@ impl Cards<'_> {
 /// # Errors
 ///
 /// Fails if the card can't be written.
-pub fn store(folder: &Place, card: &str) -> io::Result<String> {
+pub fn store_card_file(folder: &Place, card: &str) -> io::Result<String> {
     let name = blake3::hash(card.as_bytes()).to_hex()[..32].to_owned();
-    let path = file(folder, &name);
+    let path = card_location(folder, &name);
     if !path.is_file() {
         // The file gets its name after it is complete, because another job may write the same card.
         path.write(&zstd::encode_all(card.as_bytes(), COMPRESSION_LEVEL)?)?;
@@ -103,16 +103,16 @@ pub fn store(folder: &Place, card: &str) -> io::Result<String> {
 
 /// Reads a stored card from a folder; `None` if there is none, or if it was changed.
 #[must_use]
-pub fn read(folder: &Place, name: &str) -> Option<String> {
+pub fn read_card(folder: &Place, name: &str) -> Option<String> {
     let is_name = name.len() == 32 && name.bytes().all(|byte| byte.is_ascii_hexdigit());
-    let (packed, _) = is_name.then(|| file(folder, name).open_file(MAX_CARD_BYTES).ok()).flatten()?;
+    let (packed, _) = is_name.then(|| card_location(folder, name).open_file(MAX_CARD_BYTES).ok()).flatten()?;
     let mut text = String::new();
     io::Read::read_to_string(&mut io::Read::take(zstd::Decoder::new(packed).ok()?, MAX_CARD_BYTES), &mut text).ok()?;
     // The digest of a card is its name. If they differ, the file was changed and is ignored.
     (blake3::hash(text.as_bytes()).to_hex()[..32] == *name).then_some(text)
 }
 
-fn file(folder: &Place, name: &str) -> Place {
+fn card_location(folder: &Place, name: &str) -> Place {
     folder.join(format!("{name}.zst"))
 }
 
@@ -157,22 +157,25 @@ mod tests {
         let keep = |text: &'static str| {
             let draw = move |_: &JudgedTrace<'_>| (!text.is_empty()).then(|| text.to_owned());
             let cards = Cards { folder: &cards, draw: &draw, for_students: false };
-            cards.keep(&judged, Hints::Full).expect("written").0
+            cards.store_cards(&judged, Hints::Full).expect("written").0
         };
         assert_eq!(keep(""), None);
         assert!(!cards.path().exists(), "no folder for nothing");
         let (one, again, other) = (keep("one").expect("a card"), keep("one"), keep("other").expect("a card"));
         assert_eq!((again.as_ref(), one == other), (Some(&one), false));
         assert_eq!(cards.names().expect("a folder").len(), 2);
-        assert_eq!((read(&cards, &one).as_deref(), read(&cards, &other).as_deref()), (Some("one"), Some("other")));
+        assert_eq!(
+            (read_card(&cards, &one).as_deref(), read_card(&cards, &other).as_deref()),
+            (Some("one"), Some("other"))
+        );
         let lacks = |card: &str| {
             let result = SceneResult { card: Some(card.to_owned()), ..result.clone() };
             Cards { folder: &cards, draw: &|_| None, for_students: false }.lacks_card(&result, Hints::What)
         };
         assert!(!lacks(&one));
-        file(&cards, &one).write(&zstd::encode_all(&b"another"[..], 1).expect("packed")).expect("written");
-        file(&cards, &other).remove().expect("removed");
-        assert_eq!((read(&cards, &one), read(&cards, &other), read(&cards, "../x")), (None, None, None));
+        card_location(&cards, &one).write(&zstd::encode_all(&b"another"[..], 1).expect("packed")).expect("written");
+        card_location(&cards, &other).remove().expect("removed");
+        assert_eq!((read_card(&cards, &one), read_card(&cards, &other), read_card(&cards, "../x")), (None, None, None));
         assert!(lacks(&other));
     }
 
@@ -191,8 +194,8 @@ mod tests {
             (true, Hints::None, None),
         ] {
             let cards = Cards { folder: &place, draw: &draw, for_students };
-            let (card, own) = cards.keep(&judged, students).expect("written");
-            let text = |name: Option<&String>| name.and_then(|name| read(&place, name));
+            let (card, own) = cards.store_cards(&judged, students).expect("written");
+            let text = |name: Option<&String>| name.and_then(|name| read_card(&place, name));
             assert_eq!(text(card.as_ref()).as_deref(), Some("Full"));
             assert_eq!(text(own.as_ref()).as_deref(), expected, "{for_students} {students:?}");
             let mut told = SceneResult { card, card_for_students: own.clone(), ..result.clone() };
@@ -201,7 +204,7 @@ mod tests {
             assert_eq!(told.card, own);
             // A result of a grading that made no page for students is graded again for one.
             let kept = SceneResult { card_for_students: None, ..told };
-            let kept = SceneResult { card: cards.keep(&judged, students).expect("written").0, ..kept };
+            let kept = SceneResult { card: cards.store_cards(&judged, students).expect("written").0, ..kept };
             assert_eq!(cards.lacks_card(&kept, students), for_students && students > Hints::None);
         }
     }

@@ -1,10 +1,10 @@
 //! Reads `suite.toml`, which contains the scenes to grade, the limits, the points and the visibility.
 //!
 //! All problems are reported together, each with its line and column. The template that `suite init` writes documents
-//! the keys of the file ([`template`]).
+//! the keys of the file ([`suite_template`]).
 use super::{
-    near::find_closest,
-    shape::{self, Problem, RawBuild, RawGroup, RawLimits, RawMistake, RawSpeed, RawSuite},
+    suggestions::find_closest,
+    suite_shape::{self, Problem, RawBuild, RawGroup, RawLimits, RawMistake, RawSpeed, RawSuite},
 };
 use fosssim_findings::explanation::Explanation;
 pub use fosssim_findings::{CourseNote, Hints, Visibility, speed::SpeedMarking};
@@ -19,8 +19,8 @@ use std::{
 use toml::Spanned;
 
 pub use super::{
-    assignments::template,
-    shape::{Credit, POINTS_RANGE},
+    assignments::suite_template,
+    suite_shape::{Credit, POINTS_RANGE},
 };
 
 /// A suite that was read from its file and is valid. Its scenes are patterns until the scenes are found (see
@@ -32,7 +32,7 @@ pub struct Suite<Scene = Pattern> {
     /// The milestone whose programs the suite grades, if the file names one.
     pub milestone: Option<Assignment>,
     /// The command that runs a program. `{program}`, `{scene}` and `{trace}` in it are replaced.
-    pub run: Vec<String>,
+    pub command: Vec<String>,
     /// The rule books by which traces are judged. The official one gives verdicts and points.
     pub rules: Rules,
     /// The level of detail for staff. By default they see everything.
@@ -44,7 +44,7 @@ pub struct Suite<Scene = Pattern> {
     /// The limits that apply to each run.
     pub limits: RunLimits,
     /// The limits after which the remaining scenes of a submission are skipped.
-    pub patience: Patience,
+    pub skip_limits: SkipLimits,
     /// The course's notes on mistakes, by the mistakes' keys.
     pub notes: BTreeMap<String, CourseNote>,
     /// The groups of scenes, in the order of the file.
@@ -71,7 +71,7 @@ pub struct Pattern {
     /// The text of the pattern.
     pub text: String,
     /// The position of the pattern in the file, for messages about patterns that match nothing.
-    pub at: Position,
+    pub position: Position,
 }
 
 /// The settings of a group that concern its points and its visibility.
@@ -87,7 +87,7 @@ pub struct Marking {
     pub hints: Hints,
     /// Whether the points are extra points. They are shown with the others, but count in neither the sum nor the
     /// maximum.
-    pub extra: bool,
+    pub is_extra: bool,
     /// The points for speed, which a submission can get only if all scenes of the group are accepted.
     pub speed: Option<SpeedMarking>,
 }
@@ -143,14 +143,14 @@ impl Default for RunLimits {
 
 /// The limits after which the remaining scenes of a submission are skipped.
 #[derive(Debug, Clone, Copy, PartialEq)]
-pub struct Patience {
+pub struct SkipLimits {
     /// The number of consecutive scenes that may exceed a limit of time, memory or output. With 0 there is no limit.
     pub time_outs: u32,
     /// The limit on the wall time of all runs of a submission together, which includes judging.
     pub total: Duration,
 }
 
-impl Default for Patience {
+impl Default for SkipLimits {
     fn default() -> Self {
         Self { time_outs: 3, total: Duration::from_secs(600) }
     }
@@ -170,12 +170,12 @@ pub struct Position {
 struct PositionCounter<'a> {
     text: &'a str,
     offset: usize,
-    at: Position,
+    position: Position,
 }
 
 impl<'a> PositionCounter<'a> {
     fn new(text: &'a str) -> Self {
-        Self { text, offset: 0, at: Position { line: 1, column: 1 } }
+        Self { text, offset: 0, position: Position { line: 1, column: 1 } }
     }
 
     fn position(&mut self, offset: usize) -> Position {
@@ -183,12 +183,12 @@ impl<'a> PositionCounter<'a> {
             *self = Self::new(self.text);
         }
         for c in self.text.get(self.offset..offset).unwrap_or_default().chars() {
-            let Position { line, column } = self.at;
-            self.at =
+            let Position { line, column } = self.position;
+            self.position =
                 if c == '\n' { Position { line: line + 1, column: 1 } } else { Position { line, column: column + 1 } };
         }
         self.offset = offset;
-        self.at
+        self.position
     }
 }
 
@@ -212,14 +212,14 @@ pub struct SuiteError {
 /// Fails with all problems and their positions. Problems are wrong syntax, unknown keys, values out of range, and
 /// groups without scenes.
 pub fn read(text: &str) -> Result<Suite, SuiteError> {
-    let (suite, problems) = read_all(text);
+    let (suite, problems) = read_with_problems(text);
     if problems.is_empty() { Ok(suite) } else { Err(SuiteError { problems }) }
 }
 
 /// Reads a suite and returns all problems, in the order of the file. Invalid parts are left out or get their default
 /// values.
-pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
-    let (table, mut problems, is_readable) = shape::check_shape(text);
+pub(super) fn read_with_problems(text: &str) -> (Suite, Vec<(Position, String)>) {
+    let (table, mut problems, is_readable) = suite_shape::check_shape(text);
     let raw = RawSuite::deserialize(toml::Deserializer::from(table)).unwrap_or_else(|error| {
         problems.push((error.span().unwrap_or(0..0), error.message().trim().replace('\n', " ")));
         RawSuite::default()
@@ -231,9 +231,9 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     if let Some(name) = raw.name.as_ref().filter(|name| name.get_ref().trim().is_empty()) {
         problems.push((name.span(), "the suite's name is empty".to_owned()));
     }
-    let run = read_run(&mut problems, raw.run);
+    let run = read_command(&mut problems, raw.run);
     let raw_limits = raw.limits.unwrap_or_default();
-    let (limits, patience) = (read_limits(&raw_limits), read_patience(&raw_limits));
+    let (limits, patience) = (read_limits(&raw_limits), read_skip_limits(&raw_limits));
     let build = raw.build.map(|build| read_build(&mut problems, build));
     let is_without_groups = raw.group.as_ref().is_none_or(Vec::is_empty);
     if is_without_groups && is_readable {
@@ -253,7 +253,7 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     for group in &groups {
         if !group.name.is_empty() && !names.insert(&group.name) {
             problems.push((
-                group.scenes.first().map(|pattern| pattern.at).unwrap_or_default(),
+                group.scenes.first().map(|pattern| pattern.position).unwrap_or_default(),
                 format!("two groups have the name \"{}\"", group.name),
             ));
         }
@@ -261,13 +261,13 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
     let suite = Suite {
         name: raw.name.map(Spanned::into_inner).unwrap_or_default(),
         milestone: raw.milestone.as_deref().and_then(Assignment::from_key),
-        run,
+        command: run,
         rules: raw.rules.unwrap_or(Rules::Fair),
         staff_hints: Hints::Full,
         show_output: raw.show_output.unwrap_or(false),
         build,
         limits,
-        patience,
+        skip_limits: patience,
         notes,
         groups,
     };
@@ -276,12 +276,12 @@ pub(super) fn read_all(text: &str) -> (Suite, Vec<(Position, String)>) {
 }
 
 /// Returns the command line that the course prescribes for programs.
-pub(super) fn default_run() -> Vec<String> {
+pub(super) fn default_command() -> Vec<String> {
     ["{program}", "-s", "{scene}", "-d", "0", "-o", "{trace}"].map(str::to_owned).into()
 }
 
-fn read_run(problems: &mut Vec<Problem>, run: Option<Spanned<Vec<String>>>) -> Vec<String> {
-    let Some(run) = run else { return default_run() };
+fn read_command(problems: &mut Vec<Problem>, run: Option<Spanned<Vec<String>>>) -> Vec<String> {
+    let Some(run) = run else { return default_command() };
     for part in ["{program}", "{scene}", "{trace}"] {
         if !run.get_ref().iter().any(|word| word.contains(part)) {
             problems.push((run.span(), format!("run has no {part}, so the program would not get it; add it")));
@@ -300,10 +300,10 @@ fn read_limits(raw: &RawLimits) -> RunLimits {
     RunLimits {
         cpu: Duration::from_secs_f64(cpu),
         wall: Duration::from_secs_f64(wall),
-        memory: raw.memory_mib.map_or(default.memory, bytes),
-        output: raw.output_mib.map_or(default.output, bytes),
-        trace: raw.trace_mib.map_or(default.trace, bytes),
-        folder: raw.folder_mib.map_or(default.folder, bytes),
+        memory: raw.memory_mib.map_or(default.memory, mib_to_bytes),
+        output: raw.output_mib.map_or(default.output, mib_to_bytes),
+        trace: raw.trace_mib.map_or(default.trace, mib_to_bytes),
+        folder: raw.folder_mib.map_or(default.folder, mib_to_bytes),
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
         files: raw.files.map_or(default.files, |files| files as u64),
         sanitizers: raw.sanitizers.unwrap_or(default.sanitizers),
@@ -311,13 +311,13 @@ fn read_limits(raw: &RawLimits) -> RunLimits {
 }
 
 #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
-const fn bytes(mib: f64) -> u64 {
+const fn mib_to_bytes(mib: f64) -> u64 {
     (mib * (1 << 20) as f64) as u64
 }
 
-fn read_patience(raw: &RawLimits) -> Patience {
-    let default = Patience::default();
-    Patience {
+fn read_skip_limits(raw: &RawLimits) -> SkipLimits {
+    let default = SkipLimits::default();
+    SkipLimits {
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "the range has been checked")]
         time_outs: raw.time_outs.map_or(default.time_outs, |number| number as u32),
         total: raw.total_seconds.map_or(default.total, Duration::from_secs_f64),
@@ -341,7 +341,7 @@ fn read_build(problems: &mut Vec<Problem>, build: Spanned<RawBuild>) -> BuildSte
         command: raw.command.unwrap_or_default(),
         program: raw.program.unwrap_or_default(),
         wall: Duration::from_secs_f64(raw.wall_seconds.unwrap_or(120.0)),
-        memory: bytes(raw.memory_mib.unwrap_or(2048.0)),
+        memory: mib_to_bytes(raw.memory_mib.unwrap_or(2048.0)),
     }
 }
 
@@ -358,13 +358,13 @@ fn read_group(places: &mut PositionCounter<'_>, problems: &mut Vec<Problem>, raw
     let scenes = raw.scenes.map(Spanned::into_inner).unwrap_or_default().into_iter();
     let pattern = |pattern: Spanned<String>| {
         let at = places.position(pattern.span().start);
-        Pattern { text: pattern.into_inner(), at }
+        Pattern { text: pattern.into_inner(), position: at }
     };
     let (credit, visibility) = (raw.credit.unwrap_or(Credit::Scenes), raw.visibility.unwrap_or(Visibility::Visible));
     let note = read_note(problems, raw.text, raw.link, None);
     let speed = raw.speed.map(|speed| read_speed(problems, speed));
     let (hints, extra) = (raw.hints.unwrap_or(hints), raw.extra.unwrap_or(false));
-    let marking = Marking { points, credit, visibility, hints, extra, speed };
+    let marking = Marking { points, credit, visibility, hints, is_extra: extra, speed };
     Group { name, scenes: scenes.map(pattern).collect(), marking, note }
 }
 

@@ -2,14 +2,14 @@
 use super::{
     cancellation::Cancellation,
     cards::{Cards, JudgedTrace},
-    conclude::{ProgramRun, Run, SearchDepth, conclude},
+    conclusion::{JudgedRun, ProgramRun, SearchDepth, conclude},
     config::{Hints, RunLimits},
-    fault,
-    guard::{Fault, catch_panic},
+    failed_scene,
+    guard::{CaughtPanic, catch_panic},
     result::{Activity, Failure, Reason, SceneResult},
     staging::StagedProgram,
     task::SceneTask,
-    temporary::{Folders, TemporaryFolder},
+    temporary_folders::{Folders, TemporaryFolder},
     timings::{RunPart, Stopwatch, Timings},
     verdict::Verdict,
 };
@@ -44,7 +44,7 @@ pub struct Runner<'a> {
     /// The sandbox in which programs run.
     pub backend: &'a Backend,
     /// The command line of programs. `{program}`, `{scene}` and `{trace}` in it are replaced.
-    pub run: &'a [String],
+    pub command: &'a [String],
     /// The limits that apply to each run.
     pub limits: &'a RunLimits,
     /// The rule books by which traces are judged.
@@ -54,15 +54,15 @@ pub struct Runner<'a> {
     /// The level of detail for students about the scene.
     pub student_hints: Hints,
     /// Whether traces are compared with recordings instead of a simulation of the reference.
-    pub recorded: bool,
+    pub uses_recordings: bool,
     /// The source of working folders in which programs run.
     pub folders: &'a Folders,
     /// The switch that stops all runs.
     pub cancellation: &'a Cancellation,
     /// The folder for traces on which the grader failed. It is created when it is needed.
-    pub faults: &'a Place,
+    pub fault_folder: &'a Place,
     /// The file in which a trace is saved if it is not accepted; `None` if this was not requested.
-    pub trace: Option<&'a Place>,
+    pub trace_location: Option<&'a Place>,
     /// The storage of cards, if they were requested. Cards are drawn for all traces with findings.
     pub cards: Option<Cards<'a>>,
     /// The sums of the processor times of all runs, for `--timings`.
@@ -80,7 +80,7 @@ impl Runner<'_> {
             if self.cancellation.is_cancelled() {
                 return task.without_run(Verdict::NotRun, Reason::Stopped);
             }
-            match self.attempt(program, task, on_step) {
+            match self.try_grading(program, task, on_step) {
                 Ok(result) => return result,
                 Err(_) if attempt < MAX_ATTEMPTS => attempt += 1,
                 Err(words) => return task.failure_result(Failure::Machine(words)),
@@ -88,7 +88,7 @@ impl Runner<'_> {
         }
     }
 
-    fn attempt(
+    fn try_grading(
         &self,
         program: &StagedProgram,
         task: &SceneTask,
@@ -104,31 +104,31 @@ impl Runner<'_> {
         if let Some(timings) = self.timings {
             timings.add(RunPart::Program, outcome.cpu);
         }
-        watch.end(RunPart::Start);
+        watch.end_part(RunPart::Start);
         let (trace, trace_bytes) = self.open_trace(&left)?;
         // The trace is kept outside of the code that judges it. If that code panics, the trace can still be saved for
         // developers.
         let mut kept = KeptTrace::new(MAX_KEPT_BYTES);
         let mut rulings = StepRulings::default();
-        let mut told = StepReporter(on_step);
-        let heard = &mut ObserverPair(&mut rulings, &mut told);
-        let judged = self.judge_trace(program, task, &mut kept, trace, heard);
-        watch.end(RunPart::Judging);
+        let mut reporter = StepReporter(on_step);
+        let observer = &mut ObserverPair(&mut rulings, &mut reporter);
+        let judged = self.judge_trace(program, task, &mut kept, trace, observer);
+        watch.end_part(RunPart::Judging);
         drop(left);
         match is_untouched {
-            true => self.folders.keep(folder),
+            true => self.folders.keep_folder(folder),
             false => drop(folder),
         }
-        watch.end(RunPart::CleanUp);
-        let failed = |stage, fault: &Fault| fault::result(task, self.faults, stage, fault, kept.bytes());
+        watch.end_part(RunPart::CleanUp);
+        let failed = |stage, fault: &_| failed_scene::fault_result(task, self.fault_folder, stage, fault, kept.bytes());
         let judged = match judged {
             Ok(judged) => judged?,
             Err(fault) => return Ok(failed(Activity::Judging, &fault)),
         };
-        let run = Run {
+        let run = JudgedRun {
             task,
             program: &ProgramRun::from(&outcome),
-            judged: &judged,
+            outcome: &judged,
             trace_bytes,
             rules: self.rules,
             hints: self.hints,
@@ -138,11 +138,11 @@ impl Runner<'_> {
             Ok(result) => result,
             Err((activity, fault)) => return Ok(failed(activity, &fault)),
         };
-        watch.end(RunPart::Explaining);
+        watch.end_part(RunPart::Explaining);
         result.measured.judging = begin.elapsed().saturating_sub(result.measured.wall);
         if let Some(cards) = self.cards
             && !kept.bytes().is_empty()
-            && !(result.verdict.is_accepted() && result.differs.is_none())
+            && !(result.verdict.is_accepted() && result.difference_cause.is_none())
         {
             let judged = JudgedTrace {
                 scene: &task.scene,
@@ -155,16 +155,16 @@ impl Runner<'_> {
                 rules: self.rules,
                 hints: self.hints,
             };
-            let drawn = catch_panic(|| cards.keep(&judged, self.student_hints));
+            let drawn = catch_panic(|| cards.store_cards(&judged, self.student_hints));
             (result.card, result.card_for_students) = match drawn {
                 Ok(names) => names.map_err(|error| format!("the data of a page can't be stored: {error}"))?,
                 Err(fault) => return Ok(failed(Activity::Drawing, &fault)),
             };
         }
-        if let Some(place) = self.trace.filter(|_| !result.verdict.is_accepted()) {
+        if let Some(place) = self.trace_location.filter(|_| !result.verdict.is_accepted()) {
             place.write(kept.bytes()).map_err(|error| format!("the trace can't be stored: {error}"))?;
         }
-        watch.end(RunPart::Drawing);
+        watch.end_part(RunPart::Drawing);
         Ok(result)
     }
 
@@ -174,7 +174,7 @@ impl Runner<'_> {
     /// # Errors
     ///
     /// Fails if the grader or the machine fails. The error is the reason, as text.
-    pub fn collect(
+    pub fn collect_trace(
         &self,
         program: &Path,
         task: &SceneTask,
@@ -208,7 +208,7 @@ impl Runner<'_> {
         identity: Option<ProgramIdentity>,
         task: &SceneTask,
     ) -> Result<(RunningProgram, TemporaryFolder), String> {
-        let folder = self.folders.take().map_err(|error| format!("cannot make the run's folder: {error}"))?;
+        let folder = self.folders.take_folder().map_err(|error| format!("cannot make the run's folder: {error}"))?;
         let job = Job::new(program, folder.path())
             .arguments(self.arguments(program))
             .file(SCENE_FILE, task.xml.as_slice())
@@ -229,9 +229,9 @@ impl Runner<'_> {
         kept: &mut KeptTrace,
         mut trace: impl Read + Send,
         watch: &mut dyn Progress,
-    ) -> Result<Result<Outcome, String>, Fault> {
+    ) -> Result<Result<Outcome, String>, CaughtPanic> {
         let judged = catch_panic(|| {
-            fault::inject(Activity::Judging, &program.program);
+            failed_scene::inject(Activity::Judging, &program.program);
             self.judge(task, kept, &mut trace, watch)
         });
         // The judge has already reported an error of reading here.
@@ -249,10 +249,10 @@ impl Runner<'_> {
         let options = Options {
             stopping_book: self.rules.official(),
             threads: 1,
-            uses_fair_rules: self.rules.ask_fair(),
+            uses_fair_rules: self.rules.includes_fair(),
             ..Options::default()
         };
-        if !self.recorded {
+        if !self.uses_recordings {
             return Ok(replay::judge(&task.scene, kept.keep_from(trace), &options, watch));
         }
         let no_recording = || format!("{} has no recording: grade it without --recorded", task.name);
@@ -262,7 +262,7 @@ impl Runner<'_> {
     }
 
     fn arguments(&self, program: &Path) -> Vec<std::ffi::OsString> {
-        self.run
+        self.command
             .iter()
             .skip(1)
             .map(|word| {
@@ -291,8 +291,8 @@ impl Runner<'_> {
 
 /// Returns the result of a run that was judged, with its explanations. If the search for explanations panics, returns
 /// the panic.
-fn explain_run(run: &Run<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, Fault)> {
-    let mut explaining = catch_panic(|| fault::inject(Activity::Explaining, program)).err();
+fn explain_run(run: &JudgedRun<'_>, kept: &KeptTrace, program: &Path) -> Result<SceneResult, (Activity, CaughtPanic)> {
+    let mut explaining = catch_panic(|| failed_scene::inject(Activity::Explaining, program)).err();
     let explain = |look: SearchDepth| {
         catch_panic(|| look.explain(&run.task.scene, kept)).unwrap_or_else(|fault| {
             explaining = Some(fault);

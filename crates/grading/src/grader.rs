@@ -8,20 +8,20 @@ use super::{
     cards::Cards,
     config::Hints,
     execute::Runner,
+    failure_cause::{ContentIndex, Contents},
     grade::Grade,
     guard::catch_panic,
-    key::Key,
-    located::{ContentIndex, Contents},
-    one_file::OneFile,
-    patience,
+    key::ResultKey,
     plan::Plan,
+    program_file::ProgramFile,
     recipe::Recipe,
     result::{Failure, NotRunReason, Reason, SceneResult},
-    results::{KeepError, Results},
-    smallest::DescribeSmallest,
+    results::{Results, StoreError},
+    skipped_scenes,
+    smallest_scene::DescribeSmallest,
     staging::{self, StagedProgram},
     task::SceneTask,
-    temporary::Folders,
+    temporary_folders::Folders,
     timings::Timings,
     verdict::Verdict,
 };
@@ -46,7 +46,7 @@ pub struct Submission {
     /// in it are not followed.
     pub program: Option<String>,
     /// The identity that the program's file had when submissions were searched.
-    pub file: Option<OneFile>,
+    pub file: Option<ProgramFile>,
 }
 
 impl Submission {
@@ -64,7 +64,7 @@ pub struct Options {
     /// Whether the first scene that is not accepted ends the grading of a submission.
     pub fail_fast: bool,
     /// Whether traces are compared with recordings instead of a simulation of the reference.
-    pub recorded: bool,
+    pub uses_recordings: bool,
 }
 
 /// A function that returns the file in which the trace of a submission's scene is saved.
@@ -82,9 +82,9 @@ pub struct Grader<'a> {
     /// The options of the grading.
     pub options: Options,
     /// The folder for traces on which the grader failed. It is created when it is needed.
-    pub faults: &'a Place,
+    pub fault_folder: &'a Place,
     /// The function that names the files for traces that are not accepted; `None` if these are not saved.
-    pub traces: Option<&'a TraceFile<'a>>,
+    pub trace_file: Option<&'a TraceFile<'a>>,
     /// The storage of cards, if they were requested. Cards are drawn for all traces with findings.
     pub cards: Option<Cards<'a>>,
     /// The function that describes smallest scenes, if they were requested.
@@ -102,7 +102,7 @@ impl Grader<'_> {
     /// Returns the rules by which traces are judged. With recordings, only the original's rules can be applied, because
     /// the fair rules need a simulation from the submission's states.
     pub(super) const fn effective_rules(&self) -> Rules {
-        if self.options.recorded { Rules::Parity } else { self.plan.rules }
+        if self.options.uses_recordings { Rules::Parity } else { self.plan.rules }
     }
 
     /// Returns texts for everything that a result depends on, except for the program and the scene.
@@ -111,10 +111,10 @@ impl Grader<'_> {
         vec![
             walls.map(|report| report.layer.name()).collect::<Vec<_>>().join(","),
             self.effective_rules().name().to_owned(),
-            self.plan.run.join("\u{1f}"),
+            self.plan.command.join("\u{1f}"),
             format!("{:?}", self.plan.limits),
             format!("{:?}", self.plan.staff_hints),
-            format!("recorded={}", self.options.recorded),
+            format!("recorded={}", self.options.uses_recordings),
         ]
     }
 }
@@ -125,16 +125,16 @@ pub(super) struct SharedGrading<'a> {
     results: Option<&'a dyn Results>,
     folders: Folders,
     /// The texts for everything that a result depends on, except for the program and the scene. They are parts of keys.
-    words: Vec<String>,
+    conditions: Vec<String>,
     /// The keys of the results that this grading has stored.
-    kept: Mutex<BTreeSet<Key>>,
+    stored_keys: Mutex<BTreeSet<ResultKey>>,
     /// The keys of the results that jobs are producing. If two submissions have equal programs, the program is run
     /// once, and the other job waits for the result.
-    claimed: Mutex<BTreeSet<Key>>,
+    claimed_keys: Mutex<BTreeSet<ResultKey>>,
     /// The signal that a job no longer produces the result of a key.
-    released: Condvar,
+    key_released: Condvar,
     /// The reason why results can no longer be stored.
-    pub(super) full: OnceLock<KeepError>,
+    pub(super) storage_error: OnceLock<StoreError>,
     /// The contents of the plan's scenes. They are computed when they are first needed.
     contents: OnceLock<Vec<Contents>>,
     /// The copy of the reference program. It is made when a speed is first measured.
@@ -146,7 +146,18 @@ impl<'a> SharedGrading<'a> {
         let (folders, words, kept, claimed) =
             (Folders::default(), grader.conditions(), Mutex::default(), Mutex::default());
         let (full, contents, reference, released) = (OnceLock::new(), OnceLock::new(), OnceLock::new(), Condvar::new());
-        Self { cancellation, results, folders, words, kept, claimed, released, full, contents, reference }
+        Self {
+            cancellation,
+            results,
+            folders,
+            conditions: words,
+            stored_keys: kept,
+            claimed_keys: claimed,
+            key_released: released,
+            storage_error: full,
+            contents,
+            reference,
+        }
     }
 
     /// Returns the contents of each scene, from the reference's run. A scene that cannot be simulated to its end has
@@ -157,36 +168,42 @@ impl<'a> SharedGrading<'a> {
 
     /// Returns the copy of the reference program, or the reason why it cannot be copied.
     pub(super) fn reference(&self, program: &Path) -> Arc<Result<StagedProgram, String>> {
-        self.reference.get_or_init(|| Arc::new(staging::reference(program))).clone()
+        self.reference.get_or_init(|| Arc::new(staging::stage_reference(program))).clone()
     }
 
-    pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> Key {
+    pub(super) fn key(&self, digest: &blake3::Hash, scene: &SceneTask, called: &str, students: Hints) -> ResultKey {
         // A program may depend on its own name, so the name belongs to the key.
         let own = [scene.name.as_str(), called, students.describe().0];
-        let words: Vec<&str> = self.words.iter().map(String::as_str).chain(own).collect();
-        Key::from_program(digest, &scene.xml, &words)
+        let words: Vec<&str> = self.conditions.iter().map(String::as_str).chain(own).collect();
+        ResultKey::from_program(digest, &scene.xml, &words)
     }
 
     /// Finds a stored result, or the result of an identical program in this grading. A result is not used if a
     /// requested trace or card is missing.
-    fn find(&self, key: &Key, trace: Option<&Place>, cards: Option<Cards<'_>>, students: Hints) -> Option<FoundResult> {
+    fn find_result(
+        &self,
+        key: &ResultKey,
+        trace: Option<&Place>,
+        cards: Option<Cards<'_>>,
+        students: Hints,
+    ) -> Option<FoundResult> {
         let result = self.results?.find(key)?;
         let lacks_trace = trace.is_some_and(|trace| !result.verdict.is_accepted() && !trace.is_file());
         let lacks_card = cards.is_some_and(|cards| cards.lacks_card(&result, students));
-        let cached = !lock(&self.kept).contains(key);
+        let cached = !lock(&self.stored_keys).contains(key);
         (!lacks_trace && !lacks_card).then_some(FinishedScene { result, cached, claim: None })
     }
 
     /// Waits until no other job works on a key. Then returns the result if there is one, and otherwise claims the key.
     fn claim<'s>(
         &'s self,
-        key: Key,
-        find: impl Fn(&Key) -> Option<FoundResult>,
+        key: ResultKey,
+        find: impl Fn(&ResultKey) -> Option<FoundResult>,
     ) -> Result<KeyClaim<'s>, Box<FoundResult>> {
-        let mut claimed = lock(&self.claimed);
+        let mut claimed = lock(&self.claimed_keys);
         // If results are not stored, there is no result for which to wait.
         while self.results.is_some() && claimed.contains(&key) {
-            claimed = self.released.wait(claimed).unwrap_or_else(PoisonError::into_inner);
+            claimed = self.key_released.wait(claimed).unwrap_or_else(PoisonError::into_inner);
         }
         match find(&key) {
             Some(done) => Err(Box::new(done)),
@@ -199,15 +216,15 @@ impl<'a> SharedGrading<'a> {
 
     /// Stores a result. If storing fails, the grading is stopped, because further work would be lost. Errors of the
     /// grader, and scenes that were not run, are not stored, so that they are tried again.
-    pub(super) fn keep(&self, key: &Key, submission: &Submission, result: &SceneResult) {
+    pub(super) fn store_result(&self, key: &ResultKey, submission: &Submission, result: &SceneResult) {
         let Some(results) = self.results else { return };
-        if self.full.get().is_some() || matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun) {
+        if self.storage_error.get().is_some() || matches!(result.verdict, Verdict::JudgeError | Verdict::NotRun) {
             return;
         }
-        lock(&self.kept).insert(key.clone());
-        let kept = catch_panic(|| results.keep(key, &submission.name, result));
-        if let Err(error) = kept.unwrap_or_else(|fault| Err(KeepError(fault.to_string()))) {
-            let _ = self.full.set(error);
+        lock(&self.stored_keys).insert(key.clone());
+        let kept = catch_panic(|| results.store(key, &submission.name, result));
+        if let Err(error) = kept.unwrap_or_else(|fault| Err(StoreError(fault.to_string()))) {
+            let _ = self.storage_error.set(error);
             self.cancellation.cancel();
         }
     }
@@ -217,13 +234,13 @@ impl<'a> SharedGrading<'a> {
 /// is dropped.
 struct KeyClaim<'s> {
     shared: &'s SharedGrading<'s>,
-    key: Key,
+    key: ResultKey,
 }
 
 impl Drop for KeyClaim<'_> {
     fn drop(&mut self) {
-        lock(&self.shared.claimed).remove(&self.key);
-        self.shared.released.notify_all();
+        lock(&self.shared.claimed_keys).remove(&self.key);
+        self.shared.key_released.notify_all();
     }
 }
 
@@ -246,7 +263,7 @@ impl FinishedScene<'_> {
 }
 
 /// A message about the progress of a scene.
-pub(super) enum SceneNews {
+pub(super) enum SceneEvent {
     /// The run of the scene begins.
     Begins,
     /// Judging has reached this step. This is not reported for every step.
@@ -272,11 +289,11 @@ pub(super) struct SubmissionGrading<'a> {
 /// The results of a submission's scenes so far.
 struct SubmissionProgress {
     /// For each finished scene, its verdict, and the time that its run and its judging took.
-    done: Vec<Option<(Verdict, Duration)>>,
+    finished: Vec<Option<(Verdict, Duration)>>,
     /// The first scene that is skipped, and the reason; `None` if no scene is skipped so far.
-    end: Option<(usize, NotRunReason)>,
+    skip_start: Option<(usize, NotRunReason)>,
     /// For each reported scene, its result, and whether the result was reused.
-    told: Vec<Option<(SceneResult, bool)>>,
+    reported: Vec<Option<(SceneResult, bool)>>,
     /// The number of scenes whose results are not reported yet.
     missing: usize,
 }
@@ -292,13 +309,13 @@ impl<'a> SubmissionGrading<'a> {
             submission,
             digest: OnceLock::new(),
             staged: Mutex::default(),
-            known: Mutex::new(SubmissionProgress { done, end: None, told, missing }),
+            known: Mutex::new(SubmissionProgress { finished: done, skip_start: None, reported: told, missing }),
         }
     }
 
     /// Finds or produces the result of a scene, stores it, and reports it. `number` is the scene's index in the plan.
     /// After the last scene, the grade is reported as well.
-    pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) {
+    pub(super) fn grade_scene(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneEvent)) {
         let done = catch_panic(|| self.find_or_run(number, scene, tell)).unwrap_or_else(|fault| {
             FinishedScene::without_claim(scene.failure_result(Failure::Panic {
                 stage: None,
@@ -307,35 +324,35 @@ impl<'a> SubmissionGrading<'a> {
             }))
         });
         let FinishedScene { result, cached, claim } = done;
-        self.note(number, &result);
+        self.record_result(number, &result);
         if let Some(claim) = claim {
-            self.shared.keep(&claim.key, self.submission, &result);
+            self.shared.store_result(&claim.key, self.submission, &result);
         }
-        tell(SceneNews::Done(cached));
+        tell(SceneEvent::Done(cached));
         let mut known = lock(&self.known);
-        known.told[number] = Some((result, cached));
+        known.reported[number] = Some((result, cached));
         known.missing -= 1;
         if known.missing == 0 {
-            let results = std::mem::take(&mut known.told).into_iter().flatten().collect();
+            let results = std::mem::take(&mut known.reported).into_iter().flatten().collect();
             drop(known);
             let grade = Box::new(self.grade(results));
             if let Some(finish) = self.grader.finish {
                 finish(&grade);
             }
-            tell(SceneNews::Graded(grade));
+            tell(SceneEvent::Graded(grade));
         }
     }
 
-    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneNews)) -> FinishedScene<'a> {
+    fn find_or_run(&self, number: usize, scene: &SceneTask, tell: &mut dyn FnMut(SceneEvent)) -> FinishedScene<'a> {
         let without_run = |verdict, why| FinishedScene::without_claim(scene.without_run(verdict, why));
-        if let Some(why) = self.left_out(number) {
-            return FinishedScene::without_claim(patience::left_out(scene, why));
+        if let Some(why) = self.skip_reason(number) {
+            return FinishedScene::without_claim(skipped_scenes::skipped_result(scene, why));
         }
-        tell(SceneNews::Begins);
+        tell(SceneEvent::Begins);
         let (grader, shared, submission) = (self.grader, self.shared, self.submission);
-        let trace = grader.traces.map(|path| path(submission, scene));
+        let trace = grader.trace_file.map(|path| path(submission, scene));
         let students = grader.plan.student_hints(&scene.name);
-        let find = |key: &Key| shared.find(key, trace.as_ref(), grader.cards, students);
+        let find = |key: &ResultKey| shared.find_result(key, trace.as_ref(), grader.cards, students);
         // If the digest is known without a copy, the result is found or claimed before anything is copied.
         let known = self.digest().map(|digest| shared.key(&digest, scene, &submission.program_name(), students));
         let known = match known.map(|key| shared.claim(key, find)).transpose() {
@@ -344,7 +361,7 @@ impl<'a> SubmissionGrading<'a> {
         };
         match &*self.staged_program() {
             Err(message) => FinishedScene::without_claim(scene.failure_result(Failure::Machine(message.clone()))),
-            Ok(StagedProgram { refused: Some(why), .. }) => {
+            Ok(StagedProgram { unusable_reason: Some(why), .. }) => {
                 without_run(Verdict::Unusable, Reason::Unusable(why.clone()))
             }
             Ok(staged) if staged.build.as_ref().is_some_and(|build| !build.end.is_success()) => {
@@ -371,65 +388,69 @@ impl<'a> SubmissionGrading<'a> {
         staged: &StagedProgram,
         scene: &SceneTask,
         trace: Option<&Place>,
-        tell: &mut dyn FnMut(SceneNews),
+        tell: &mut dyn FnMut(SceneEvent),
     ) -> SceneResult {
         let mut told = Instant::now();
         let mut on_step = |step| {
             // At most ten steps are reported per second, because more would only fill the channel.
             if told.elapsed() > Duration::from_millis(100) {
                 told = Instant::now();
-                tell(SceneNews::Step(step));
+                tell(SceneEvent::Step(step));
             }
         };
-        self.runner(scene, trace).grade(staged, scene, &mut on_step)
+        self.new_runner(scene, trace).grade(staged, scene, &mut on_step)
     }
 
     /// Returns a runner for a scene. If the trace is not accepted, the runner saves it in `trace`.
-    pub(super) fn runner<'b>(&'b self, scene: &SceneTask, trace: Option<&'b Place>) -> Runner<'b> {
+    pub(super) fn new_runner<'b>(&'b self, scene: &SceneTask, trace: Option<&'b Place>) -> Runner<'b> {
         let grader = self.grader;
         Runner {
             backend: grader.backend,
-            run: &grader.plan.run,
+            command: &grader.plan.command,
             limits: &grader.plan.limits,
             rules: grader.effective_rules(),
             hints: grader.plan.staff_hints,
             student_hints: grader.plan.student_hints(&scene.name),
-            recorded: grader.options.recorded,
+            uses_recordings: grader.options.uses_recordings,
             folders: &self.shared.folders,
             cancellation: self.shared.cancellation,
-            faults: grader.faults,
-            trace,
+            fault_folder: grader.fault_folder,
+            trace_location: trace,
             cards: grader.cards,
             timings: grader.timings,
         }
     }
 
     /// Returns the reason why a scene is skipped; `None` if it is run.
-    fn left_out(&self, scene: usize) -> Option<NotRunReason> {
-        lock(&self.known).end.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
+    fn skip_reason(&self, scene: usize) -> Option<NotRunReason> {
+        lock(&self.known).skip_start.filter(|&(end, _)| scene >= end).map(|(_, why)| why)
     }
 
     /// Records a result, and decides whether further scenes are skipped because of it.
-    fn note(&self, scene: usize, result: &SceneResult) {
+    fn record_result(&self, scene: usize, result: &SceneResult) {
         let mut known = lock(&self.known);
-        known.done[scene] = Some((result.verdict, result.measured.wall + result.measured.judging));
-        if known.end.is_none_or(|(end, _)| scene < end) {
-            let end = patience::find_end(&self.grader.plan.patience, self.grader.options.fail_fast, &known.done);
-            known.end = end.or(known.end);
+        known.finished[scene] = Some((result.verdict, result.measured.wall + result.measured.judging));
+        if known.skip_start.is_none_or(|(end, _)| scene < end) {
+            let end = skipped_scenes::find_first_skipped(
+                &self.grader.plan.skip_limits,
+                self.grader.options.fail_fast,
+                &known.finished,
+            );
+            known.skip_start = end.or(known.skip_start);
         }
     }
 
     /// Returns the digest of the program, if it is known without building or copying the program.
     pub(super) fn digest(&self) -> Option<blake3::Hash> {
         *self.digest.get_or_init(|| match &self.submission.program {
-            _ if self.builds() => None,
+            _ if self.is_source_folder() => None,
             Some(program) => staging::digest_in(&self.submission.path, program, self.submission.file.as_ref()),
-            None => staging::digest(&self.submission.path),
+            None => staging::digest_file(&self.submission.path),
         })
     }
 
     /// Returns whether the submission consists of sources that must be built.
-    fn builds(&self) -> bool {
+    fn is_source_folder(&self) -> bool {
         let Submission { path, program, .. } = self.submission;
         self.grader.plan.build.is_some() && program.is_none() && path.is_dir()
     }
@@ -445,8 +466,8 @@ impl<'a> SubmissionGrading<'a> {
         let build = self.grader.plan.build.as_ref();
         let recipe = Recipe { program: name, build, backend, cancellation: self.shared.cancellation };
         match program {
-            Some(program) => recipe.file_in(path, program, file.as_ref()),
-            None if self.builds() => recipe.stage_folder(path),
+            Some(program) => recipe.stage_file_in(path, program, file.as_ref()),
+            None if self.is_source_folder() => recipe.stage_folder(path),
             None => recipe.stage_file(path),
         }
     }

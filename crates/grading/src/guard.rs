@@ -13,7 +13,7 @@ use std::{
 /// The description of a panic: its message, and its place in the source code.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("{0}")]
-pub struct Fault(String);
+pub struct CaughtPanic(String);
 
 thread_local! {
     static IS_GUARDED: Cell<bool> = const { Cell::new(false) };
@@ -27,12 +27,12 @@ thread_local! {
 /// # Errors
 ///
 /// Fails if `work` panics.
-pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, Fault> {
+pub fn catch_panic<T>(work: impl FnOnce() -> T) -> Result<T, CaughtPanic> {
     install_hook();
     let outer = IS_GUARDED.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(work));
     IS_GUARDED.set(outer);
-    result.map_err(|payload| Fault(LAST_PANIC.take().unwrap_or_else(|| panic_message(&*payload))))
+    result.map_err(|payload| CaughtPanic(LAST_PANIC.take().unwrap_or_else(|| panic_message(&*payload))))
 }
 
 /// Installs a panic hook. It stores panics in guarded work with their places, and forwards all other panics.
@@ -71,6 +71,6 @@ mod tests {
         assert!(matches!(nested, Ok(Err(1..))), "{nested:?}");
         // A panic that began on another thread continues without a call of the hook.
         let elsewhere = catch_panic(|| panic::resume_unwind(Box::new("elsewhere")));
-        assert_eq!(elsewhere, Err(Fault("elsewhere".to_owned())));
+        assert_eq!(elsewhere, Err(CaughtPanic("elsewhere".to_owned())));
     }
 }

@@ -8,15 +8,15 @@ use std::{
 
 /// A key: a digest of everything that a result depends on.
 #[derive(Debug, Clone, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-pub struct Key(String);
+pub struct ResultKey(String);
 
-impl Key {
+impl ResultKey {
     /// Returns the key of a run. It is computed from the digests of the program and the scene, and from `words`, which
     /// name everything else that matters, such as the rules, the limits, the command and the kind of judging. The
     /// grader itself also belongs to the key.
     #[must_use]
     pub fn from_program(program: &blake3::Hash, scene: &[u8], words: &[&str]) -> Self {
-        Self::from_parts(this_build(), program, scene, words)
+        Self::from_parts(running_build(), program, scene, words)
     }
 
     /// Returns the key of a run that is judged by the build `judge` of the grader.
@@ -38,7 +38,7 @@ impl Key {
 /// If the file contains a GNU build ID, which is a digest that the linker computes, the ID is used instead. Reading all
 /// of the file would take as long as judging ten small scenes.
 #[must_use]
-pub fn this_build() -> &'static str {
+pub fn running_build() -> &'static str {
     static BUILD_ID: OnceLock<String> = OnceLock::new();
     BUILD_ID.get_or_init(|| {
         let digest = |mut file: File| -> io::Result<blake3::Hash> {
@@ -99,18 +99,24 @@ mod tests {
     fn keys_differ_when_anything_differs() {
         let program = blake3::hash(b"program");
         assert_ne!(
-            Key::from_program(&program, b"scene", &["ab", "c"]),
-            Key::from_program(&program, b"scene", &["a", "bc"])
+            ResultKey::from_program(&program, b"scene", &["ab", "c"]),
+            ResultKey::from_program(&program, b"scene", &["a", "bc"])
         );
-        assert_ne!(Key::from_program(&program, b"scene", &[]), Key::from_program(&program, b"scen", &[]));
-        assert_ne!(Key::from_program(&blake3::hash(b"x"), b"scene", &[]), Key::from_program(&program, b"scene", &[]));
+        assert_ne!(ResultKey::from_program(&program, b"scene", &[]), ResultKey::from_program(&program, b"scen", &[]));
+        assert_ne!(
+            ResultKey::from_program(&blake3::hash(b"x"), b"scene", &[]),
+            ResultKey::from_program(&program, b"scene", &[])
+        );
         // Two builds of one version are two judges.
         assert_ne!(
-            Key::from_parts("one build", &program, b"scene", &[]),
-            Key::from_parts("another", &program, b"scene", &[])
+            ResultKey::from_parts("one build", &program, b"scene", &[]),
+            ResultKey::from_parts("another", &program, b"scene", &[])
         );
-        assert_eq!(Key::from_parts(this_build(), &program, b"scene", &[]), Key::from_program(&program, b"scene", &[]));
-        assert_eq!(this_build().len(), 64, "a digest, and no version");
+        assert_eq!(
+            ResultKey::from_parts(running_build(), &program, b"scene", &[]),
+            ResultKey::from_program(&program, b"scene", &[])
+        );
+        assert_eq!(running_build().len(), 64, "a digest, and no version");
     }
 
     #[test]

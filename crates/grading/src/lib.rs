@@ -20,18 +20,20 @@ pub mod batch;
 mod cancellation;
 #[cfg(target_os = "linux")]
 pub mod cards;
-#[cfg(all(test, target_os = "linux"))]
-mod cast;
-mod conclude;
+mod conclusion;
 pub mod config;
 #[cfg(target_os = "linux")]
 pub mod coverage;
 #[cfg(target_os = "linux")]
 mod execute;
 #[cfg(target_os = "linux")]
-mod fault;
+mod failed_scene;
 #[cfg(target_os = "linux")]
-mod form;
+pub mod failure_cause;
+#[cfg(all(test, target_os = "linux"))]
+mod fake_programs;
+#[cfg(target_os = "linux")]
+pub mod file_names;
 #[cfg(target_os = "linux")]
 pub mod grader;
 mod guard;
@@ -39,17 +41,10 @@ mod guard;
 mod key;
 pub mod library;
 #[cfg(target_os = "linux")]
-pub mod located;
-#[cfg(target_os = "linux")]
 pub mod milestone;
-#[cfg(target_os = "linux")]
-pub mod names;
-pub mod near;
-#[cfg(target_os = "linux")]
-mod one_file;
-#[cfg(target_os = "linux")]
-mod patience;
 pub mod plan;
+#[cfg(target_os = "linux")]
+mod program_file;
 #[cfg(target_os = "linux")]
 mod recipe;
 #[cfg(target_os = "linux")]
@@ -59,16 +54,21 @@ pub mod results;
 #[cfg(target_os = "linux")]
 pub mod scene_files;
 pub mod score;
-mod shape;
 #[cfg(target_os = "linux")]
-pub mod smallest;
+mod skipped_scenes;
+#[cfg(target_os = "linux")]
+pub mod smallest_scene;
 #[cfg(target_os = "linux")]
 mod speed;
 #[cfg(target_os = "linux")]
 mod staging;
+#[cfg(target_os = "linux")]
+mod stored_result;
+pub mod suggestions;
+mod suite_shape;
 mod task;
 #[cfg(target_os = "linux")]
-mod temporary;
+mod temporary_folders;
 #[cfg(target_os = "linux")]
 pub mod timings;
 pub mod traces;
@@ -80,14 +80,14 @@ pub use self::{
     cancellation::Cancellation,
     execute::Runner,
     grader::{Grader, Submission},
-    key::{Key, this_build},
-    one_file::OneFile,
-    temporary::Folders,
+    key::{ResultKey, running_build},
+    program_file::ProgramFile,
+    temporary_folders::Folders,
 };
 pub use fosssim_findings::{
     Build, Grade, GroupGrade, Reason, SceneGrade, SceneResult, SkippedEntry, SubmissionFault, Verdict, disclosure,
-    earlier::EarlierGrade, result,
+    earlier_grade::EarlierGrade, result,
 };
 use fosssim_findings::{grade, verdict};
-pub use guard::{Fault, catch_panic};
+pub use guard::{CaughtPanic, catch_panic};
 pub use task::SceneTask;

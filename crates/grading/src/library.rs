@@ -3,7 +3,7 @@
 //! Each assignment has a folder. A scene's name is `Group/name` and is unique. The full form `t2m2/Group/name` is
 //! accepted as well. Recordings are files that are compressed with zstd. Files with the ending `steps` contain the
 //! digests of a recording's steps.
-use super::assignments::{MadeScene, TIMING_SCENES, version};
+use super::assignments::{GeneratedScene, TIMING_SCENES, find_version};
 use fosssim_model::assignments::Assignment;
 use glob::Pattern;
 use include_dir::{Dir, File, include_dir};
@@ -26,7 +26,7 @@ const GENERATED_ASSIGNMENT: Assignment = Assignment::T2M3;
 
 /// Returns the names of all embedded scenes, in alphabetical order.
 pub fn names() -> impl Iterator<Item = &'static str> {
-    stems(&ASSETS, ".xml")
+    file_stems(&ASSETS, ".xml")
 }
 
 /// Returns the names of all built-in scenes. They are embedded, or generated when they are needed; generated scenes
@@ -38,11 +38,11 @@ pub fn all_names() -> impl Iterator<Item = &'static str> {
 /// Returns the content of a built-in scene's file; `None` if there is no scene with this name.
 #[must_use]
 pub fn scene(name: &str) -> Option<&'static [u8]> {
-    contents(&ASSETS, &format!("{name}.xml")).or_else(|| find_made(name).map(MadeScene::xml))
+    contents(&ASSETS, &format!("{name}.xml")).or_else(|| find_generated(name).map(GeneratedScene::xml))
 }
 
 /// Returns the generated scene with this name or full name.
-fn find_made(name: &str) -> Option<&'static MadeScene> {
+fn find_generated(name: &str) -> Option<&'static GeneratedScene> {
     let short = name.strip_prefix(GENERATED_ASSIGNMENT.key()).and_then(|rest| rest.strip_prefix('/')).unwrap_or(name);
     TIMING_SCENES.iter().find(|made| made.name == short)
 }
@@ -64,21 +64,21 @@ pub const fn recording(_: &str) -> Option<&'static [u8]> {
 /// Returns the names of all embedded recordings, in alphabetical order.
 #[cfg(target_os = "linux")]
 pub fn recordings() -> impl Iterator<Item = &'static str> {
-    stems(&REFERENCES, ".bin.zst")
+    file_stems(&REFERENCES, ".bin.zst")
 }
 
 /// Returns a file from the folder of recordings. Its path is `manifest.txt`, `Group/name.steps` or
 /// `Group/name.bin.zst`.
 #[cfg(target_os = "linux")]
 #[must_use]
-pub fn reference(path: &str) -> Option<&'static [u8]> {
+pub fn recording_file(path: &str) -> Option<&'static [u8]> {
     contents(&REFERENCES, path)
 }
 
 /// Returns the assignment in whose folder a scene is.
 #[must_use]
 pub fn assignment(name: &str) -> Option<Assignment> {
-    if find_made(name).is_some() {
+    if find_generated(name).is_some() {
         return Some(GENERATED_ASSIGNMENT);
     }
     let path = file(&ASSETS, &format!("{name}.xml"))?.path();
@@ -91,16 +91,16 @@ pub fn assignment(name: &str) -> Option<Assignment> {
 #[must_use]
 pub fn matches_pattern(pattern: &Pattern, name: &str) -> bool {
     let Some((folder, rest)) = pattern.as_str().split_once('/') else { return pattern.matches(name) };
-    match version(folder) {
+    match find_version(folder) {
         Some((of, version)) => {
             let matches = Pattern::new(rest).is_ok_and(|rest| rest.matches(name));
-            matches && version.has(name) && assignment(name) == Some(of)
+            matches && version.has_scene(name) && assignment(name) == Some(of)
         }
         None => pattern.matches(name),
     }
 }
 
-fn stems(root: &'static Dir<'static>, extension: &str) -> impl Iterator<Item = &'static str> {
+fn file_stems(root: &'static Dir<'static>, extension: &str) -> impl Iterator<Item = &'static str> {
     let files = root.dirs().flat_map(|assignment| {
         let files = assignment.dirs().flat_map(Dir::files);
         files.filter_map(|file| file.path().strip_prefix(assignment.path()).ok())
@@ -125,17 +125,17 @@ fn file(root: &'static Dir<'static>, path: &str) -> Option<&'static File<'static
 fn find_below(folder: &'static Dir<'static>, path: &str) -> Option<&'static File<'static>> {
     match path.split_once('/') {
         Some((first, rest)) => find_below(subfolder(folder, first)?, rest),
-        None => folder.files().find(|file| is_called(file.path(), path)),
+        None => folder.files().find(|file| has_name(file.path(), path)),
     }
 }
 
 /// Returns the subfolder `name`.
 fn subfolder(folder: &'static Dir<'static>, name: &str) -> Option<&'static Dir<'static>> {
-    folder.dirs().find(|inner| is_called(inner.path(), name))
+    folder.dirs().find(|inner| has_name(inner.path(), name))
 }
 
 /// Returns whether the last component of the path is `name`.
-fn is_called(path: &Path, name: &str) -> bool {
+fn has_name(path: &Path, name: &str) -> bool {
     let before = path.as_os_str().as_encoded_bytes().strip_suffix(name.as_bytes());
     before.is_some_and(|before| before.is_empty() || before.ends_with(b"/"))
 }
@@ -167,7 +167,7 @@ mod tests {
             assert_eq!(assignment(&full), assignment(name));
         }
         assert!(scene("NoSuchTests/none").is_none() && scene("t2m2/SimpleTests/one-ball-into-two").is_none());
-        assert!(reference("manifest.txt").is_some());
+        assert!(recording_file("manifest.txt").is_some());
     }
 
     #[test]

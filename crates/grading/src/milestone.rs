@@ -25,7 +25,7 @@ pub fn infer_milestone(runner: &Runner<'_>, program: &Path) -> Result<Option<Ass
     let runner = Runner { limits: &limits, ..*runner };
     let mut is_traced = false;
     let mut takes = |integrator: Integrator, collision: &str| -> Result<bool, String> {
-        let (trace, outcome) = runner.collect(program, &probe_task(integrator, collision)?, 1)?;
+        let (trace, outcome) = runner.collect_trace(program, &probe_task(integrator, collision)?, 1)?;
         is_traced |= !trace.is_empty();
         // If the program crashes, it has accepted the scene.
         Ok(!matches!(outcome.ended, RunEnd::Exited(1..)))

@@ -1,5 +1,5 @@
 //! A suite whose scenes have been found, so that it can be run.
-pub use super::assignments::{default_name, names as built_in_names, suggest};
+pub use super::assignments::{default_name, suggest, suite_names as built_in_names};
 use super::{
     assignments,
     config::{self, Group, Hints, Marking, Pattern, Position, Suite, SuiteError},
@@ -10,9 +10,9 @@ use fosssim_model::{assignments::Assignment, scene};
 use std::collections::BTreeMap;
 
 #[cfg(target_os = "linux")]
-mod on_disk;
+mod suite_files;
 #[cfg(target_os = "linux")]
-pub use on_disk::{FindError, MAX_SCENE_BYTES, MAX_SCENES, MAX_SUITE_BYTES, find, load};
+pub use suite_files::{FindError, MAX_SCENE_BYTES, MAX_SCENES, MAX_SUITE_BYTES, find_suite, load_suite};
 
 /// A suite whose scenes have been found.
 pub type Plan = Suite<SceneTask>;
@@ -57,13 +57,13 @@ impl Plan {
     }
 
     /// Limits the level of detail for all readers to `hints`.
-    pub fn tell_at_most(&mut self, hints: Hints) {
+    pub fn limit_hints(&mut self, hints: Hints) {
         self.staff_hints = hints;
-        self.tell_students(hints);
+        self.set_student_hints(hints);
     }
 
     /// Sets the level of detail for students in all groups.
-    pub fn tell_students(&mut self, hints: Hints) {
+    pub fn set_student_hints(&mut self, hints: Hints) {
         self.groups.iter_mut().for_each(|group| group.marking.hints = hints);
     }
 
@@ -83,15 +83,15 @@ impl Plan {
     #[must_use]
     pub fn max_points(&self) -> f64 {
         let of_speed = |marking: &Marking| marking.speed.map_or(0.0, |speed| speed.points);
-        let counted = self.groups.iter().map(|group| &group.marking).filter(|marking| !marking.extra);
+        let counted = self.groups.iter().map(|group| &group.marking).filter(|marking| !marking.is_extra);
         counted.map(|marking| marking.points + of_speed(marking)).sum()
     }
 }
 
 /// Returns the text of a built-in suite. `t2m2@1` means a version, and `t2m2` means the newest one.
 #[must_use]
-pub fn built_in(name: &str) -> Option<&'static str> {
-    assignments::version(name).map(|(_, version)| version.suite)
+pub fn find_built_in_suite(name: &str) -> Option<&'static str> {
+    assignments::find_version(name).map(|(_, version)| version.suite)
 }
 
 /// The name and the file content of each scene that a pattern matches.
@@ -107,13 +107,13 @@ fn resolve(
     let Suite {
         name,
         milestone,
-        run,
+        command: run,
         rules,
         staff_hints,
         show_output,
         build,
         limits,
-        patience,
+        skip_limits: patience,
         notes,
         groups: patterns,
     } = suite;
@@ -121,7 +121,7 @@ fn resolve(
     let mut groups = Vec::new();
     for group in patterns {
         let mut scenes = Vec::new();
-        for Pattern { text, at } in group.scenes {
+        for Pattern { text, position: at } in group.scenes {
             let found = match text.strip_prefix("asset:") {
                 Some(pattern) => find_embedded(pattern),
                 None => files(&text),
@@ -153,7 +153,19 @@ fn resolve(
         }
         groups.push(Group { name: group.name, marking: group.marking, note: group.note, scenes });
     }
-    Suite { name, milestone, run, rules, staff_hints, show_output, build, limits, patience, notes, groups }
+    Suite {
+        name,
+        milestone,
+        command: run,
+        rules,
+        staff_hints,
+        show_output,
+        build,
+        limits,
+        skip_limits: patience,
+        notes,
+        groups,
+    }
 }
 
 /// Reads and validates a suite, and finds its scenes.
@@ -161,8 +173,11 @@ fn resolve(
 /// # Errors
 ///
 /// Fails like [`config::read`]. Also fails if a pattern matches nothing, or if a scene can't be read or is invalid.
-pub fn load_by(text: &str, files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>) -> Result<Plan, SuiteError> {
-    let (suite, mut problems) = config::read_all(text);
+pub fn load_with(
+    text: &str,
+    files: &mut dyn FnMut(&str) -> Result<MatchingScenes, String>,
+) -> Result<Plan, SuiteError> {
+    let (suite, mut problems) = config::read_with_problems(text);
     // Scenes are searched even if there are other errors, so that all errors are reported together.
     let plan = resolve(suite, files, &mut problems);
     if problems.is_empty() {
@@ -192,24 +207,24 @@ mod tests {
     #[test]
     fn every_built_in_suite_finds_its_scenes() {
         for name in &built_in_names().collect::<Vec<_>>() {
-            let plan = load(built_in(name).expect("its text"), Path::new("nowhere")).expect(name);
-            let (assignment, version) = assignments::version(name).expect("a suite is an assignment's");
+            let plan = load_suite(find_built_in_suite(name).expect("its text"), Path::new("nowhere")).expect(name);
+            let (assignment, version) = assignments::find_version(name).expect("a suite is an assignment's");
             assert!(plan.scenes().count() > 4, "{name}");
             assert!(plan.max_points() > 0.0);
             assert_eq!(plan.rules, fosssim_judge::Rules::Fair, "{name}");
             assert_eq!(plan.name, format!("{} ({name})", assignment.definition().title));
-            let is_own = |name: &&str| library::assignment(name) == Some(assignment) && version.has(name);
+            let is_own = |name: &&str| library::assignment(name) == Some(assignment) && version.has_scene(name);
             let own: BTreeSet<&str> = library::all_names().filter(is_own).collect();
             let planned: BTreeSet<&str> = plan.scenes().map(|task| task.name.as_str()).collect();
             assert_eq!(planned, own, "{name} grades what lies in its folder");
             let all = format!("schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:{name}/*\"]\n");
-            assert_eq!(load(&all, Path::new("nowhere")).expect(name).scenes().count(), own.len());
+            assert_eq!(load_suite(&all, Path::new("nowhere")).expect(name).scenes().count(), own.len());
         }
     }
 
     #[test]
     fn a_part_of_a_suite_keeps_each_scenes_worth_and_says_that_it_is_a_part() {
-        let plan = || load(built_in("t2m2").expect("its text"), Path::new("nowhere")).expect("sound");
+        let plan = || load_suite(find_built_in_suite("t2m2").expect("its text"), Path::new("nowhere")).expect("sound");
         let (whole, name) = (plan(), plan().scenes().nth(3).expect("a scene").name.clone());
         let part = plan().filter_scenes(|scene| scene == name);
         let all = whole.scenes().count();
@@ -226,14 +241,14 @@ mod tests {
     fn missing_and_doubled_scenes_are_told_at_their_patterns() {
         let text = "schema = 1\nname = \"x\"\n[[group]]\nname = \"a\"\nscenes = [\"asset:NoSuchTests/*\",\n \
                     \"no/*.xml\"]\n                    [[group]]\nname = \"b\"\nscenes = [\"asset:SimpleTests/*\", \"asset:SimpleTests/*\"]\n";
-        let error = load(text, Path::new("nowhere")).expect_err("wrong").to_string();
+        let error = load_suite(text, Path::new("nowhere")).expect_err("wrong").to_string();
         assert!(error.contains("5:11: no embedded scene matches asset:NoSuchTests/*"), "{error}");
         assert!(error.contains("6:2: no scene file matches no/*.xml"), "{error}");
         assert!(error.contains("9:34: scene SimpleTests/"), "{error}");
         assert!(error.contains("is in group \"b\" already"), "{error}");
         // Search scenes even if something else is wrong.
         let both = text.replacen("name = \"x\"", "name = \"x\"\nhint = \"what\"", 1);
-        let error = load(&both, Path::new("nowhere")).expect_err("wrong").to_string();
+        let error = load_suite(&both, Path::new("nowhere")).expect_err("wrong").to_string();
         assert!(error.starts_with("3:1: unknown key `hint` in the suite: did you mean `hints`?\n6:11: no "), "{error}");
     }
 }

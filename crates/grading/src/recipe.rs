@@ -3,12 +3,13 @@
 use super::{
     cancellation::Cancellation,
     config::BuildStep,
-    one_file::{FILE_OF_ANOTHER, OneFile, is_anothers},
+    program_file::{FILE_OF_ANOTHER, ProgramFile, belongs_to_another},
     result::UnusableReason,
     staging::{
-        CopyError, MAX_FOLDER_BYTES, StagedProgram, build, classify_error, copy_program, describe_error_at, open_in,
+        CopyError, MAX_FOLDER_BYTES, StagedProgram, build, classify_error, copy_program, describe_error_at,
+        open_in_folder,
     },
-    temporary::TemporaryFolder,
+    temporary_folders::TemporaryFolder,
     upload,
 };
 use fosssim_intake::{ArchiveError, ArchiveLimits, FileKind};
@@ -53,11 +54,11 @@ impl Recipe<'_> {
             Err(CollectError::Missing { .. }) => UnusableReason::CouldNotStart(StartProblem::NotFound),
             Err(CollectError::System { source, .. }) => match classify_error(path, source) {
                 CopyError::Submission(why) => UnusableReason::Unreadable(why),
-                CopyError::Ours(why) => return Err(why),
+                CopyError::Grader(why) => return Err(why),
             },
             Err(error) => UnusableReason::Unreadable(error.to_string()),
         };
-        Ok(StagedProgram::unusable(path, why))
+        Ok(StagedProgram::from_unusable(path, why))
     }
 
     /// Copies the program from the file called `name` in a folder whose contents are not trusted, as
@@ -66,25 +67,30 @@ impl Recipe<'_> {
     ///
     /// # Errors
     /// Fails like [`Recipe::stage_file`].
-    pub fn file_in(&self, folder: &Path, name: &str, noted: Option<&OneFile>) -> Result<StagedProgram, String> {
+    pub fn stage_file_in(
+        &self,
+        folder: &Path,
+        name: &str,
+        noted: Option<&ProgramFile>,
+    ) -> Result<StagedProgram, String> {
         let path = folder.join(name);
-        let why = match open_in(folder, name) {
-            Ok(file) if is_anothers(&file, noted).map_err(describe_error_at(&path))? => {
+        let why = match open_in_folder(folder, name) {
+            Ok(file) if belongs_to_another(&file, noted).map_err(describe_error_at(&path))? => {
                 UnusableReason::Unreadable(FILE_OF_ANOTHER.to_owned())
             }
             Ok(file) => return self.stage_opened(file, &path),
-            Err(CollectError::Missing { .. }) => match only_archive(folder, false)? {
+            Err(CollectError::Missing { .. }) => match open_only_archive(folder, false)? {
                 Some(file) => return self.stage_unpacked(file, &path),
                 None => upload::explain_missing_program(name, folder),
             },
             Err(CollectError::System { source, .. })
-                if matches!(classify_error(&path, io::Error::from(source.kind())), CopyError::Ours(_)) =>
+                if matches!(classify_error(&path, io::Error::from(source.kind())), CopyError::Grader(_)) =>
             {
                 return Err(describe_error_at(&path)(source));
             }
             Err(error) => UnusableReason::Unreadable(error.to_string()),
         };
-        Ok(StagedProgram::unusable(&path, why))
+        Ok(StagedProgram::from_unusable(&path, why))
     }
 
     /// Builds the sources in a folder, or in the only archive in it, and copies the resulting program.
@@ -93,7 +99,7 @@ impl Recipe<'_> {
     ///
     /// Fails if the grader or the machine fails. The error is the reason, as text.
     pub fn stage_folder(&self, path: &Path) -> Result<StagedProgram, String> {
-        match (self.build, only_archive(path, true)?) {
+        match (self.build, open_only_archive(path, true)?) {
             (None, _) => self.stage_file(path),
             (_, Some(archive)) => self.stage_unpacked(archive, path),
             (Some(step), None) => build(path, step, self.backend, self.cancellation),
@@ -102,7 +108,7 @@ impl Recipe<'_> {
 
     /// Copies the program from an open file, which is an archive or the program itself.
     fn stage_opened(&self, mut file: File, path: &Path) -> Result<StagedProgram, String> {
-        match kind_of(&mut file) {
+        match read_file_kind(&mut file) {
             Ok(FileKind::Archive(_)) => self.stage_unpacked(file, path),
             // An error of reading is reported later, when the file is copied.
             _ => copy_program(file, path, self.backend),
@@ -112,7 +118,7 @@ impl Recipe<'_> {
     /// Unpacks an archive. If the suite builds sources, they are built; otherwise the program is copied from the
     /// archive.
     fn stage_unpacked(&self, archive: File, path: &Path) -> Result<StagedProgram, String> {
-        let folder = TemporaryFolder::make("upload").map_err(describe_error_at(&std::env::temp_dir()))?;
+        let folder = TemporaryFolder::create("upload").map_err(describe_error_at(&std::env::temp_dir()))?;
         let inside = folder.path().join("submission");
         fs::DirBuilder::new().mode(0o700).create(&inside).map_err(describe_error_at(&inside))?;
         let files = match fosssim_intake::unpack(archive, &inside, ArchiveLimits::DEFAULT) {
@@ -120,21 +126,21 @@ impl Recipe<'_> {
             Err(error @ (ArchiveError::Read(_) | ArchiveError::Folder(_))) => {
                 return Err(format!("{}: {error}", path.display()));
             }
-            Err(error) => return Ok(StagedProgram::unusable(path, UnusableReason::Unreadable(error.to_string()))),
+            Err(error) => return Ok(StagedProgram::from_unusable(path, UnusableReason::Unreadable(error.to_string()))),
         };
         let top = fosssim_intake::top_folder(&inside, &files);
         if let Some(step) = self.build {
             return build(&top, step, self.backend, self.cancellation);
         }
-        match open_in(&top, self.program) {
+        match open_in_folder(&top, self.program) {
             Ok(file) => copy_program(file, &top.join(self.program), self.backend),
-            Err(_) => Ok(StagedProgram::unusable(path, upload::explain_missing_program(self.program, &top))),
+            Err(_) => Ok(StagedProgram::from_unusable(path, upload::explain_missing_program(self.program, &top))),
         }
     }
 }
 
 /// Returns the kind of an open file according to its first bytes. Reading continues at its start.
-fn kind_of(file: &mut File) -> io::Result<FileKind> {
+fn read_file_kind(file: &mut File) -> io::Result<FileKind> {
     let mut start = Vec::new();
     file.take(fosssim_intake::START_BYTES as u64).read_to_end(&mut start)?;
     file.rewind()?;
@@ -143,7 +149,7 @@ fn kind_of(file: &mut File) -> io::Result<FileKind> {
 
 /// Opens the archive in a folder, if there is exactly one. Learning platforms put each upload into a folder. With
 /// `is_alone`, the folder must contain nothing else.
-fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
+fn open_only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
     /// The maximum number of entries in a folder of a learning platform.
     const MAX_PLATFORM_ENTRIES: usize = 100;
     let Ok(opened) = OpenFolder::open(folder) else { return Ok(None) };
@@ -155,7 +161,7 @@ fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
     let archive = |name: &OsString| {
         // If the file has several names, its owner is unknown.
         let (mut file, _) = opened.regular_file(name.to_str()?, MAX_FOLDER_BYTES).ok()?;
-        matches!(kind_of(&mut file), Ok(FileKind::Archive(_))).then_some(file)
+        matches!(read_file_kind(&mut file), Ok(FileKind::Archive(_))).then_some(file)
     };
     let mut archives = names.iter().filter_map(archive);
     let first = archives.next();
@@ -165,7 +171,7 @@ fn only_archive(folder: &Path, is_alone: bool) -> Result<Option<File>, String> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::staging::{digest, make_odd_entries};
+    use crate::staging::{digest_file, make_odd_entries};
     use fosssim_sandbox::{FakeRun, RunEnd};
     use std::{os::unix::fs::PermissionsExt, path::PathBuf, process::Command};
 
@@ -187,17 +193,17 @@ mod tests {
         let _socket = make_odd_entries(&sources);
         for name in ["pipe", "socket"] {
             let staged = program(&sources.join(name));
-            assert!(staged.refused.is_some() && digest(&sources.join(name)).is_none(), "{name}");
+            assert!(staged.unusable_reason.is_some() && digest_file(&sources.join(name)).is_none(), "{name}");
         }
         assert!(
-            staged(|recipe| recipe.file_in(&sources, "link", None))
-                .refused
+            staged(|recipe| recipe.stage_file_in(&sources, "link", None))
+                .unusable_reason
                 .is_some_and(|why| format!("{why:?}").contains("symbolic link"))
         );
         let staged = program(&folder.path().join("none"));
-        assert_eq!(staged.refused, Some(UnusableReason::CouldNotStart(StartProblem::NotFound)));
+        assert_eq!(staged.unusable_reason, Some(UnusableReason::CouldNotStart(StartProblem::NotFound)));
         let staged = program(&sources);
-        assert_eq!(staged.refused, Some(UnusableReason::CouldNotStart(StartProblem::IsFolder)));
+        assert_eq!(staged.unusable_reason, Some(UnusableReason::CouldNotStart(StartProblem::IsFolder)));
     }
 
     /// Packs the contents of a folder, under this name next to it.
@@ -223,26 +229,26 @@ mod tests {
         let same = [
             program(&hw.join("FOSSSim")),
             program(&archive),
-            staged(|recipe| recipe.file_in(folder.path(), "alice.tar.gz", None)),
-            staged(|recipe| recipe.file_in(&moodle, "FOSSSim", None)),
+            staged(|recipe| recipe.stage_file_in(folder.path(), "alice.tar.gz", None)),
+            staged(|recipe| recipe.stage_file_in(&moodle, "FOSSSim", None)),
         ];
         for staged in &same {
-            assert_eq!((&staged.refused, staged.digest), (&None, same[0].digest));
+            assert_eq!((&staged.unusable_reason, staged.digest), (&None, same[0].digest));
             assert_eq!(staged.program.metadata().unwrap().permissions().mode() & 0o111, 0o111, "no bit was needed");
         }
         std::fs::rename(hw.join("FOSSSim"), hw.join("main.cpp")).unwrap();
-        let without = program(&packed(&class, "without.tar.gz")).refused;
+        let without = program(&packed(&class, "without.tar.gz")).unusable_reason;
         assert_eq!(
             without,
             Some(upload::explain_missing_program("FOSSSim", &hw)),
             "it says what it looked for and what it found"
         );
         std::fs::write(&archive, [0x1f, 0x8b, 8, 0, 0, 0]).unwrap();
-        let damaged = program(&archive).refused.map(|why| format!("{why:?}"));
+        let damaged = program(&archive).unusable_reason.map(|why| format!("{why:?}"));
         assert!(damaged.as_ref().is_some_and(|why| why.contains("damaged")), "{damaged:?}");
         // Two archives, and the right one is unknown.
         std::fs::copy(moodle.join("hw.tgz"), moodle.join("other.tgz")).unwrap();
-        let two = staged(|recipe| recipe.file_in(&moodle, "FOSSSim", None)).refused;
+        let two = staged(|recipe| recipe.stage_file_in(&moodle, "FOSSSim", None)).unusable_reason;
         assert_eq!(two, Some(upload::explain_missing_program("FOSSSim", &moodle)));
     }
 }

@@ -71,7 +71,7 @@ impl Recording {
     }
 
     /// Returns the line of the manifest for this recording.
-    fn line(&self) -> String {
+    fn manifest_line(&self) -> String {
         format!("{} {} steps {} bytes sha256 {}\n", self.name, self.steps, self.trace.len(), self.sha256)
     }
 
@@ -97,7 +97,7 @@ impl Recording {
 /// Returns the manifest of these recordings, in the given order.
 #[must_use]
 pub fn render_manifest<'a>(recordings: impl IntoIterator<Item = &'a Recording>) -> String {
-    recordings.into_iter().map(Recording::line).collect()
+    recordings.into_iter().map(Recording::manifest_line).collect()
 }
 
 /// Returns a unified diff from the stored recording to the present simulation; empty if they are equal. Line ends are

@@ -27,9 +27,9 @@ pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool
     let scenes: Vec<SceneGrade> = results
         .into_iter()
         .map(|(result, cached)| {
-            let points = share(marking.credit, &result, all_accepted).map(|share| each * share);
+            let points = point_share(marking.credit, &result, all_accepted).map(|share| each * share);
             let settled = result.explanations.clone();
-            SceneGrade { result, points, max_points: each, cached, settled, agreed: 0 }
+            SceneGrade { result, points, max_points: each, cached, corrected_explanations: settled, agreed_count: 0 }
         })
         .collect();
     let points = group_points(marking.points, all_accepted, &scenes);
@@ -38,7 +38,7 @@ pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool
         name: name.to_owned(),
         visibility: marking.visibility,
         hints: marking.hints,
-        extra: marking.extra,
+        extra: marking.is_extra,
         all_or_nothing: marking.credit == Credit::All,
         points: add_speed_points(points, speed.as_ref()),
         max_points: marking.points + marking.speed.map_or(0.0, |speed| speed.points),
@@ -52,7 +52,7 @@ pub fn grade_group(name: &str, marking: Marking, results: Vec<(SceneResult, bool
 /// Computes the grade from the results of all scenes, in the order of the plan. The build, the sandbox and the times
 /// are still missing in it. `is_timed` tells whether speed counts.
 pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Vec<(SceneResult, bool)>) -> Grade {
-    let mut results = as_written(results).into_iter();
+    let mut results = mark_unwritten(results).into_iter();
     let of_group = |planned: &PlannedGroup| {
         let marking = Marking { speed: planned.marking.speed.filter(|_| is_timed), ..planned.marking };
         let results = results.by_ref().take(planned.scenes.len()).collect();
@@ -69,17 +69,17 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
         max_points,
         // If nothing was run, there is no output that could reveal a hidden scene.
         shows_output: true,
-        refuted: find_refuted(plan, &groups),
+        refuted_keys: find_refuted(plan, &groups),
         groups,
         build: None,
         warnings: Vec::new(),
         layers: Vec::new(),
         wall: Duration::ZERO,
-        looks_like: None,
-        located: None,
+        inferred_milestone: None,
+        located_failure: None,
         program: None,
         same_program: Vec::new(),
-        before: None,
+        earlier_grade: None,
         smallest: Vec::new(),
         notes: plan.notes.clone(),
     }
@@ -87,7 +87,7 @@ pub(super) fn grade(plan: &Plan, submission: String, is_timed: bool, results: Ve
 
 /// Treats the results as parts of one submission. If the trace of any scene has entries, an empty trace of another
 /// scene counts as wrong, not as unwritten.
-fn as_written(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
+fn mark_unwritten(mut results: Vec<(SceneResult, bool)>) -> Vec<(SceneResult, bool)> {
     let shows = |(result, _): &(SceneResult, bool)| matches!(result.verdict, Verdict::Accepted | Verdict::WrongAnswer);
     if results.iter().any(shows) {
         for (result, _) in results.iter_mut().filter(|(result, _)| result.verdict == Verdict::Unwritten) {
@@ -118,7 +118,7 @@ fn group_points(points: f64, all_accepted: bool, scenes: &[SceneGrade]) -> Optio
 }
 
 /// Returns the share of a scene's points that its result gives; `None` if the result gives no points.
-fn share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64> {
+fn point_share(credit: Credit, result: &SceneResult, all_accepted: bool) -> Option<f64> {
     Some(match (credit, result.verdict) {
         (_, Verdict::NotRun | Verdict::JudgeError) => return None,
         (Credit::All, _) => f64::from(u8::from(all_accepted)),
@@ -155,7 +155,8 @@ fn is_consistent(group: &GroupGrade) -> bool {
     let max_points = group.max_points_of_scenes();
     let each = scene_points(max_points, group.scenes.len());
     let has_its_share = |credit, scene: &SceneGrade| {
-        scene.max_points == each && scene.points == share(credit, &scene.result, all_accepted).map(|share| each * share)
+        scene.max_points == each
+            && scene.points == point_share(credit, &scene.result, all_accepted).map(|share| each * share)
     };
     let credits = [Credit::Scenes, Credit::Steps, Credit::All];
     credits.into_iter().any(|credit| group.scenes.iter().all(|scene| has_its_share(credit, scene)))
@@ -180,7 +181,7 @@ fn find_refuted(plan: &Plan, groups: &[GroupGrade]) -> Vec<String> {
         return Vec::new();
     }
     let mut right: Vec<&Scene> = graded()
-        .filter(|(graded, _)| graded.verdict == Verdict::Accepted && graded.differs.is_none())
+        .filter(|(graded, _)| graded.verdict == Verdict::Accepted && graded.difference_cause.is_none())
         .map(|(_, task)| &task.scene)
         .collect();
     right.sort_by_key(|scene| u64::from(scene.step_count()) * (scene.particles.len() * scene.particles.len()) as u64);
@@ -215,7 +216,7 @@ mod tests {
             credit,
             visibility: Visibility::Visible,
             hints: Hints::Full,
-            extra: false,
+            is_extra: false,
             speed: None,
         };
         grade_group("g", marking, scenes).points.expect("points")
@@ -239,7 +240,7 @@ mod tests {
             credit: Credit::Scenes,
             visibility: Visibility::Hidden,
             hints: Hints::Full,
-            extra: false,
+            is_extra: false,
             speed: None,
         };
         let graded = grade_group("g", marking, vec![scene(Verdict::Accepted, 10), scene(Verdict::RuntimeError, 0)]);
@@ -264,7 +265,7 @@ mod tests {
                     credit,
                     visibility: Visibility::Visible,
                     hints: Hints::Full,
-                    extra: false,
+                    is_extra: false,
                     speed: None,
                 };
                 let graded = grade_group("g", marking, vec![scene(Verdict::WrongAnswer, 5), scene(missing, 0)]);

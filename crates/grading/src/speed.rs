@@ -37,9 +37,9 @@ impl SubmissionGrading<'_> {
                 if result.timing.as_ref().is_some_and(|timing| is_from_this_machine(timing, marking)) {
                     continue;
                 }
-                result.timing = self.time_scene(scene, marking, begin + self.grader.plan.patience.total);
+                result.timing = self.time_scene(scene, marking, begin + self.grader.plan.skip_limits.total);
                 *cached = false;
-                self.keep_timed(scene, result);
+                self.store_timed(scene, result);
                 // The time for timed runs is used up.
                 if result.timing.as_ref().is_none_or(|timing| timing.failed.is_some()) {
                     break;
@@ -49,11 +49,11 @@ impl SubmissionGrading<'_> {
     }
 
     /// Stores a result again, after its times were added.
-    fn keep_timed(&self, scene: &SceneTask, result: &SceneResult) {
+    fn store_timed(&self, scene: &SceneTask, result: &SceneResult) {
         if let (Some(_), Ok(staged)) = (&result.timing, &*self.staged_program()) {
             let students = self.grader.plan.student_hints(&scene.name);
             let key = self.shared.key(&staged.digest, scene, &program_name(&staged.program), students);
-            self.shared.keep(&key, self.submission, result);
+            self.shared.store_result(&key, self.submission, result);
         }
     }
 
@@ -64,12 +64,12 @@ impl SubmissionGrading<'_> {
         let mut timing = Timing { machine: machine_name(), runs: Vec::new(), failed: None };
         let run = |program: &StagedProgram, words: &[String]| {
             let runner = Runner {
-                run: words,
+                command: words,
                 hints: Hints::Where,
                 student_hints: Hints::Where,
-                trace: None,
+                trace_location: None,
                 cards: None,
-                ..self.runner(scene, None)
+                ..self.new_runner(scene, None)
             };
             let result = runner.grade(program, scene, &mut |_| {});
             (result.verdict, result.measured.cpu)
@@ -78,8 +78,8 @@ impl SubmissionGrading<'_> {
             if round > 0 && Instant::now() > end {
                 break;
             }
-            let submission = || run(staged, &self.grader.plan.run);
-            let other = || run(reference, &config::default_run());
+            let submission = || run(staged, &self.grader.plan.command);
+            let other = || run(reference, &config::default_command());
             // The order alternates, so that neither program always profits from warm caches.
             let ((verdict, submission), (sound, reference)) = match round % 2 {
                 0 => (submission(), other()),

@@ -7,12 +7,12 @@
 //! copy of their folder, in the sandbox, so that a build changes nothing of the submission.
 use super::{
     cancellation::Cancellation,
-    conclude::truncate,
+    conclusion::truncate,
     config::BuildStep,
     grade::Build,
-    one_file::{OneFile, is_anothers},
+    program_file::{ProgramFile, belongs_to_another},
     result::{BuildEnd, UnusableReason},
-    temporary::TemporaryFolder,
+    temporary_folders::TemporaryFolder,
 };
 use fosssim_intake::FileKind;
 use fosssim_sandbox::{
@@ -49,7 +49,7 @@ pub struct StagedProgram {
     /// The result of the build, if the program was built.
     pub build: Option<Build>,
     /// The reason why the submission cannot be run; `None` if it can. The submission itself is at fault.
-    pub refused: Option<UnusableReason>,
+    pub unusable_reason: Option<UnusableReason>,
     /// The identity of the file that was copied.
     pub(super) identity: Option<ProgramIdentity>,
     _folder: Option<TemporaryFolder>,
@@ -66,12 +66,12 @@ pub(super) enum CopyError {
     /// The submission is at fault; the value is the reason.
     Submission(String),
     /// The grader or the machine is at fault; the value is the reason.
-    Ours(String),
+    Grader(String),
 }
 
 impl From<String> for CopyError {
     fn from(words_of_at: String) -> Self {
-        Self::Ours(words_of_at)
+        Self::Grader(words_of_at)
     }
 }
 
@@ -82,7 +82,7 @@ pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
     let closed = matches!(error.kind(), io::ErrorKind::PermissionDenied | io::ErrorKind::NotFound);
     match closed || error.kind() == io::ErrorKind::InvalidFilename {
         true => CopyError::Submission(format!("{} can't be read: {error}", name.to_string_lossy().escape_debug())),
-        false => CopyError::Ours(describe_error_at(name)(error)),
+        false => CopyError::Grader(describe_error_at(name)(error)),
     }
 }
 
@@ -92,15 +92,15 @@ pub(super) fn classify_error(name: &Path, error: io::Error) -> CopyError {
 /// # Errors
 ///
 /// Fails if the program can't be read or copied.
-pub fn reference(path: &Path) -> Result<StagedProgram, String> {
+pub fn stage_reference(path: &Path) -> Result<StagedProgram, String> {
     let (file, _) = collect::open_file(path, true).map_err(|error| describe_error_at(path)(io::Error::other(error)))?;
     copy_as(OsStr::new("FOSSSimOracle"), file, path, &mut { MAX_FOLDER_BYTES }).map_err(|error| match error {
         CopyError::Submission(why) => describe_error_at(path)(io::Error::other(why)),
-        CopyError::Ours(why) => why,
+        CopyError::Grader(why) => why,
     })
 }
 
-pub(super) fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
+pub(super) fn open_in_folder(folder: &Path, name: &str) -> Result<File, CollectError> {
     let opened = OpenFolder::open(folder).map_err(|source| CollectError::System { name: name.to_owned(), source })?;
     opened.open_file(OsStr::new(name), MAX_FOLDER_BYTES).map(|(file, _)| file)
 }
@@ -108,19 +108,19 @@ pub(super) fn open_in(folder: &Path, name: &str) -> Result<File, CollectError> {
 /// Returns the digest of a file without copying it. For links, and for files that [`Recipe::open_file`] rejects,
 /// returns `None`.
 #[must_use]
-pub fn digest(path: &Path) -> Option<blake3::Hash> {
+pub fn digest_file(path: &Path) -> Option<blake3::Hash> {
     let (file, length) = collect::open_file(path, false).ok()?;
-    if length <= MAX_FOLDER_BYTES { digest_of(file) } else { None }
+    if length <= MAX_FOLDER_BYTES { digest_open_file(file) } else { None }
 }
 
-/// Returns the digest of the file that [`Recipe::file_in`] would copy, without copying it.
+/// Returns the digest of the file that [`Recipe::stage_file_in`] would copy, without copying it.
 #[must_use]
-pub fn digest_in(folder: &Path, name: &str, noted: Option<&OneFile>) -> Option<blake3::Hash> {
-    let file = open_in(folder, name).ok()?;
-    if is_anothers(&file, noted).ok()? { None } else { digest_of(file) }
+pub fn digest_in(folder: &Path, name: &str, noted: Option<&ProgramFile>) -> Option<blake3::Hash> {
+    let file = open_in_folder(folder, name).ok()?;
+    if belongs_to_another(&file, noted).ok()? { None } else { digest_open_file(file) }
 }
 
-fn digest_of(file: File) -> Option<blake3::Hash> {
+fn digest_open_file(file: File) -> Option<blake3::Hash> {
     let mut hasher = blake3::Hasher::new();
     hasher.update_reader(file.take(MAX_FOLDER_BYTES)).is_ok().then(|| hasher.finalize())
 }
@@ -129,17 +129,17 @@ impl StagedProgram {
     /// Creates the value for a submission that has no program that can be run.
     fn without_program(path: &Path) -> Self {
         let digest = blake3::hash(path.as_os_str().as_encoded_bytes());
-        Self { program: path.to_owned(), digest, build: None, refused: None, identity: None, _folder: None }
+        Self { program: path.to_owned(), digest, build: None, unusable_reason: None, identity: None, _folder: None }
     }
 
-    pub(super) fn unusable(path: &Path, why: UnusableReason) -> Self {
-        Self { refused: Some(why), ..Self::without_program(path) }
+    pub(super) fn from_unusable(path: &Path, why: UnusableReason) -> Self {
+        Self { unusable_reason: Some(why), ..Self::without_program(path) }
     }
 
     /// Returns the digest of the program's bytes; `None` if there is no program that can be run.
     pub(super) fn program_digest(&self) -> Option<blake3::Hash> {
         let is_built = self.build.as_ref().is_none_or(|build| build.end.is_success());
-        (is_built && self.refused.is_none()).then_some(self.digest)
+        (is_built && self.unusable_reason.is_none()).then_some(self.digest)
     }
 }
 
@@ -160,19 +160,19 @@ pub(super) fn copy_program(file: File, path: &Path, backend: &Backend) -> Result
             }
         }
         Err(CopyError::Submission(why)) => UnusableReason::Unreadable(why),
-        Err(CopyError::Ours(why)) => return Err(why),
+        Err(CopyError::Grader(why)) => return Err(why),
     };
-    Ok(StagedProgram::unusable(path, why))
+    Ok(StagedProgram::from_unusable(path, why))
 }
 
 /// Copies an open program into a new folder, where it is called `name`.
 fn copy_as(name: &OsStr, file: File, path: &Path, room: &mut u64) -> Result<StagedProgram, CopyError> {
-    let folder = TemporaryFolder::make("program").map_err(describe_error_at(&std::env::temp_dir()))?;
+    let folder = TemporaryFolder::create("program").map_err(describe_error_at(&std::env::temp_dir()))?;
     let copy = folder.path().join(name);
     // The copy is executable, even if the upload has lost this permission.
     let digest = copy_file(file, path, &copy, room, true)?;
     let identity = ProgramIdentity::from_path(&copy);
-    Ok(StagedProgram { program: copy, digest, build: None, refused: None, identity, _folder: Some(folder) })
+    Ok(StagedProgram { program: copy, digest, build: None, unusable_reason: None, identity, _folder: Some(folder) })
 }
 
 /// Builds a copy of the sources in `folder`, and copies the resulting program. If the build fails, this is not an
@@ -183,22 +183,22 @@ pub(super) fn build(
     backend: &Backend,
     cancellation: &Cancellation,
 ) -> Result<StagedProgram, String> {
-    let folder = TemporaryFolder::make("build").map_err(describe_error_at(&std::env::temp_dir()))?;
+    let folder = TemporaryFolder::create("build").map_err(describe_error_at(&std::env::temp_dir()))?;
     let copy = folder.path().join("submission");
     let failed = |end: BuildEnd, output: String| {
         let build = Some(Build { end, output });
         StagedProgram { build, ..StagedProgram::without_program(&sources.join(&step.program)) }
     };
     match copy_sources(sources, &copy) {
-        Err(CopyError::Submission(why)) => return Ok(failed(BuildEnd::Sources(why), String::new())),
-        Err(CopyError::Ours(why)) => return Err(why),
+        Err(CopyError::Submission(why)) => return Ok(failed(BuildEnd::UnusableSources(why), String::new())),
+        Err(CopyError::Grader(why)) => return Err(why),
         Ok(()) => {}
     }
     let command = step.command.first().map_or("", String::as_str);
     let tool = match find_tool(command, &copy) {
         Some(tool) => tool,
         // If a script of the submission is missing, the submission is at fault.
-        None if command.contains('/') => return Ok(failed(BuildEnd::NoScript(command.to_owned()), String::new())),
+        None if command.contains('/') => return Ok(failed(BuildEnd::MissingScript(command.to_owned()), String::new())),
         None => {
             return Err(format!(
                 "build command {command} is not installed on this machine; install it, or change [build] in the suite"
@@ -227,16 +227,16 @@ pub(super) fn build(
     let printed = [&outcome.stdout.bytes[..], &outcome.stderr.bytes].concat();
     let output = truncate(&printed, MAX_OUTPUT_BYTES);
     if outcome.ended != RunEnd::Exited(0) {
-        return Ok(failed(BuildEnd::Ended(outcome.ended), output));
+        return Ok(failed(BuildEnd::Failure(outcome.ended), output));
     }
     // The build may have put a link where the program should be.
     match made.regular_file(&step.program, MAX_FOLDER_BYTES) {
         Ok((file, _)) => {
-            let build = Some(Build { end: BuildEnd::Made, output });
+            let build = Some(Build { end: BuildEnd::Success, output });
             Ok(StagedProgram { build, ..copy_program(file, &copy.join(&step.program), backend)? })
         }
-        Err(CollectError::Missing { .. }) => Ok(failed(BuildEnd::MadeNo(step.program.clone()), output)),
-        Err(error) => Ok(failed(BuildEnd::Unusable(error.to_string()), output)),
+        Err(CollectError::Missing { .. }) => Ok(failed(BuildEnd::MissingProgram(step.program.clone()), output)),
+        Err(error) => Ok(failed(BuildEnd::UnusableProgram(error.to_string()), output)),
     }
 }
 
@@ -433,7 +433,7 @@ mod tests {
             for round in 0..ROUNDS {
                 let copy = folder.path().join(format!("copy{round}"));
                 // It may fail because an entry was removed; the rest of the folder is then the submission's own fault.
-                if !matches!(copy_sources(&sources, &copy), Err(CopyError::Ours(_))) {
+                if !matches!(copy_sources(&sources, &copy), Err(CopyError::Grader(_))) {
                     let text = std::fs::read_to_string(copy.join(file)).unwrap_or_default();
                     assert!(!text.contains("secret"), "a link was followed");
                 }
@@ -474,6 +474,6 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let copy = folder.path().join("FOSSSim");
         std::fs::copy(own, &copy).unwrap();
-        assert_eq!(program(&copy).refused, Some(UnusableReason::CouldNotStart(StartProblem::GradersOwn)));
+        assert_eq!(program(&copy).unusable_reason, Some(UnusableReason::CouldNotStart(StartProblem::GradersOwn)));
     }
 }

@@ -25,7 +25,7 @@ pub enum RunPart {
 
 impl RunPart {
     /// The parts that run in the grader's own process, and their names.
-    pub const OWN_PARTS: [(Self, &str); 5] = [
+    pub const GRADER_PARTS: [(Self, &str); 5] = [
         (Self::Start, "starting runs"),
         (Self::Judging, "judging"),
         (Self::Explaining, "explaining"),
@@ -66,7 +66,7 @@ impl<'a> Stopwatch<'a> {
     }
 
     /// Adds the time since the previous part ended to `part`.
-    pub(super) fn end(&mut self, part: RunPart) {
+    pub(super) fn end_part(&mut self, part: RunPart) {
         if let Some(timings) = self.timings {
             let now = processor_time(ProcessorTimeScope::Thread);
             timings.add(part, now.saturating_sub(self.last));

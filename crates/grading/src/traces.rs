@@ -1,6 +1,6 @@
 //! Grades traces that exist already. No program is run, so its duration and its exit status are unknown.
 use super::{
-    conclude::{CountedReader, ProgramRun, Run, conclude},
+    conclusion::{CountedReader, JudgedRun, ProgramRun, conclude},
     grade::Grade,
     plan::Plan,
     result::{Measurements, SceneResult},
@@ -26,16 +26,16 @@ pub fn judge_trace<'a, R: Read + Send>(
     let options = Options {
         stopping_book: plan.rules.official(),
         threads: 1,
-        uses_fair_rules: plan.rules.ask_fair(),
+        uses_fair_rules: plan.rules.includes_fair(),
         ..Options::default()
     };
     let bytes = AtomicU64::new(0);
     let counted = CountedReader { inner: trace, bytes: &bytes };
     let examined = examine(&task.scene, counted, KeptPart::All, &options, progress);
-    let run = Run {
+    let run = JudgedRun {
         task,
-        program: &ProgramRun::not_run(),
-        judged: &examined.outcome,
+        program: &ProgramRun::without_program(),
+        outcome: &examined.outcome,
         trace_bytes: bytes.load(Ordering::Relaxed),
         rules: plan.rules,
         hints: plan.staff_hints,

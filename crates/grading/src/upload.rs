@@ -1,13 +1,13 @@
 //! Describes what a submission's folder contains, for messages about a missing program.
 use super::{
-    names,
+    file_names,
     result::{FolderContents, UnusableReason},
 };
 use fosssim_sandbox::collect::{FolderEntry, OpenFolder};
 use std::{ffi::OsStr, os::unix::ffi::OsStrExt, path::Path};
 
 /// The maximum number of entries that a message names.
-const MAX_NAMED: usize = 6;
+const MAX_NAMED_ENTRIES: usize = 6;
 /// The maximum number of entries among which a program is searched in subfolders.
 const MAX_SCANNED_ENTRIES: u32 = 2000;
 const MAX_DEPTH: u32 = 3;
@@ -31,16 +31,16 @@ fn list_contents(program: &str, folder: &OpenFolder) -> FolderContents {
     }
     let wanted = Path::new(program).file_name().unwrap_or_default();
     FolderContents::Others {
-        names: names.iter().take(MAX_NAMED).map(|name| format_entry(folder, name)).collect(),
-        more: names.len().saturating_sub(MAX_NAMED),
+        names: names.iter().take(MAX_NAMED_ENTRIES).map(|name| format_entry(folder, name)).collect(),
+        more: names.len().saturating_sub(MAX_NAMED_ENTRIES),
         elsewhere: find_below(folder, wanted, Path::new(""), MAX_DEPTH, &mut MAX_SCANNED_ENTRIES.clone())
-            .map(|path| names::printable(path.as_os_str())),
+            .map(|path| file_names::to_printable(path.as_os_str())),
     }
 }
 
 fn format_entry(folder: &OpenFolder, name: &OsStr) -> String {
     let slash = if matches!(folder.entry(name), Ok(FolderEntry::Folder(_))) { "/" } else { "" };
-    names::printable(name) + slash
+    file_names::to_printable(name) + slash
 }
 
 /// Returns the path of the first file called `name` below a folder. The files in a folder come before those in its

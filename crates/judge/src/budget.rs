@@ -201,7 +201,7 @@ mod tests {
             assert_eq!(format!("{:?}", outcome.parity), format!("{:?}", alone.parity));
             assert_eq!(outcome.ruling(Book::Fair), Ruling::WrongAnswer, "by what it has seen");
             let fair = outcome.fair.expect("asked");
-            (fair.given_up.expect("given up"), format!("{fair:?}"))
+            (fair.first_unjudged_step.expect("given up"), format!("{fair:?}"))
         });
         assert!((3..scene.step_count()).contains(&ends[0].0), "step {}", ends[0].0);
         ends.sort();

@@ -42,9 +42,9 @@ mod tally;
 mod wrong_coefficients;
 
 pub use fosssim_findings::{
-    Book, BookFindings, Damage, Finding, FindingCounts, FindingDetail, FindingKind, Outcome, Overall, PairWords, Part,
-    PassWords, PolynomialPlace, Power, RecordPart, RescaledCoefficient, Residuals, Role, Rules, Ruling, Stop,
-    WithoutResult, parity, passes,
+    Book, BookFindings, Damage, Finding, FindingCounts, FindingDetail, FindingKind, MissingResult, Outcome, Overall,
+    PairText, Part, PassText, PolynomialPlace, PowerText, RecordPart, RescaledCoefficient, Residuals, Role, Rules,
+    Ruling, Stop, count_whole_passes, parity,
 };
 use fosssim_findings::{counts, finding, outcome, rules};
 pub use fosssim_model::trace::ReadFailure;

@@ -203,7 +203,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         simulation.state_mut().clone_from(&self.state);
         simulation.set_steps_done(step - 1);
         let error = self.budgets[0].step(&mut simulation, &mut ()).err();
-        self.outcome.parity.endless = self.outcome.parity.endless.or(error);
+        self.outcome.parity.endless_step = self.outcome.parity.endless_step.or(error);
     }
 
     /// Computes the verdicts.
@@ -338,8 +338,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 self.outcome.damage = slot.damage.take();
             }
             let parity = &mut self.outcome.parity;
-            parity.endless = parity.endless.or(slot.error);
-            if parity.endless.is_some() {
+            parity.endless_step = parity.endless_step.or(slot.error);
+            if parity.endless_step.is_some() {
                 slot.result.clear();
             }
             tally::add_residuals(&mut parity.residuals, &slot.result.residuals);
@@ -349,7 +349,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
                 slot.result.first_findings.iter().for_each(|first| parity.findings.keep_first(first));
                 self.deliver_fair(slot);
             }
-            if self.outcome.parity.endless.is_some() && self.step_rules.fair.is_none() {
+            if self.outcome.parity.endless_step.is_some() && self.step_rules.fair.is_none() {
                 return true;
             }
             let outcome = &mut self.outcome;

@@ -7,7 +7,7 @@ use crate::{
     words::{INPUT_AND_OUTPUT, NO_PICTURE_FOLDER, NO_VORTEX_HESSIAN, not_opened},
 };
 use fosssim_files::{Identity, open_for_reading, open_for_writing, read_limited, with_timeout};
-use fosssim_judge::{ReadFailure, Stop, WithoutResult, replay, replay::Progress};
+use fosssim_judge::{MissingResult, ReadFailure, Stop, replay, replay::Progress};
 use fosssim_model::{
     scene::{
         MAX_IMPLICIT_PARTICLES, MAX_SCENE_BYTES, Scene,
@@ -235,7 +235,7 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
         // Like the original, this follows links, truncates, and ignores failures.
         drop(file.write_all(residuals.as_bytes()));
     }
-    if let Some(error) = &outcome.parity.endless {
+    if let Some(error) = &outcome.parity.endless_step {
         return step_failed(error);
     }
     match &outcome.stop {
@@ -257,7 +257,7 @@ fn step_failed(error: &StepError) -> u8 {
     match error {
         StepError::VortexHessian { .. } => print_error(NO_VORTEX_HESSIAN),
         StepError::RootSearch { .. } | StepError::Newton { .. } | StepError::Work { .. } => {
-            print_error(format!("step {} has no result: {}\n", error.step(), WithoutResult(*error)))
+            print_error(format!("step {} has no result: {}\n", error.step(), MissingResult(*error)))
         }
     }
 }

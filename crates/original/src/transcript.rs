@@ -102,7 +102,7 @@ impl<'a, W: Write> Transcript<'a, W> {
 
     /// Ends grading: prints the completion message or the reason for stopping, then the exit handler's lines.
     pub(crate) fn print_end(&mut self, outcome: &Outcome) {
-        match &outcome.stop_of(Book::Parity) {
+        match &outcome.stop_by(Book::Parity) {
             None => self.print_completion(),
             Some(Stop::Trace { cause: ReadFailure::State, .. }) => {
                 let text = format!("{RED}Error in TwoDSceneSerialized: {RESET}Failed to load timestep. Exiting.\n");

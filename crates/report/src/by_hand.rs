@@ -10,7 +10,7 @@ use crate::{
     table::{Align, Table},
 };
 use collisions::CollisionWalk;
-use fosssim_findings::PairWords;
+use fosssim_findings::PairText;
 use fosssim_model::{
     scene::{Collision, CollisionDetection, Force, Integrator, Scene},
     sim::{
@@ -154,7 +154,7 @@ fn render_penalty(scene: &Scene, x: &[f64]) -> Option<String> {
         let (reach, force) = (scene.particles[first].radius + other + thickness, length(terms[0].1));
         let [distance, reach, force] = [reach - force / stiffness, reach, -force].map(format_short);
         let added = terms.iter().map(|(particle, force)| format!("{particle}: {}", format_vector(-1.0 * force)));
-        rows.push([PairWords(pair).to_string(), distance, reach, force, added.collect::<Vec<_>>().join(", ")]);
+        rows.push([PairText(pair).to_string(), distance, reach, force, added.collect::<Vec<_>>().join(", ")]);
     });
     let rule = "n is from the first particle to the other object; -k (|n| - r) n / |n| is added for the first, and the \
                 opposite for the other; an edge's ends share it by 1 - alpha and alpha";

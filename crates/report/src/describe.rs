@@ -1,5 +1,5 @@
 //! Texts that appear in several reports.
-use fosssim_judge::WithoutResult;
+use fosssim_judge::MissingResult;
 use fosssim_model::sim::{Pair, StepError};
 
 /// Returns a pair as text, in the form that `detect --pair` accepts.
@@ -11,5 +11,5 @@ pub fn pair_key(pair: Pair) -> String {
 /// Returns a sentence about a step whose computation has no result.
 #[must_use]
 pub fn no_result(error: &StepError) -> String {
-    format!("step {} has no result, because {}", error.step(), WithoutResult(*error))
+    format!("step {} has no result, because {}", error.step(), MissingResult(*error))
 }

@@ -13,7 +13,7 @@ use super::{
 use fosssim_evidence::CallLog;
 use fosssim_findings::Role;
 use fosssim_judge::{
-    PairWords, PassWords, find_differing_powers, find_factor,
+    PairText, PassText, find_differing_powers, find_factor,
     study::{Answer, Curve, Study},
 };
 use fosssim_model::sim::{Decision, Pair, PairKind, PairMotion, Pass, PointMotion};
@@ -98,7 +98,7 @@ impl Detect<'_> {
         let mut text = style.paint(Look::Strong, &self.title()) + "\n";
         if let Some(place) = &self.place {
             text += &match place.pass {
-                Some(pass) => format!("  pass {} of {}: {}\n", pass.index + 1, place.passes, PassWords(pass)),
+                Some(pass) => format!("  pass {} of {}: {}\n", pass.index + 1, place.passes, PassText(pass)),
                 None => {
                     "  this scene has no continuous-time detection; the motion is that of the whole step\n".to_owned()
                 }
@@ -194,7 +194,7 @@ impl Detect<'_> {
 
 fn title(pair: Pair, step: u32, trace: Option<&str>, scene: &str) -> String {
     let run = trace.map_or_else(|| "the reference's run".to_owned(), |trace| format!("the trace {trace}"));
-    let words = PairWords(pair).to_string();
+    let words = PairText(pair).to_string();
     let (first, rest) = words.split_at(1);
     format!("{}{rest} in step {step} of {run}, scene {scene}", first.to_uppercase())
 }

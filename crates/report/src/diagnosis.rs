@@ -9,7 +9,9 @@ use super::{
     words::{describe_first, describe_located},
 };
 use crate::foreign::one_line;
-use fosssim_findings::{Book, disclosure::DisclosedFinding, located::LocatedFailure, smallest::SmallestScene};
+use fosssim_findings::{
+    Book, disclosure::DisclosedFinding, located_failure::LocatedFailure, smallest_scene::SmallestScene,
+};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use std::fmt::Write;
 

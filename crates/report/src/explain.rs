@@ -9,7 +9,7 @@ use super::{
     view::{to_key, view},
     words::explanation::{describe, describe_place, known_sentence, list_details},
 };
-use fosssim_mistakes::diagnose::{About, Example, ExamplePlace, ExampleValue, Explanation};
+use fosssim_mistakes::diagnose::{Example, ExamplePlace, ExampleValue, Explanation, ExplanationTopic};
 
 /// The maximum number of mistakes in a list of those that can't be distinguished.
 const MAX_LISTED: usize = 3;
@@ -28,8 +28,11 @@ pub fn render_sentence(explanations: &[Explanation]) -> Option<String> {
     if let Some(first) = explanations.first().filter(|first| first.is_not_finite()) {
         return Some(describe(first));
     }
-    let together: Vec<String> =
-        explanations.iter().filter(|one| one.is_complete() && one.about == About::Mistake).map(describe).collect();
+    let together: Vec<String> = explanations
+        .iter()
+        .filter(|one| one.is_complete() && one.topic == ExplanationTopic::Mistake)
+        .map(describe)
+        .collect();
     if together.len() > 1 {
         return Some(format!("likely mistakes: {}", together.join(" ")));
     }
@@ -56,13 +59,13 @@ pub(crate) struct ExplanationParts {
 impl ExplanationParts {
     /// Creates the parts. Formulas are written in the given style.
     pub(crate) fn new(explanation: &Explanation, style: Style) -> Self {
-        let Explanation { reproduced, samples, about, .. } = explanation;
+        let Explanation { reproduced, samples, topic: about, .. } = explanation;
         // An explanation that reproduces nothing is an observation, not a likely mistake.
         let (is_likely, evidence) = match (about, *reproduced) {
             _ if *samples == 0 => (false, None),
             (_, 0) => (false, Some(format!("{samples} checked"))),
-            (About::Unfinished | About::Pairs(_), _) => (false, None),
-            (About::Mistake, _) => (true, Some(describe_evidence(*reproduced, *samples))),
+            (ExplanationTopic::Unfinished | ExplanationTopic::Pairs(_), _) => (false, None),
+            (ExplanationTopic::Mistake, _) => (true, Some(describe_evidence(*reproduced, *samples))),
             _ => (true, Some(format!("fits {reproduced} of {samples} polynomials"))),
         };
         let mut details: Vec<String> = list_details(explanation).iter().map(|line| style.set(line)).collect();
@@ -196,7 +199,7 @@ pub(crate) mod tests {
     use super::*;
     use fosssim_findings::Hints;
     use fosssim_judge::Role;
-    use fosssim_mistakes::diagnose::{Detail, OfPolynomials, PolynomialDetail, Weight, explain, find_formula};
+    use fosssim_mistakes::diagnose::{Detail, PolynomialDetail, PolynomialEvidence, Weight, explain, find_formula};
     use fosssim_mistakes::together::disclosure::limit_explanations;
     use fosssim_model::{
         scene::original,
@@ -219,7 +222,7 @@ pub(crate) mod tests {
         vec![
             Explanation {
                 key: "pe-radius-not-squared".to_owned(),
-                about: About::Mistake,
+                topic: ExplanationTopic::Mistake,
                 details: vec![Detail::Polynomial(PolynomialDetail::Weight(weight))],
                 reproduced: 11,
                 samples: 12,
@@ -231,18 +234,18 @@ pub(crate) mod tests {
                     actual: vec![1.0, f64::NAN],
                 }),
                 same_as: ["a", "b", "c", "d", "e"].map(str::to_owned).into(),
-                denies: Vec::new(),
+                contradicted_keys: Vec::new(),
                 claims: Vec::new(),
             },
             Explanation {
                 key: "unexplained".to_owned(),
-                about: About::Polynomials { subjects: vec![subject], found: OfPolynomials::Nothing },
+                topic: ExplanationTopic::Polynomials { subjects: vec![subject], found: PolynomialEvidence::Nothing },
                 details: Vec::new(),
                 reproduced: 0,
                 samples: 9,
                 example: None,
                 same_as: Vec::new(),
-                denies: Vec::new(),
+                contradicted_keys: Vec::new(),
                 claims: Vec::new(),
             },
         ]

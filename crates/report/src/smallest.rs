@@ -8,7 +8,7 @@ use crate::{
     view::{FindingView, view},
     words::describe_first,
 };
-use fosssim_findings::{Book, disclosure::DisclosedFinding, smallest::SmallestScene};
+use fosssim_findings::{Book, disclosure::DisclosedFinding, smallest_scene::SmallestScene};
 
 /// Describes the size of the smallest scene, and the scene from which it was made.
 pub(crate) fn title(small: &SmallestScene) -> String {
@@ -22,17 +22,17 @@ pub(crate) fn title(small: &SmallestScene) -> String {
 /// Renders the report for people.
 #[must_use]
 pub fn text(small: &SmallestScene, style: Style) -> String {
-    let SmallestScene { note, first, explanations, .. } = small;
+    let SmallestScene { note, first_finding: first, explanations, .. } = small;
     let heading = |words: &str| format!("{}\n", style.paint(Look::Strong, words));
     let told = lines(&explanations[..explanations.len().min(1)], style);
     let first = first.as_ref().filter(|_| told.is_empty()).map(describe_first);
     let causes = note.iter().cloned().chain(first).chain(told).map(|line| format!("  {line}\n"));
     let mut parts = vec![heading(&title(small)) + &causes.collect::<String>(), small.xml.clone()];
-    parts.extend(small.differs.clone());
-    parts.extend(small.by_hand.iter().map(|by_hand| heading("By hand") + by_hand));
+    parts.extend(small.difference.clone());
+    parts.extend(small.calculation.iter().map(|by_hand| heading("By hand") + by_hand));
     let run = format!("{} -s small.xml -d 0 -o small.bin", quote(&small.program));
     let check = note.is_none().then(|| "fosssim-oracle check small.xml small.bin --all".to_owned());
-    let commands = std::iter::once(run).chain(check).chain([small.again.clone()]);
+    let commands = std::iter::once(run).chain(check).chain([small.command.clone()]);
     let save = "  Save the scene as small.xml (shrink --output writes it).\n".to_owned();
     parts.push(heading("Next") + &commands.fold(save, |text, line| text + &format!("  $ {line}\n")));
     parts.join("\n")
@@ -47,7 +47,7 @@ view! {
         /// The content of the scene file.
         scene: String = small.xml.clone(),
         /// The command that finds this scene again.
-        again: String = strip_control_characters(&small.again),
+        again: String = strip_control_characters(&small.command),
         /// The number of times that the program was run during the search.
         runs: u32 = small.runs,
         /// Whether no single change makes the scene smaller. It is false if the search was stopped early.
@@ -55,13 +55,13 @@ view! {
         /// The way in which the program ended, if it did not end well; null otherwise.
         note: Option<String> = small.note.as_deref().map(strip_control_characters),
         /// The first fault; null if there is none, or if hints hide it.
-        first_divergence: Option<FindingView> = match &small.first {
+        first_divergence: Option<FindingView> = match &small.first_finding {
             Some(DisclosedFinding::Full(finding)) => Some(FindingView::from_finding(Book::Fair, finding)),
             Some(DisclosedFinding::Place { .. }) | None => None,
         },
         /// The likely mistakes. The first one is the cause for which the scene was made.
         explanations: Vec<ExplanationView> = small.explanations.iter().map(ExplanationView::from).collect(),
         /// The computation of the first wrong step by hand; null if the hints hide it.
-        by_hand: Option<String> = small.by_hand.clone(),
+        by_hand: Option<String> = small.calculation.clone(),
     }
 }

@@ -174,7 +174,7 @@ impl FindingView {
             residual: residual.map(WrittenNumber),
             tolerance: tolerance(kind).filter(|_| book == Book::Parity).map(WrittenNumber),
             rescaled,
-            text: finding.what().to_string(),
+            text: finding.describe().to_string(),
         }
     }
 }

@@ -14,7 +14,7 @@ use fosssim_findings::{
         SceneResult, UnusableReason, WrongTrace,
     },
 };
-use fosssim_judge::{FindingKind, PairWords, ReadFailure};
+use fosssim_judge::{FindingKind, PairText, ReadFailure};
 use fosssim_mistakes::together::find_likely_mistakes;
 use fosssim_model::assignments::Assignment;
 
@@ -34,7 +34,7 @@ pub fn summarize(result: &SceneResult) -> String {
         Reason::Trace(bad) => describe_bad_trace(bad),
         Reason::NoTrace => "the program wrote no trace; it must write the file that -o names".to_owned(),
         Reason::Program(reached) => describe_ending(result) + &describe_progress(*reached, result.steps),
-        Reason::LeftOut(why) => describe_left_out(*why),
+        Reason::Skipped(why) => describe_left_out(*why),
         Reason::Stopped => "grading was stopped".to_owned(),
         Reason::Withheld => "details of single scenes are not shown, because the suite has hidden groups".to_owned(),
         Reason::DoesNotBuild => "the sources cannot be built".to_owned(),
@@ -95,7 +95,7 @@ pub fn list_details(result: &SceneResult) -> Vec<String> {
 /// could.
 #[must_use]
 pub fn describe_unfit(grade: &Grade) -> Option<String> {
-    grade.unfit().map(|unfit| match unfit {
+    grade.submission_fault().map(|unfit| match unfit {
         SubmissionFault::Build(end) => build(end),
         SubmissionFault::Milestone(other) => describe_milestone(other),
         SubmissionFault::Scene(result) if result.verdict == Verdict::Unwritten => describe_unwritten(grade),
@@ -126,9 +126,9 @@ pub fn describe_reason(grade: &Grade) -> Option<String> {
         return Some(unfit);
     }
     let Some(first) = grade.scenes().find(|scene| !matches!(scene.verdict, Verdict::Accepted | Verdict::NotRun)) else {
-        return grade.is_incomplete().then(|| format!("{} scenes were not run", grade.count(Verdict::NotRun)));
+        return grade.is_incomplete().then(|| format!("{} scenes were not run", grade.count_verdict(Verdict::NotRun)));
     };
-    let (all, accepted) = (grade.scenes().count(), grade.count(Verdict::Accepted));
+    let (all, accepted) = (grade.scenes().count(), grade.count_verdict(Verdict::Accepted));
     Some(format!("{accepted} of {all} scenes accepted; first {}: {}", first.scene, summarize(first)))
 }
 
@@ -136,12 +136,12 @@ pub fn describe_reason(grade: &Grade) -> Option<String> {
 #[must_use]
 pub fn build(end: &BuildEnd) -> String {
     match end {
-        BuildEnd::Made => "the build succeeded".to_owned(),
-        BuildEnd::Ended(ended) => format!("the build {ended}"),
-        BuildEnd::MadeNo(program) => format!("the build made no {program}"),
-        BuildEnd::Unusable(why) => format!("the built program can't be used: {why}"),
-        BuildEnd::Sources(why) => format!("the submission can't be built: {why}"),
-        BuildEnd::NoScript(command) => format!("the submission lacks {command}, which builds it"),
+        BuildEnd::Success => "the build succeeded".to_owned(),
+        BuildEnd::Failure(ended) => format!("the build {ended}"),
+        BuildEnd::MissingProgram(program) => format!("the build made no {program}"),
+        BuildEnd::UnusableProgram(why) => format!("the built program can't be used: {why}"),
+        BuildEnd::UnusableSources(why) => format!("the submission can't be built: {why}"),
+        BuildEnd::MissingScript(command) => format!("the submission lacks {command}, which builds it"),
     }
 }
 
@@ -151,7 +151,7 @@ fn spell_number(count: u64) -> String {
 
 fn describe_wrong(wrong: &WrongTrace, steps: u32) -> String {
     match wrong {
-        WrongTrace::Untold => "the trace is wrong".to_owned(),
+        WrongTrace::Undisclosed => "the trace is wrong".to_owned(),
         WrongTrace::Nothing => "the trace contains no polynomials and no collisions, so no pair is tested".to_owned(),
         WrongTrace::FirstRecord(kind) => format!("the first record is wrong: {kind}"),
         WrongTrace::Steps { wrong, first, kind } => {
@@ -249,7 +249,7 @@ pub(crate) fn describe_first(first: &DisclosedFinding) -> String {
         DisclosedFinding::Place { step, kind, place } => {
             let place = match place {
                 FindingPlace::Step => String::new(),
-                FindingPlace::Pair(pair) => format!(", {}", PairWords(*pair)),
+                FindingPlace::Pair(pair) => format!(", {}", PairText(*pair)),
                 FindingPlace::Polynomial(place) => format!(", {place}"),
                 FindingPlace::Particle(particle) => format!(", particle {particle}"),
                 FindingPlace::Objects(first, second) => format!(", objects {first} and {second}"),

@@ -135,7 +135,7 @@ impl Job {
     }
 
     /// Declares that the program writes its trace into the file `name` in the working folder. The trace has a limit of
-    /// its own. [`LeftFolder::regular_file`](crate::LeftFolder::regular_file) opens the trace.
+    /// its own. [`RemainingFolder::regular_file`](crate::RemainingFolder::regular_file) opens the trace.
     #[must_use]
     pub fn trace(mut self, name: impl Into<String>) -> Self {
         self.trace = Some(name.into());
@@ -144,7 +144,7 @@ impl Job {
 
     /// Lets the program work in a copy of the working folder in memory, if namespaces work and there is enough memory.
     /// The kernel then limits the copy's bytes and files. The folder itself does not change; the program's files are in
-    /// the [`LeftFolder`](crate::LeftFolder).
+    /// the [`RemainingFolder`](crate::RemainingFolder).
     #[must_use]
     pub fn folder_in_memory(mut self) -> Self {
         self.has_folder_in_memory = true;

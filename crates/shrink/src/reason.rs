@@ -3,7 +3,7 @@
 use crate::size::is_clear;
 use fosssim_ended::RunEnd;
 use fosssim_findings::{
-    FindingDetail, FindingKind, Stop, explanation::Explanation, fair::FairVerdict, located::FailureKind,
+    FindingDetail, FindingKind, Stop, explanation::Explanation, fair::FairVerdict, located_failure::FailureKind,
 };
 use fosssim_judge::replay::{Options, judge};
 use fosssim_mistakes::diagnose::{self, is_named_in, reproduces};
@@ -54,7 +54,7 @@ impl WrongReason {
         if explanations.iter().any(Explanation::is_not_finite) {
             return Some(Self::NotFinite);
         }
-        let is_likely = |one: &Explanation| one.is_vote() && (one.is_complete() || one.is_of_stage());
+        let is_likely = |one: &Explanation| one.is_about_program() && (one.is_complete() || one.names_stage());
         let likely = explanations.into_iter().find(is_likely).map(|one| Self::Mistake(Box::new(one)));
         likely.or_else(|| is_plain(detail).then_some(fault))
     }

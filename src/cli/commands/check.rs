@@ -114,7 +114,7 @@ fn replay_options(arguments: &CheckArguments) -> replay::Options {
     replay::Options {
         threads: arguments.threads.map_or(0, |threads| threads.get().min(8)),
         root_search: if arguments.audit { RootSearch::Audit } else { RootSearch::OnDemand },
-        uses_fair_rules: arguments.rules.ask_fair(),
+        uses_fair_rules: arguments.rules.includes_fair(),
         ..replay::Options::default()
     }
 }

@@ -48,14 +48,15 @@ pub(super) fn read(place: &Path) -> Result<Vec<EarlierGrade>> {
 /// do not matter.
 pub(super) fn add(earlier: &[EarlierGrade], grades: &mut [Grade]) {
     if let ([before], [grade]) = (earlier, &mut *grades) {
-        grade.before = Some(before.clone());
+        grade.earlier_grade = Some(before.clone());
         return;
     }
     for grade in &mut *grades {
         let name = strip_control_characters(&grade.submission);
-        grade.before = earlier.iter().find(|before| before.submission == name).cloned();
+        grade.earlier_grade = earlier.iter().find(|before| before.submission == name).cloned();
     }
-    let new: Vec<&str> = grades.iter().filter(|one| one.before.is_none()).map(|one| one.submission.as_str()).collect();
+    let new: Vec<&str> =
+        grades.iter().filter(|one| one.earlier_grade.is_none()).map(|one| one.submission.as_str()).collect();
     if let (false, [first, ..]) = (earlier.is_empty(), &new[..]) {
         let new = format_count(new.len() as u64, "submission");
         console::print_remark(format!(

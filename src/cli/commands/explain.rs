@@ -12,7 +12,7 @@ use crate::{
     },
     judge::kept_trace::MAX_KEPT_BYTES,
     report::{case::Case, diagnosis::Diagnosis, page::Card},
-    suite::smallest::QUICK_LIMITS,
+    suite::smallest_scene::QUICK_LIMITS,
 };
 use anyhow::{Result, bail};
 use std::{

@@ -43,7 +43,7 @@ use crate::{
         grader::Options,
         plan::{self, Plan},
         results::FolderResults,
-        smallest::ShrunkScene,
+        smallest_scene::ShrunkScene,
         timings::Timings,
     },
 };
@@ -74,7 +74,7 @@ pub(super) fn run(arguments: &Arguments) -> Result<u8> {
 /// Grades the submissions, and adds up the times of their runs. When this function returns, all processes of the
 /// sandbox have ended.
 fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
-    let mut plan = plan::find(&arguments.suite)?;
+    let mut plan = plan::find_suite(&arguments.suite)?;
     if let Some(rules) = arguments.rules {
         plan.rules = rules;
     }
@@ -83,8 +83,8 @@ fn grade(arguments: &Arguments, times: &Timings) -> Result<u8> {
     }
     match (arguments.hints, arguments.reader) {
         (None, _) => {}
-        (Some(hints), Audience::Staff) => plan.tell_at_most(hints),
-        (Some(hints), Audience::Student) => plan.tell_students(hints),
+        (Some(hints), Audience::Staff) => plan.limit_hints(hints),
+        (Some(hints), Audience::Student) => plan.set_student_hints(hints),
     }
     let reports = read_reports(&arguments.format)?;
     // The earlier grading is read before anything is written, because its files may be in the folder for results.
@@ -192,7 +192,7 @@ impl GradingSession<'_> {
 
     /// Prints how many results were reused, and how a grading that was stopped can be continued.
     fn say_what_was_kept(&self, grades: &[Grade]) {
-        let taken: usize = grades.iter().map(Grade::taken_over).sum();
+        let taken: usize = grades.iter().map(Grade::count_reused).sum();
         let all = grades.iter().flat_map(Grade::scenes).count();
         if let Some(folder) = &self.folder {
             if taken > 0 {
@@ -227,7 +227,7 @@ impl GradingSession<'_> {
         let options = Options {
             jobs: self.arguments.jobs.map_or(cores, NonZeroUsize::get),
             fail_fast: self.arguments.fail_fast,
-            recorded: self.arguments.recorded,
+            uses_recordings: self.arguments.recorded,
         };
         let faults =
             self.folder.as_deref().map_or_else(|| Place::new("", FAULTS_FOLDER), |folder| Place::new(folder, "faults"));
@@ -261,8 +261,8 @@ impl GradingSession<'_> {
             backend: self.backend,
             program: &self.arguments.program,
             options,
-            faults: &faults,
-            traces: if self.arguments.keep_traces { Some(&trace) } else { None },
+            fault_folder: &faults,
+            trace_file: if self.arguments.keep_traces { Some(&trace) } else { None },
             cards: self.pages.as_ref().map(|pages| pages.drawing(&draw)),
             smallest: if self.arguments.smallest { Some(&smallest) } else { None },
             finish: Some(&finish),
@@ -280,7 +280,7 @@ impl GradingSession<'_> {
         };
         let results = kept.as_ref().map(|kept| kept as &dyn crate::suite::results::Results);
         let BatchResult { mut grades, fault } =
-            batch::run(&grader, submissions, results, self.cancellation, &mut on_event);
+            batch::grade_all(&grader, submissions, results, self.cancellation, &mut on_event);
         drop(display);
         grade::add_warnings(&mut grades, self.passed_over());
         Ok((grades, fault.map(anyhow::Error::from).or(log_error.into_inner())))
@@ -401,7 +401,7 @@ fn write_logs(folder: &Path, grade: &Grade) -> Result<()> {
         let details = grade::describe_difference(scene).into_iter().chain(words::list_details(scene));
         text.extend(
             details
-                .chain(explain::lines(&scene.settled, Style::Plain))
+                .chain(explain::lines(&scene.corrected_explanations, Style::Plain))
                 .map(|line| format!("{}\n", strip_control_characters(&line))),
         );
         for (stream, printed_there) in [("output", &scene.stdout), ("error", &scene.stderr)] {

@@ -12,7 +12,7 @@ use crate::{
     sample::pin,
     sandbox::{self, Backend, Supervisor, selftest},
     student::{self, RowKind},
-    suite::{Grader, Submission, Verdict, batch, cards::JudgedTrace, grader::Options, near, plan},
+    suite::{Grader, Submission, Verdict, batch, cards::JudgedTrace, grader::Options, plan, suggestions},
 };
 use anyhow::{Context, Result, bail};
 use std::{
@@ -63,7 +63,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         // A variant is right, so a program that uses a variant would be a right submission.
         if student::find(id).is_none_or(|row| row.kind == RowKind::Variant) {
             let mistakes = student::all_rows().filter(|row| row.kind != RowKind::Variant);
-            let meant = near::suggest(id, mistakes.map(|row| row.id));
+            let meant = suggestions::suggest(id, mistakes.map(|row| row.id));
             bail!("there is no mistake '{id}'; `fosssim-oracle sample --list` lists them{meant}");
         }
     }
@@ -75,7 +75,7 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
         return Ok(exit::ACCEPTED);
     }
     let folder = tempfile::Builder::new().prefix("fosssim-demo-").tempdir().context("no temporary folder")?;
-    let plan = plan::load(DEMO_SUITE, Path::new(".")).context("the demo's suite")?;
+    let plan = plan::load_suite(DEMO_SUITE, Path::new(".")).context("the demo's suite")?;
     let backend = backend(false)?;
     let cancellation = cancelled_by_signals();
     let jobs = std::thread::available_parallelism().map_or(1, NonZeroUsize::get);
@@ -92,16 +92,16 @@ pub(super) fn demo(arguments: &DemoArguments) -> Result<u8> {
             plan: &plan,
             backend: &backend,
             program: "",
-            options: Options { jobs, fail_fast: false, recorded: false },
-            faults: &Place::new("", "fosssim-faults"),
-            traces: None,
+            options: Options { jobs, fail_fast: false, uses_recordings: false },
+            fault_folder: &Place::new("", "fosssim-faults"),
+            trace_file: None,
             cards: Some(pages.drawing(&draw)),
             smallest: None,
             finish: None,
             timings: None,
             reference: None,
         };
-        let grades = batch::run(&grader, &[submission], None, &cancellation, &mut |_| {}).grades;
+        let grades = batch::grade_all(&grader, &[submission], None, &cancellation, &mut |_| {}).grades;
         console::report(&Format::Text.render(&grades))?;
         if cancellation.is_cancelled() {
             return Ok(exit::INTERRUPTED);
@@ -137,7 +137,7 @@ pub(super) fn selftest(arguments: &SelftestArguments) -> Result<u8> {
     for name in &arguments.without {
         let layer = sandbox::Layer::ALL.into_iter().find(|layer| layer.name() == name);
         let names = sandbox::Layer::ALL.into_iter().map(sandbox::Layer::name);
-        let unknown = || format!("doctor shows no layer {name}{}", near::suggest(name, names));
+        let unknown = || format!("doctor shows no layer {name}{}", suggestions::suggest(name, names));
         backend = backend.without_layer(layer.with_context(unknown)?)?;
     }
     let folder = tempfile::Builder::new().prefix("fosssim-selftest-").tempdir().context("no temporary folder")?;

@@ -115,7 +115,7 @@ fn require_complete<'a>(parts: &'a [(PathBuf, Part)], arguments: &MergeArguments
     }
     let mut grades = parts.iter().flat_map(|(place, part)| part.grades.iter().map(move |grade| (place, grade)));
     if let Some((_, one)) = grades.next()
-        && let Some((other, grade)) = grades.find(|(_, grade)| !one.is_of_the_suite_of(grade))
+        && let Some((other, grade)) = grades.find(|(_, grade)| !one.has_same_suite(grade))
     {
         bail!(
             "{} grades {} by another suite than the others: grade this shard again",
@@ -168,7 +168,7 @@ fn keep_results(folder: &Path, kept: &FolderResults) -> Result<()> {
     for_each_line(BufReader::new(file.take(length)), |line| -> Result<()> {
         // A damaged entry is skipped, so a later grading runs its scene again.
         if let Some(entry) = read_line(line) {
-            kept.keep(&entry.key, &entry.submission, &entry.result)?;
+            kept.store(&entry.key, &entry.submission, &entry.result)?;
         }
         Ok(())
     })

@@ -45,6 +45,6 @@ pub(super) fn run(arguments: &PageArguments) -> Result<()> {
 
 /// Returns the part of a suite that the readers of the page may see.
 fn course_part(name: &str, reader: Audience) -> Result<CourseSuite> {
-    let plan = plan::find(name)?;
+    let plan = plan::find_suite(name)?;
     CourseSuite::for_plan(&plan, reader).map_err(|why| anyhow!("the suite {name}: {why}"))
 }

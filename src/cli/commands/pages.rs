@@ -11,7 +11,7 @@ use crate::{
     },
     suite::{
         Grade, SkippedEntry,
-        cards::{self, Cards, Draw, JudgedTrace},
+        cards::{self, Cards, DrawCard, JudgedTrace},
         catch_panic,
         config::Hints,
     },
@@ -53,7 +53,7 @@ impl Pages {
     }
 
     /// Returns a storage of cards that uses this folder. `draw` draws each card.
-    pub(super) fn drawing<'a>(&'a self, draw: &'a Draw<'a>) -> Cards<'a> {
+    pub(super) fn drawing<'a>(&'a self, draw: &'a DrawCard<'a>) -> Cards<'a> {
         Cards { folder: &self.cards, draw, for_students: self.for_students }
     }
 
@@ -68,12 +68,12 @@ impl Pages {
 
     /// Returns the stored card of this name, if there is one.
     pub(super) fn card(&self, name: Option<&str>) -> Option<Card> {
-        Card::from_stored(&cards::read(&self.cards, name?)?)
+        Card::from_stored(&cards::read_card(&self.cards, name?)?)
     }
 
     /// Stores a card, and returns its name. If it can't be stored, only the picture is missing.
     pub(super) fn keep(&self, card: Option<Card>) -> Option<String> {
-        cards::store(&self.cards, &card?.to_stored()).ok()
+        cards::store_card_file(&self.cards, &card?.to_stored()).ok()
     }
 
     /// Renders the page of one submission.

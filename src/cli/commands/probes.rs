@@ -22,10 +22,10 @@ use crate::{
         Cancellation, Folders, Runner, SceneTask,
         cards::JudgedTrace,
         config::{Hints, RunLimits},
-        located::{ContentIndex, Contents, FailureKind, LocatedFailure, TriedScene, locate},
+        failure_cause::{ContentIndex, Contents, FailureKind, LocatedFailure, TriedScene, locate_failure},
         milestone,
         plan::{self, Plan},
-        smallest::shorten_limits,
+        smallest_scene::shorten_limits,
     },
     together::disclosure::limit_explanations,
 };
@@ -82,7 +82,7 @@ impl ProgramUnderTest {
             assignment: Assignment::DEFAULT,
             suite: suite.unwrap_or_default().to_owned(),
             cancellation: cancelled_by_signals(),
-            plan: plan::find(suite.unwrap_or(Assignment::DEFAULT.key()))?,
+            plan: plan::find_suite(suite.unwrap_or(Assignment::DEFAULT.key()))?,
             backend: backend(unsafe_no_sandbox)?,
             folders: Folders::default(),
             nowhere: Place::new("", ""),
@@ -92,7 +92,7 @@ impl ProgramUnderTest {
         } else {
             ready.assignment = infer_milestone(&ready.runner(&ready.plan.limits), &ready.program)?;
             ready.suite = ready.assignment.key().to_owned();
-            ready.plan = plan::find(&ready.suite)?;
+            ready.plan = plan::find_suite(&ready.suite)?;
         }
         Ok(ready)
     }
@@ -102,15 +102,15 @@ impl ProgramUnderTest {
         Runner {
             folders: &self.folders,
             backend: &self.backend,
-            run: &self.plan.run,
+            command: &self.plan.command,
             limits,
             rules: Rules::Fair,
             hints: Hints::Full,
             student_hints: Hints::Full,
-            recorded: false,
+            uses_recordings: false,
             cancellation: &self.cancellation,
-            faults: &self.nowhere,
-            trace: None,
+            fault_folder: &self.nowhere,
+            trace_location: None,
             cards: None,
             timings: None,
         }
@@ -155,7 +155,7 @@ impl ProgramUnderTest {
             }
             bar.next_run(&task.name);
             let limits = if stopped == 0 { &long } else { &short };
-            let run = self.runner(limits).collect(&self.program, task, MAX_KEPT_BYTES);
+            let run = self.runner(limits).collect_trace(&self.program, task, MAX_KEPT_BYTES);
             let (trace, outcome) = run.map_err(anyhow::Error::msg)?;
             if self.cancellation.is_cancelled() {
                 return Ok(None);
@@ -218,7 +218,7 @@ pub(super) fn case(
     let is_wrong = outcome.stop.is_none() || fair.findings.first_divergence.is_some();
     let is_explained = fair.verdict != FairVerdict::Accepted && is_wrong && hints.explains();
     let explanations = if is_explained { examined.explain() } else { Vec::new() };
-    let first = fair.findings.first_divergence.as_ref().and_then(|first| hints.finding(first));
+    let first = fair.findings.first_divergence.as_ref().and_then(|first| hints.disclose_finding(first));
     let explanations = limit_explanations(hints, explanations);
     let draws = has_pictures && !accepted;
     let card = draws.then(|| {
@@ -313,9 +313,13 @@ fn locate_failures(tasks: &[SceneTask], ends: &[(RunEnd, u32)]) -> Option<Locate
     }
     let contents: Vec<Contents> = tasks.iter().map(|task| ContentIndex::for_scene(&task.scene)).collect();
     let tried = tasks.iter().zip(&contents).zip(&ends);
-    let tried =
-        tried.map(|((task, contents), &(failing, steps))| TriedScene { scene: &task.name, failing, steps, contents });
-    locate(&tried.collect::<Vec<_>>())
+    let tried = tried.map(|((task, contents), &(failing, steps))| TriedScene {
+        scene: &task.name,
+        failure: failing,
+        steps,
+        contents,
+    });
+    locate_failure(&tried.collect::<Vec<_>>())
 }
 
 /// Returns the likely mistakes that explain all wrong traces together, and the keys of those that right traces refute.

@@ -74,7 +74,7 @@ struct EarlierRecordings<'a>(Option<&'a Path>);
 
 impl EarlierRecordings<'_> {
     fn file(&self, path: &str) -> io::Result<Option<Vec<u8>>> {
-        let Some(folder) = self.0 else { return Ok(library::reference(path).map(<[u8]>::to_vec)) };
+        let Some(folder) = self.0 else { return Ok(library::recording_file(path).map(<[u8]>::to_vec)) };
         match Place::new(folder, path).read(MAX_RECORDING_BYTES) {
             Ok(bytes) => Ok(Some(bytes)),
             Err(FileError::Missing { .. }) => Ok(None),

@@ -4,7 +4,7 @@ use crate::{
     cli::{arguments::grade::GradeArguments as Arguments, console, output},
     files::{Place, open_for_writing},
     report::{formats::Format, grade, page::Audience, style::Style, wrap},
-    suite::{Grade, SkippedEntry, catch_panic, near},
+    suite::{Grade, SkippedEntry, catch_panic, suggestions},
 };
 use anyhow::{Context, Result, bail};
 use rayon::prelude::*;
@@ -40,7 +40,11 @@ pub(super) fn read_reports(words: &[String]) -> Result<Vec<Report>> {
         };
         let Some(format) = Format::from_name(name) else {
             let known: Vec<_> = Format::ALL.iter().map(|format| format.name()).collect();
-            bail!("no format {name}; there are {}{}", known.join(", "), near::suggest(name, known.iter().copied()));
+            bail!(
+                "no format {name}; there are {}{}",
+                known.join(", "),
+                suggestions::suggest(name, known.iter().copied())
+            );
         };
         reports.push(Report { format, name: name.to_owned(), file });
     }

@@ -6,7 +6,7 @@ use crate::{
         console, output,
     },
     files::{FileError, Place},
-    suite::{Grade, SkippedEntry, Submission, plan::Plan, score, this_build},
+    suite::{Grade, SkippedEntry, Submission, plan::Plan, running_build, score},
 };
 use anyhow::{Context, Result, bail};
 use serde::{Deserialize, Serialize};
@@ -145,7 +145,7 @@ impl Sharding {
         let common = SharedInputs {
             schema: SCHEMA,
             version: env!("CARGO_PKG_VERSION").to_owned(),
-            grader: this_build().to_owned(),
+            grader: running_build().to_owned(),
             total: shard.total,
             suite: plan.name.clone(),
             plan: plan_digest(plan, arguments),
@@ -199,13 +199,13 @@ fn plan_digest(plan: &Plan, arguments: &Arguments) -> String {
     };
     let words = format!(
         "{:?} {:?} {:?} {:?} {:?} {:?} {:?} {} {}",
-        plan.run,
+        plan.command,
         plan.rules,
         plan.staff_hints,
         plan.show_output,
         plan.build,
         plan.limits,
-        plan.patience,
+        plan.skip_limits,
         arguments.recorded,
         arguments.fail_fast
     );

@@ -6,7 +6,7 @@ use crate::{
         console, exit,
         output::Output,
     },
-    diagnose::{About, Explanation, is_named_in},
+    diagnose::{Explanation, ExplanationTopic, is_named_in},
     judge::{Finding, Rules, replay},
     report::{
         by_hand::first_step,
@@ -21,8 +21,8 @@ use crate::{
     shrink::{SmallScene, WrongReason, step_starts},
     suite::{
         config::Hints,
-        located::FailureKind,
-        smallest::{
+        failure_cause::FailureKind,
+        smallest_scene::{
             MAX_BODIES, ShrinkLimits, Shrinker, ShrunkScene, SmallestScene, WrongScene, group_causes, shorten_limits,
         },
     },
@@ -110,7 +110,7 @@ pub(super) fn describe(
     suite: &str,
     drawing: Drawing,
 ) -> (SmallestScene, Option<Card>) {
-    let ShrunkScene { reason, origin, small: SmallScene { scene, step, is_minimal }, seen, runs } = small;
+    let ShrunkScene { reason, origin, scene: SmallScene { scene, step, is_minimal }, observation: seen, runs } = small;
     let note = FailureKind::from_end(&seen.ended).and_then(|_| note(&seen.ended, seen.trace.is_empty(), &[]));
     let names = ("small.xml".to_owned(), program.to_owned());
     let (case, card, _) = case(names, false, scene, &seen.trace[..], note, drawing);
@@ -120,7 +120,7 @@ pub(super) fn describe(
     let names = [program.as_str(), origin, suite].map(quote);
     let mut told = SmallestScene {
         origin: origin.clone(),
-        again: format!("fosssim-oracle shrink {} {} --step {step} --suite {}", names[0], names[1], names[2]),
+        command: format!("fosssim-oracle shrink {} {} --step {step} --suite {}", names[0], names[1], names[2]),
         program,
         xml: scene::write(scene),
         bodies: scene.particles.len(),
@@ -128,7 +128,7 @@ pub(super) fn describe(
         runs: *runs,
         is_minimal: *is_minimal,
         note,
-        first,
+        first_finding: first,
         explanations: match reason {
             WrongReason::Mistake(cause) => limit_explanations(drawing.hints, vec![with_example(cause, explanations)]),
             _ => explanations,
@@ -137,11 +137,11 @@ pub(super) fn describe(
     };
     if drawing.hints == Hints::Full {
         let (differs, first) = list_differences(small);
-        told.differs = differs;
+        told.difference = differs;
         if let Some(Finding { step, detail, .. }) = first.filter(|_| told.note.is_none()) {
             let alone = step_starts(scene, &seen.trace, &[step]).into_iter().find(|(_, scene)| scene.step_count() == 1);
             let pair = detail.pair().map(|pair| (pair, detail.pass()));
-            told.by_hand = alone.and_then(|(_, scene)| first_step(&scene, pair, step));
+            told.calculation = alone.and_then(|(_, scene)| first_step(&scene, pair, step));
         }
     }
     (told, card)
@@ -152,12 +152,12 @@ fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
     let named = own.iter().find(|one| is_named_in(cause, std::slice::from_ref(one)));
     match named.or_else(|| own.first()) {
         // The explanation of missed pairs counts them over the whole run.
-        Some(own) if matches!(own.about, About::Pairs(_)) && named.is_some() => own.clone(),
+        Some(own) if matches!(own.topic, ExplanationTopic::Pairs(_)) && named.is_some() => own.clone(),
         own => {
             // If the cause is unwritten stages, the explanation lists these stages.
             let same_as = if cause.is_unfinished() { cause.same_as.clone() } else { Vec::new() };
             // If there is only one sample, many formulas agree with a wrong polynomial, so the exact form is left out.
-            let is_fitted = cause.samples < 2 && matches!(cause.about, About::Polynomials { .. });
+            let is_fitted = cause.samples < 2 && matches!(cause.topic, ExplanationTopic::Polynomials { .. });
             let details = if is_fitted { Vec::new() } else { cause.details.clone() };
             let example = own.and_then(|own| own.example.clone());
             Explanation { example, details, reproduced: 0, samples: 0, same_as, ..cause.clone() }
@@ -167,10 +167,10 @@ fn with_example(cause: &Explanation, own: Vec<Explanation>) -> Explanation {
 
 /// Returns the values that differ, as text, and the first finding.
 fn list_differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
-    let scene = &small.small.scene;
+    let scene = &small.scene.scene;
     let mut steps = WrongSteps::new(StepChoice::All);
     let options = replay::Options { threads: 1, uses_fair_rules: true, ..replay::Options::default() };
-    let outcome = &replay::judge(scene, &small.seen.trace[..], &options, &mut steps);
+    let outcome = &replay::judge(scene, &small.observation.trace[..], &options, &mut steps);
     let (audit, tables, looks_like, rules, steps) = (false, false, None, Rules::Fair, &steps);
     let (scene, trace, explanations) = ("small.xml", "small.bin", &[][..]);
     let check = Check { scene, trace, outcome, explanations, rules, steps, audit, tables, looks_like };
@@ -181,11 +181,11 @@ fn list_differences(small: &ShrunkScene) -> (Option<String>, Option<Finding>) {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::{Detail, OfPolynomials};
+    use crate::diagnose::{Detail, PolynomialEvidence};
 
     #[test]
     fn what_fits_a_single_sample_is_not_shown() {
-        let wrong = Explanation::for_wrong(Vec::new(), OfPolynomials::Nothing);
+        let wrong = Explanation::for_wrong_polynomials(Vec::new(), PolynomialEvidence::Nothing);
         let fitted = |samples| Explanation { samples, details: vec![Detail::Term("x".into())], ..wrong.clone() };
         assert_eq!([1, 2].map(|samples| with_example(&fitted(samples), Vec::new()).details.len()), [0, 1]);
     }

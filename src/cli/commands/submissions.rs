@@ -2,7 +2,7 @@
 use crate::{
     cli::{arguments::grade::GradeArguments, console, input},
     files::{Folder, Identity},
-    suite::{OneFile, SkippedEntry, Submission, config::BuildStep, names},
+    suite::{ProgramFile, SkippedEntry, Submission, config::BuildStep, file_names},
 };
 use anyhow::{Context, Result, bail};
 use fosssim_intake::FileKind;
@@ -240,9 +240,9 @@ fn refuse_scene(path: &Path) -> Result<()> {
 }
 
 fn skip_entry(passed_over: &mut Vec<SkippedEntry>, path: &Path, why: &str) {
-    let name = names::printable(path.file_name().unwrap_or(path.as_os_str()));
+    let name = file_names::to_printable(path.file_name().unwrap_or(path.as_os_str()));
     console::print_error(format!("skipped {name}: {why}\n"));
-    passed_over.push(SkippedEntry { name, why: why.to_owned() });
+    passed_over.push(SkippedEntry { name, reason: why.to_owned() });
 }
 
 /// Returns the last part of a path.
@@ -261,14 +261,14 @@ pub(super) fn distinct_names(paths: &[&Path]) -> Vec<String> {
     let own: Vec<OsString> = paths.iter().map(|path| last_name(path)).collect();
     let mut alike: BTreeMap<String, BTreeMap<&OsStr, usize>> = BTreeMap::new();
     for name in &own {
-        *alike.entry(names::printable(name)).or_default().entry(name).or_default() += 1;
+        *alike.entry(file_names::to_printable(name)).or_default().entry(name).or_default() += 1;
     }
     let mut taken = BTreeSet::new();
     let mut name = |(path, own): (&&Path, &OsString)| {
-        let shown = names::printable(own);
+        let shown = file_names::to_printable(own);
         let plain = match &alike[&shown] {
-            same if same[own.as_os_str()] > 1 => names::printable(unique_end(path, paths).as_os_str()),
-            same if same.len() > 1 => names::exact(own),
+            same if same[own.as_os_str()] > 1 => file_names::to_printable(unique_end(path, paths).as_os_str()),
+            same if same.len() > 1 => file_names::to_exact(own),
             _ => shown,
         };
         let mut name = plain.clone();
@@ -291,7 +291,7 @@ fn unique_end<'a>(path: &'a Path, all: &[&Path]) -> &'a Path {
 
 /// Returns the identity of each program's file. If several submissions link to the same file, the file belongs to the
 /// submission whose folder has the same owner as the file. In a class, only folders have different owners.
-fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> {
+fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<ProgramFile>> {
     let file = |entry: &Entry| {
         let program = entry.program.as_ref()?;
         let (identity, owner) = Folder::to_write(&entry.folder).ok()?.identity(OsStr::new(program))?;
@@ -310,7 +310,7 @@ fn file_identities(entries: &[Entry], names: &[String]) -> Vec<Option<OneFile>> 
     let of = |(identity, is_owner): (Identity, Option<bool>)| {
         let same = &owners[&identity];
         let is_owned = same.iter().any(|&other| matches!(files[other], Some((_, Some(true)))));
-        OneFile { identity, is_shared: same.len() > 1, is_anothers: is_owned && is_owner != Some(true) }
+        ProgramFile { identity, is_shared: same.len() > 1, is_anothers: is_owned && is_owner != Some(true) }
     };
     files.iter().map(|file| file.map(of)).collect()
 }

@@ -28,7 +28,7 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
             }
         }
         SuiteCommand::Check(SuiteCheckArguments { suite, missing, mistakes }) => {
-            let plan = plan::find(suite)?;
+            let plan = plan::find_suite(suite)?;
             let parts = if *mistakes { seen_parts(&plan) } else { Vec::new() };
             let contents = SuiteContents { coverage: coverage(&plan), lists_missing: *missing, parts };
             console::report(&text(&plan, &contents, &find_undecided(&plan), console::style()))
@@ -43,7 +43,7 @@ pub(super) fn run(suite: &SuiteCommand) -> Result<()> {
 /// Returns a suite with comments, and with the groups of a built-in suite.
 fn template(name: Option<&str>) -> Result<String> {
     let name = name.map_or_else(plan::default_name, str::to_owned);
-    config::template(&name).with_context(|| {
+    config::suite_template(&name).with_context(|| {
         let known: Vec<_> = plan::built_in_names().collect();
         format!("there is no built-in suite {name}; choose {}{}", known.join(", "), plan::suggest(&name))
     })
@@ -51,7 +51,7 @@ fn template(name: Option<&str>) -> Result<String> {
 
 /// Returns the names of the built-in suites, and their plans.
 fn built_in() -> Result<Vec<(String, plan::Plan)>> {
-    plan::built_in_names().map(|name| plan::find(&name).map(|plan| (name, plan)).map_err(Into::into)).collect()
+    plan::built_in_names().map(|name| plan::find_suite(&name).map(|plan| (name, plan)).map_err(Into::into)).collect()
 }
 
 /// Runs the reference on every scene, on all cores. Returns the scenes in which round-off may change decisions.

@@ -1,7 +1,7 @@
 //! The text that `suite check` prints: what a suite contains, and what to know before grading. Also the list of suites.
 use super::suite_sight::{MAX_LISTED_SCENES, SeenPart};
 use crate::{
-    judge::{PairWords, PassWords, Rules, fair::Borderline},
+    judge::{PairText, PassText, Rules, fair::Borderline},
     report::{
         foreign::one_line,
         grade::format_points,
@@ -130,7 +130,7 @@ const fn describe_credit(credit: Credit) -> &'static str {
 fn render_head(plan: &Plan, style: Style) -> String {
     let mut text = String::new();
     let _ = writeln!(text, "{}: {}", style.paint(Look::Strong, &one_line(&plan.name)), describe_size(plan));
-    let _ = writeln!(text, "run: {}", one_line(&plan.run.join(" ")));
+    let _ = writeln!(text, "run: {}", one_line(&plan.command.join(" ")));
     if let Some(build) = &plan.build {
         let _ = writeln!(
             text,
@@ -170,7 +170,7 @@ fn describe_group(group: &PlannedGroup, style: Style) -> String {
     let (points, visibility) = (counted_points(marking.points), to_key(&marking.visibility).replace('_', " "));
     let name = style.paint(Look::Strong, &one_line(&group.name));
     let (credit, hints) = (describe_credit(marking.credit), marking.hints.describe().0);
-    let extra = if marking.extra { " extra" } else { "" };
+    let extra = if marking.is_extra { " extra" } else { "" };
     let mut text = format!("\n{name}: {points}{extra}, {credit}, {visibility}, hints {hints}\n");
     if let Some(SpeedMarking { points, full_at, none_at, runs }) = marking.speed {
         let (points, runs) = (counted_points(points), format_count(runs.into(), "run"));
@@ -258,7 +258,7 @@ fn describe_note(scene: &str, found: &Result<Vec<Borderline>, StepError>, style:
     );
     for decision in found.iter().take(MAX_LISTED) {
         let word = if decision.collides { "collide" } else { "do not collide" };
-        let (pair, pass) = (PairWords(decision.pair), PassWords(decision.pass));
+        let (pair, pass) = (PairText(decision.pair), PassText(decision.pass));
         let _ = writeln!(text, "  step {}: {pair} {word} ({pass})", decision.step);
     }
     if found.len() > MAX_LISTED {

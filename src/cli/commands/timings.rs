@@ -15,7 +15,7 @@ pub(super) fn print(timings: &Timings) {
     let others = processor_time(ProcessorTimeScope::Children);
     let (programs, runs) = timings.total(RunPart::Program);
     let mut rows = vec![("programs", programs), ("the sandbox's processes", others.saturating_sub(programs))];
-    rows.extend(RunPart::OWN_PARTS.map(|(part, name)| (name, timings.total(part).0)));
+    rows.extend(RunPart::GRADER_PARTS.map(|(part, name)| (name, timings.total(part).0)));
     let rest = own.saturating_sub(rows[2..].iter().map(|(_, time)| *time).sum());
     rows.extend([("reports and the rest", rest), ("together", own + others)]);
     let mut table = Table::new([Align::Left, Align::Right, Align::Right]);

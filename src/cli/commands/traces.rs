@@ -127,7 +127,7 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
     let (trace, passed_over) = read(folder, &task.name, plan.limits.trace)?;
     let (mut result, examined) = traces::judge_trace(plan, task, &trace[..], &mut ());
     if let Some(pages) = pages
-        && !(result.verdict.is_accepted() && result.differs.is_none())
+        && !(result.verdict.is_accepted() && result.difference_cause.is_none())
     {
         let judged = JudgedTrace {
             scene: &task.scene,
@@ -141,7 +141,8 @@ fn judge(plan: &Plan, task: &SceneTask, folder: &Folder, pages: Option<&Pages>) 
             hints: plan.staff_hints,
         };
         let draw = |judged: &JudgedTrace<'_>| pages::draw_card(judged, false);
-        (result.card, result.card_for_students) = pages.drawing(&draw).keep(&judged, plan.student_hints(&task.name))?;
+        (result.card, result.card_for_students) =
+            pages.drawing(&draw).store_cards(&judged, plan.student_hints(&task.name))?;
     }
     Ok((result, passed_over))
 }

@@ -13,7 +13,7 @@ pub(super) use trace::{TraceInput, is_scene, trace, unpack};
 use crate::files::open_for_reading;
 use crate::{
     report::foreign::one_line,
-    suite::{library, near},
+    suite::{library, suggestions},
 };
 use anyhow::{Result, bail};
 use std::{
@@ -34,7 +34,7 @@ pub(super) fn asset(name: &Path) -> Option<&str> {
 }
 
 fn no_asset(what: &str, name: &str) -> String {
-    let near = near::nearest(name.strip_suffix(".xml").unwrap_or(name), library::all_names(), 3).join(", ");
+    let near = suggestions::find_nearest(name.strip_suffix(".xml").unwrap_or(name), library::all_names(), 3).join(", ");
     let name = one_line(name);
     format!("no embedded {what} is called `{name}`; the nearest are {near} (`fosssim-oracle scene list` lists all)")
 }

@@ -3,7 +3,7 @@ use crate::{
     num::vector::Vec2,
     scene::Scene,
     sim::{Pair, PairKind, PairMotion, PointMotion},
-    suite::near,
+    suite::suggestions,
 };
 use anyhow::{Context, Result, anyhow, bail};
 
@@ -89,7 +89,7 @@ pub(in crate::cli) fn find_pair(word: &str, scene: &Scene) -> Result<Pair> {
 fn kind_of(word: &str) -> Result<PairKind> {
     PairKind::ALL.into_iter().find(|kind| [kind.short(), kind.name()].contains(&word)).with_context(|| {
         let names = PairKind::ALL.into_iter().flat_map(|kind| [kind.short(), kind.name()]);
-        let meant = near::suggest(word, names);
+        let meant = suggestions::suggest(word, names);
         format!(
             "`{word}` is not a kind of pair; there are pp (two particles), pe (particle and edge), ph (particle and \
              half-plane){meant}"

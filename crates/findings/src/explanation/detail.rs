@@ -10,7 +10,8 @@ pub enum Detail {
     /// The exact form of a known mistake, which is given by its id.
     Term(Cow<'static, str>),
     /// Advice to look at the code of one area of the assignment.
-    Look(Area),
+    #[serde(rename = "Look")]
+    SearchArea(Area),
     /// The meanings of the letters in the preceding lines, for pairs of these kinds. If no letter needs an explanation,
     /// reports leave the line out.
     Letters(Vec<PairKind>),
@@ -160,13 +161,16 @@ pub enum StageDetail {
     /// The lengths of contact vectors along the right vectors, divided by the lengths of the right ones.
     Vectors(Ratios),
     /// The largest error of a contact vector, relative to its length.
-    VectorsOff(#[serde(with = "fosssim_num::number_serde")] f64),
+    #[serde(rename = "VectorsOff")]
+    VectorError(#[serde(with = "fosssim_num::number_serde")] f64),
     /// The times of impact, divided by the right ones.
     Times(Ratios),
     /// The largest error of a time of impact, as a fraction of the step.
-    TimesOff(#[serde(with = "fosssim_num::number_serde")] f64),
+    #[serde(rename = "TimesOff")]
+    TimeError(#[serde(with = "fosssim_num::number_serde")] f64),
     /// The times of impact are right, but are not used as they should be.
-    TimesUsed,
+    #[serde(rename = "TimesUsed")]
+    TimeUse,
     /// The number of detection passes in the impulse rounds is wrong.
     Passes {
         /// The number of passes that the step should have.
@@ -190,20 +194,24 @@ pub enum StageDetail {
         of: usize,
     },
     /// The number of zones that have the fault.
-    OfZones {
+    #[serde(rename = "OfZones")]
+    ZoneCount {
         /// The number of zones that have the fault.
         count: usize,
         /// The number of zones that were compared.
         of: usize,
     },
     /// The velocities of zones that should stop, divided by their velocities before.
-    Stopped(Ratios),
+    #[serde(rename = "Stopped")]
+    StoppedVelocities(Ratios),
     /// The motion of the center of mass, divided by the right motion.
-    CenterMoves(Ratios),
+    #[serde(rename = "CenterMoves")]
+    CenterMotion(Ratios),
     /// The center of mass moves in a wrong direction.
     CenterDirection,
     /// The rotation of zones, divided by the right rotation.
-    Turns(Ratios),
+    #[serde(rename = "Turns")]
+    Rotations(Ratios),
     /// The velocities of zones, divided by their displacement per step size.
     Velocities(Ratios),
 }

@@ -473,7 +473,7 @@ impl StageFault {
 
 /// The first value in a trace that is not finite: where it is, and how it came about.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Serialize, Deserialize)]
-pub struct NotFinite {
+pub struct NonFiniteValue {
     /// The number of the step, from 1; 0 is the first record. `None` if the explanation covers several traces.
     pub step: Option<u32>,
     /// The stage whose inputs are finite but whose result is not.
@@ -482,7 +482,8 @@ pub struct NotFinite {
     pub is_nan: bool,
     /// Whether all values are finite again in a later step.
     #[serde(default)]
-    pub ends: bool,
+    #[serde(rename = "ends")]
+    pub recovers: bool,
 }
 
 /// The first stage of a step whose inputs are finite but whose result is not.

@@ -25,7 +25,7 @@ impl Guess {
     /// Returns the key of the guess as [`Explanation::claims`](super::Explanation::claims) contain it. It is a digest,
     /// because the key itself may name a formula.
     #[must_use]
-    pub fn word(&self) -> String {
+    pub fn claim_key(&self) -> String {
         format!("{:08x}", digest(self.key()) >> 32)
     }
 

@@ -1,29 +1,29 @@
 //! Explanations of wrong traces, as values. Reports turn them into sentences.
-pub mod about;
 mod area;
 pub mod detail;
 pub mod example;
 pub mod fault;
 pub mod guess;
 mod input;
-pub mod near;
 mod reading;
 mod subject;
+pub mod topic;
+pub mod wrong_pairs;
 
-pub use about::{About, OfPolynomials};
 pub use area::Area;
 pub use detail::{Amount, Detail, PolynomialDetail, Ratios, StageDetail, Substitute, Weight};
 pub use example::{Example, ExamplePlace, ExampleValue, StepRecord};
 pub use fault::{
-    ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, NanStage, NotFinite, Quantity, StageFault,
-    StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses,
-    WrongVectors, WrongZoneRounds, WrongZones,
+    ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, LoopEnd, NanStage, NonFiniteValue, Quantity,
+    StageFault, StepStage, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
+    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 pub use guess::{CoefficientGuess, Guess, ListGuess, QuantityGuess};
 pub use input::Input;
-pub use near::{PairCounts, WrongPairs};
 pub use reading::Reading;
 pub use subject::Subject;
+pub use topic::{ExplanationTopic, PolynomialEvidence};
+pub use wrong_pairs::{PairCounts, WrongPairs};
 
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
@@ -36,7 +36,8 @@ pub struct Explanation {
     /// name of a general finding (such as `reversed`).
     pub key: String,
     /// The subject of the explanation, with the facts that a sentence can state without revealing a formula.
-    pub about: About,
+    #[serde(rename = "about")]
+    pub topic: ExplanationTopic,
     /// The lines of the exact form, such as the terms of each coefficient and their weights. They may reveal the right
     /// formula.
     pub details: Vec<Detail>,
@@ -50,7 +51,8 @@ pub struct Explanation {
     /// one.
     pub same_as: Vec<String>,
     /// The keys of mistakes that the trace refutes: no program with such a mistake could write the trace.
-    pub denies: Vec<String>,
+    #[serde(rename = "denies")]
+    pub contradicted_keys: Vec<String>,
     /// All guesses that would produce the polynomials, as one word each. A word consists of the polynomial and the
     /// known mistake, or of the polynomial, a digest of the guess and a digest of its exact form. Digests do not reveal
     /// a formula. The explanation's own guess comes first. For a polynomial without a guess, the word is only its name.
@@ -104,16 +106,16 @@ impl Explanation {
 
     /// Creates an explanation that has no evidence yet.
     #[must_use]
-    pub fn about(key: impl Into<String>, about: About) -> Self {
+    pub fn with_topic(key: impl Into<String>, about: ExplanationTopic) -> Self {
         Self {
             key: key.into(),
-            about,
+            topic: about,
             details: Vec::new(),
             reproduced: 0,
             samples: 0,
             example: None,
             same_as: Vec::new(),
-            denies: Vec::new(),
+            contradicted_keys: Vec::new(),
             claims: Vec::new(),
         }
     }
@@ -122,38 +124,38 @@ impl Explanation {
     /// the right number of records.
     #[must_use]
     pub fn for_other_scene(has_length: bool) -> Self {
-        Self::about(Self::OTHER_SCENE, About::Scene { has_length })
+        Self::with_topic(Self::OTHER_SCENE, ExplanationTopic::Scene { has_length })
     }
 
     /// Creates an explanation of wrong polynomials that has no exact form.
     #[must_use]
-    pub fn for_wrong(subjects: Vec<Subject>, found: OfPolynomials) -> Self {
-        Self::about(Self::UNEXPLAINED, About::Polynomials { subjects, found })
+    pub fn for_wrong_polynomials(subjects: Vec<Subject>, found: PolynomialEvidence) -> Self {
+        Self::with_topic(Self::UNEXPLAINED, ExplanationTopic::Polynomials { subjects, found })
     }
 
     /// Returns whether the explanation is that the trace probably belongs to another scene.
     #[must_use]
     pub fn is_other_scene(&self) -> bool {
-        matches!(self.about, About::Scene { .. })
+        matches!(self.topic, ExplanationTopic::Scene { .. })
     }
 
     /// Returns whether the explanation reports the first value that is not finite. All levels of hints show it, except
     /// for the lowest.
     #[must_use]
     pub const fn is_not_finite(&self) -> bool {
-        matches!(self.about, About::NotFinite(_))
+        matches!(self.topic, ExplanationTopic::NotFinite(_))
     }
 
     /// Returns whether the explanation is a known mistake that reproduces every sample.
     #[must_use]
     pub fn is_proven(&self) -> bool {
-        self.about == About::Mistake && self.reproduced > 0 && self.is_complete()
+        self.topic == ExplanationTopic::Mistake && self.reproduced > 0 && self.is_complete()
     }
 
     /// Returns whether the explanation names stages that are not written.
     #[must_use]
     pub fn is_unfinished(&self) -> bool {
-        self.about == About::Unfinished
+        self.topic == ExplanationTopic::Unfinished
     }
 
     /// Returns whether the explanation only says that polynomials are wrong.
@@ -164,21 +166,23 @@ impl Explanation {
 
     /// Returns whether the explanation reports polynomials that are not passed to the root finder.
     #[must_use]
-    pub fn is_of_missing(&self) -> bool {
-        matches!(self.about, About::Polynomials { found: OfPolynomials::Missing, .. })
+    pub fn reports_missing_polynomials(&self) -> bool {
+        matches!(self.topic, ExplanationTopic::Polynomials { found: PolynomialEvidence::Missing, .. })
     }
 
     /// Returns a key for the explanation's sentence. Explanations have the same key if and only if they have the same
     /// sentence.
     #[must_use]
     pub fn statement(&self) -> String {
-        match &self.about {
-            About::Polynomials { found: OfPolynomials::Guess(guess), .. } if guess.is_general() => guess.word(),
-            About::Polynomials { found: OfPolynomials::Guess(_), .. } => {
+        match &self.topic {
+            ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(guess), .. } if guess.is_general() => {
+                guess.claim_key()
+            }
+            ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(_), .. } => {
                 self.claims.first().unwrap_or(&self.key).clone()
             }
-            About::Stage(fault) => format!("{}/{fault:?}", self.key),
-            About::NotFinite(found) => format!("{}/{:?}", self.key, found.stage),
+            ExplanationTopic::Stage(fault) => format!("{}/{fault:?}", self.key),
+            ExplanationTopic::NotFinite(found) => format!("{}/{:?}", self.key, found.stage),
             _ => self.key.clone(),
         }
     }
@@ -186,7 +190,7 @@ impl Explanation {
     /// Returns the wrong polynomials that the explanation is about; empty if it is about something else.
     #[must_use]
     pub fn subjects(&self) -> Vec<Subject> {
-        if let About::Polynomials { subjects, .. } = &self.about {
+        if let ExplanationTopic::Polynomials { subjects, .. } = &self.topic {
             return subjects.clone();
         }
         let claims = self.claims_by_subject();
@@ -199,8 +203,8 @@ impl Explanation {
     pub fn claims_by_subject(&self) -> BTreeMap<&str, Vec<(&str, &str)>> {
         let mut all: BTreeMap<&str, Vec<(&str, &str)>> = BTreeMap::new();
         // A guess that reproduces only a part explains no polynomial completely.
-        let is_part =
-            matches!(self.about, About::Polynomials { found: OfPolynomials::Guess(_), .. }) && !self.is_complete();
+        let is_part = matches!(self.topic, ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(_), .. })
+            && !self.is_complete();
         for (number, claim) in self.claims.iter().enumerate() {
             let mut parts = claim.split('/');
             let (Some(subject), Some(guess)) = (parts.next(), parts.next()) else { continue };
@@ -214,21 +218,24 @@ impl Explanation {
 
     /// Returns whether the explanation names a wrong stage of a step. That is an observation, not a guess.
     #[must_use]
-    pub fn is_of_stage(&self) -> bool {
+    pub fn names_stage(&self) -> bool {
         self.stage().is_some()
     }
 
     /// Returns whether the explanation only says that a stage is wrong.
     #[must_use]
     pub const fn is_vague(&self) -> bool {
-        matches!(self.about, About::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts))
+        matches!(
+            self.topic,
+            ExplanationTopic::Stage(StageFault::AfterRounds | StageFault::FirstRound | StageFault::ManyContacts)
+        )
     }
 
     /// Returns the stage of a step that is wrong, if the explanation names one.
     #[must_use]
     pub fn stage(&self) -> Option<StepStage> {
-        match &self.about {
-            About::Stage(fault) => Some(fault.stage()),
+        match &self.topic {
+            ExplanationTopic::Stage(fault) => Some(fault.stage()),
             _ => None,
         }
     }
@@ -242,15 +249,15 @@ impl Explanation {
     /// Returns whether the explanation is about the program, and not about this trace alone. Other traces may then
     /// confirm it.
     #[must_use]
-    pub fn is_vote(&self) -> bool {
-        use OfPolynomials::{NearlyRight, Nothing};
-        let is_nothing = matches!(self.about, About::Polynomials { found: Nothing | NearlyRight, .. });
+    pub fn is_about_program(&self) -> bool {
+        use PolynomialEvidence::{NearlyRight, Nothing};
+        let is_nothing = matches!(self.topic, ExplanationTopic::Polynomials { found: Nothing | NearlyRight, .. });
         !is_nothing && !self.is_other_scene() && !self.is_not_finite()
     }
 
     /// Returns whether the explanation covers all of its polynomials or stages.
     #[must_use]
-    pub fn is_settled(&self) -> bool {
-        self.is_complete() || self.is_of_stage()
+    pub fn is_exhaustive(&self) -> bool {
+        self.is_complete() || self.names_stage()
     }
 }

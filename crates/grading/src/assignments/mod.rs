@@ -1,12 +1,12 @@
 //! The parts of grading that depend on an assignment: the versions of its suite, and the template of suites. Each
 //! assignment has a folder.
-use super::near;
+use super::suggestions;
 use fosssim_model::assignments::{Assignment, Definition};
 
 #[path = "t2m3/timing.rs"]
 mod timing;
 
-pub use timing::{MadeScene, TIMING_SCENES};
+pub use timing::{GeneratedScene, TIMING_SCENES};
 
 /// The beginning of the suite template, before its groups. It contains the settings, with comments.
 const SETTINGS_TEMPLATE: &str = include_str!("settings.toml");
@@ -14,8 +14,8 @@ const SETTINGS_TEMPLATE: &str = include_str!("settings.toml");
 /// Returns a suite file with comments, as a starting point. It has the settings of the template, and the groups of a
 /// built-in suite.
 #[must_use]
-pub fn template(name: &str) -> Option<String> {
-    let (assignment, Version { suite, .. }) = version(name)?;
+pub fn suite_template(name: &str) -> Option<String> {
+    let (assignment, SuiteVersion { suite, .. }) = find_version(name)?;
     let groups = suite.split_once("rules = \"fair\"\n")?.1.trim_start();
     let Definition { key, title, .. } = assignment.definition();
     Some(SETTINGS_TEMPLATE.replace("TITLE", title).replace("MILESTONE", key) + groups)
@@ -24,33 +24,33 @@ pub fn template(name: &str) -> Option<String> {
 /// A version of an assignment's suite. A published version never changes. Additional scenes would change the points of
 /// all scenes, so they need a new version.
 #[derive(Debug, Clone, Copy)]
-pub struct Version {
+pub struct SuiteVersion {
     /// The text of the version's suite file.
     pub suite: &'static str,
     /// The names of the version's scenes, one per line; `None` if it has all scenes in the assignment's folder.
     scenes: Option<&'static str>,
 }
 
-impl Version {
+impl SuiteVersion {
     /// Returns whether the version contains a scene of its assignment.
     #[must_use]
-    pub fn has(&self, scene: &str) -> bool {
+    pub fn has_scene(&self, scene: &str) -> bool {
         self.scenes.is_none_or(|scenes| scenes.lines().any(|line| line == scene))
     }
 }
 
 /// The suite for the milestones before t2m2. Existing servers and courses may still use its name.
-const EARLIER_VERSION: Version = Version { suite: include_str!("earlier/suite.toml"), scenes: None };
+const EARLIER_VERSION: SuiteVersion = SuiteVersion { suite: include_str!("earlier/suite.toml"), scenes: None };
 
 /// Includes the two versions from an assignment's folder.
 macro_rules! two_versions {
     ($key:literal) => {
         [
-            Version {
+            SuiteVersion {
                 suite: include_str!(concat!($key, "/suite-1.toml")),
                 scenes: Some(include_str!(concat!($key, "/version-1.txt"))),
             },
-            Version {
+            SuiteVersion {
                 suite: include_str!(concat!($key, "/suite.toml")),
                 scenes: Some(include_str!(concat!($key, "/version-2.txt"))),
             },
@@ -60,7 +60,7 @@ macro_rules! two_versions {
 
 /// Returns the versions of an assignment's suite, the oldest first.
 #[must_use]
-pub const fn versions(assignment: Assignment) -> &'static [Version] {
+pub const fn versions(assignment: Assignment) -> &'static [SuiteVersion] {
     match assignment {
         Assignment::T1M1 => &two_versions!("t1m1"),
         Assignment::T1M2 => &two_versions!("t1m2"),
@@ -74,7 +74,7 @@ pub const fn versions(assignment: Assignment) -> &'static [Version] {
 /// Returns the assignment and the version that a suite name means, such as `t2m2@1`. `t2m2` means the newest version.
 /// Upper and lower case are the same.
 #[must_use]
-pub fn version(name: &str) -> Option<(Assignment, Version)> {
+pub fn find_version(name: &str) -> Option<(Assignment, SuiteVersion)> {
     if matches!(name, "earlier" | "earlier@1") {
         return Some((Assignment::T2M1, EARLIER_VERSION));
     }
@@ -90,17 +90,17 @@ pub fn version(name: &str) -> Option<(Assignment, Version)> {
 
 /// Returns the names of the built-in suites with their versions, such as `t2m2@2`. The newest version for the default
 /// assignment comes first.
-pub fn names() -> impl Iterator<Item = String> {
+pub fn suite_names() -> impl Iterator<Item = String> {
     Assignment::list_default_first().into_iter().flat_map(|assignment| {
         (1..=versions(assignment).len()).rev().map(move |number| format!("{}@{number}", assignment.key()))
     })
 }
 
-/// Returns the end of a message about an unknown suite, as [`near::suggest`] does.
+/// Returns the end of a message about an unknown suite, as [`suggestions::suggest`] does.
 #[must_use]
 pub fn suggest(name: &str) -> String {
-    let known: Vec<String> = names().collect();
-    near::suggest(name, known.iter().filter_map(|known| known.split('@').next()))
+    let known: Vec<String> = suite_names().collect();
+    suggestions::suggest(name, known.iter().filter_map(|known| known.split('@').next()))
 }
 
 /// Returns the name of the default suite.
@@ -116,12 +116,12 @@ mod tests {
 
     #[test]
     fn versions_are_named_and_the_newest_is_meant_without_a_number() {
-        let all: Vec<String> = names().collect();
+        let all: Vec<String> = suite_names().collect();
         let two = |key: &str| [format!("{key}@2"), format!("{key}@1")];
         assert_eq!(all, ["t2m2", "t1m1", "t1m2", "t1m3", "t2m1", "t2m3"].map(two).concat());
-        assert!(version("earlier@1").is_some() && version("earlier").is_some(), "the name is in use");
+        assert!(find_version("earlier@1").is_some() && find_version("earlier").is_some(), "the name is in use");
         assert_eq!(default_name(), all[0]);
-        let suite = |name: &str| version(name).map(|(_, version)| version.suite);
+        let suite = |name: &str| find_version(name).map(|(_, version)| version.suite);
         assert_eq!(suite("t2m2"), suite("t2m2@2"));
         assert_eq!((suite("T1M3"), suite("T2M2@1")), (suite("t1m3"), suite("t2m2@1")));
         assert_ne!(suite("t2m2@1"), suite("t2m2@2"));
@@ -134,7 +134,7 @@ mod tests {
     fn published_versions_have_their_scenes_still() {
         let published = [("t1m1@1", 6), ("t1m2@1", 11), ("t1m3@1", 5), ("t2m1@1", 13), ("t2m2@1", 85), ("t2m3@1", 6)];
         for (name, scenes) in published {
-            let (assignment, first) = version(name).expect("a version");
+            let (assignment, first) = find_version(name).expect("a version");
             let listed: Vec<&str> = first.scenes.expect("a list").lines().collect();
             assert_eq!(listed.len(), scenes, "{name}");
             for scene in listed {
@@ -145,8 +145,9 @@ mod tests {
 
     #[test]
     fn a_template_has_the_groups_of_the_suite_that_it_is_made_from() {
-        for name in names() {
-            let (template, suite) = (template(&name).expect("a template"), version(&name).expect("a suite").1.suite);
+        for name in suite_names() {
+            let (template, suite) =
+                (suite_template(&name).expect("a template"), find_version(&name).expect("a suite").1.suite);
             let [of_template, of_suite] = [&template, suite].map(|text| config::read(text).expect("a sound suite"));
             let marks = |suite: config::Suite| suite.groups.into_iter().map(|group| (group.name, group.marking));
             assert!(marks(of_template).eq(marks(of_suite)), "{template}");

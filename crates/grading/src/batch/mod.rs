@@ -5,11 +5,11 @@
 use super::{
     cancellation::Cancellation,
     grade::Grade,
-    grader::{Grader, SceneNews, SharedGrading, Submission, SubmissionGrading},
-    guard::{Fault, catch_panic},
-    results::{KeepError, Results},
+    grader::{Grader, SceneEvent, SharedGrading, Submission, SubmissionGrading},
+    guard::{CaughtPanic, catch_panic},
+    results::{Results, StoreError},
     task::SceneTask,
-    temporary,
+    temporary_folders,
 };
 use std::sync::{
     atomic::{AtomicUsize, Ordering},
@@ -67,22 +67,22 @@ pub struct BatchResult {
 pub enum GradeFault {
     /// Results could not be stored, for example because the disk is full. The grading was stopped.
     #[error(transparent)]
-    Keeping(#[from] KeepError),
+    Storing(#[from] StoreError),
     /// An event could not be reported. The grading continued.
     #[error("reporting the progress of grading failed: {0}; please report this")]
-    Telling(Fault),
+    Reporting(CaughtPanic),
 }
 
 /// Grades all submissions, and returns the grades in the same order. After a cancellation, grades mark the scenes that
 /// were not run. Without `results`, nothing is reused or stored.
-pub fn run(
+pub fn grade_all(
     grader: &Grader<'_>,
     submissions: &[Submission],
     results: Option<&dyn Results>,
     cancellation: &Cancellation,
     on_event: &mut dyn FnMut(Event<'_>),
 ) -> BatchResult {
-    temporary::sweep();
+    temporary_folders::remove_abandoned();
     let shared = SharedGrading::new(grader, results, cancellation);
     let gradings: Vec<SubmissionGrading<'_>> =
         submissions.iter().map(|submission| SubmissionGrading::new(grader, &shared, submission)).collect();
@@ -96,8 +96,8 @@ pub fn run(
     Grade::note_same_programs(&mut grades);
     drop(gradings);
     // Sweep again, because processes of killed graders may have ended after the first sweep.
-    temporary::sweep();
-    let fault = shared.full.into_inner().map(GradeFault::Keeping).or(telling.map(GradeFault::Telling));
+    temporary_folders::remove_abandoned();
+    let fault = shared.storage_error.into_inner().map(GradeFault::Storing).or(telling.map(GradeFault::Reporting));
     BatchResult { grades, fault }
 }
 
@@ -127,10 +127,10 @@ fn distribute(grader: &Grader<'_>, gradings: &[SubmissionGrading<'_>], tell: &mu
         drop(sender);
         for (submission, scene, news) in receiver {
             match news {
-                SceneNews::Begins => tell(Event::SceneBegins { submission, scene }),
-                SceneNews::Step(step) => tell(Event::Step { submission, scene, step }),
-                SceneNews::Done(cached) => tell(Event::SceneDone { submission, scene, cached }),
-                SceneNews::Graded(grade) => {
+                SceneEvent::Begins => tell(Event::SceneBegins { submission, scene }),
+                SceneEvent::Step(step) => tell(Event::Step { submission, scene, step }),
+                SceneEvent::Done(cached) => tell(Event::SceneDone { submission, scene, cached }),
+                SceneEvent::Graded(grade) => {
                     tell(Event::Graded { submission, grade: &grade });
                     grades[submission] = Some(*grade);
                 }

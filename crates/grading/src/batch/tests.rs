@@ -1,9 +1,9 @@
 use super::*;
 use crate::{
-    cast::{SMALL_TRACE, Stage, right_trace, small_plan},
     disclosure::DisclosedFinding,
+    failure_cause::FailureKind,
+    fake_programs::{SMALL_TRACE, TestGrading, right_trace, small_plan},
     grader::Options,
-    located::FailureKind,
     plan::{self, Plan},
     result::{Activity, BadTrace, Failure, NotRunReason, Reason, SavedTrace, SceneResult, WrongTrace},
     results::FolderResults,
@@ -32,7 +32,7 @@ fn journal(folder: &tempfile::TempDir) -> FolderResults {
 
 #[test]
 fn a_right_program_gets_every_point_and_the_others_their_verdicts() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let names =
         ["right", "wrong", "crash-after-right-trace", "exit-1-after-right-trace", "nothing", "half", "slow", "hostile"];
     let grades = stage.grade(&names);
@@ -59,7 +59,7 @@ fn a_right_program_gets_every_point_and_the_others_their_verdicts() {
 
 #[test]
 fn an_interrupted_grading_has_no_points_and_goes_on_where_it_stopped_and_ends_the_same() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let (plan, names) = (small_plan(), ["right", "wrong", "half", "slow"]);
     let submissions = stage.submissions(&names);
     let results = tempfile::tempdir().expect("folder");
@@ -74,14 +74,15 @@ fn an_interrupted_grading_has_no_points_and_goes_on_where_it_stopped_and_ends_th
             }
         };
         let stopped =
-            run(&stage.grader(&plan), &submissions, Some(&journal(&results)), &cancellation, &mut on_event).grades;
+            grade_all(&stage.grader(&plan), &submissions, Some(&journal(&results)), &cancellation, &mut on_event)
+                .grades;
         assert!(stopped.iter().any(Grade::is_incomplete), "it stopped before the end");
         for grade in stopped {
             assert_eq!(grade.points.is_none(), grade.is_incomplete(), "what is missing is no zero: {grade:?}");
         }
     }
     let never = Cancellation::default();
-    let resumed = run(&stage.grader(&plan), &submissions, Some(&journal(&results)), &never, &mut |_| {}).grades;
+    let resumed = grade_all(&stage.grader(&plan), &submissions, Some(&journal(&results)), &never, &mut |_| {}).grades;
     let mut starts = stage.starts.lock().expect("lock").clone();
     let runs = starts.len();
     starts.sort();
@@ -99,7 +100,7 @@ fn an_interrupted_grading_has_no_points_and_goes_on_where_it_stopped_and_ends_th
 #[test]
 fn equal_programs_of_a_class_are_run_once_and_shown_to_staff_alone() {
     for jobs in [1, 2, 8] {
-        let stage = Stage::new();
+        let stage = TestGrading::new();
         let (plan, never) = (small_plan(), Cancellation::default());
         let submissions: Vec<Submission> = [("ada", "wrong"), ("bob", "wrong"), ("eve", "half")]
             .into_iter()
@@ -113,10 +114,10 @@ fn equal_programs_of_a_class_are_run_once_and_shown_to_staff_alone() {
         let mut grader = stage.grader(&plan);
         grader.options.jobs = jobs;
         let results = tempfile::tempdir().expect("folder");
-        let grade = || run(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {}).grades;
+        let grade = || grade_all(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {}).grades;
         let grades = grade();
         assert_eq!(stage.started_count(), 2 * plan.scenes().count(), "{jobs} jobs");
-        assert!(grades.iter().all(|grade| grade.taken_over() == 0), "nothing is from an earlier run");
+        assert!(grades.iter().all(|grade| grade.count_reused() == 0), "nothing is from an earlier run");
         assert!(grades[0].scenes().map(|scene| &scene.result).eq(grades[1].scenes().map(|scene| &scene.result)));
         for grades in [&grades, &grade()] {
             let same: Vec<_> = grades.iter().map(|grade| grade.same_program.as_slice()).collect();
@@ -128,11 +129,11 @@ fn equal_programs_of_a_class_are_run_once_and_shown_to_staff_alone() {
 
 #[test]
 fn a_changed_program_is_graded_anew() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let (plan, never) = (small_plan(), Cancellation::default());
     let results = tempfile::tempdir().expect("folder");
     let grade = |submissions: &[Submission]| {
-        run(&stage.grader(&plan), submissions, Some(&journal(&results)), &never, &mut |_| {}).grades
+        grade_all(&stage.grader(&plan), submissions, Some(&journal(&results)), &never, &mut |_| {}).grades
     };
     let submissions = stage.submissions(&["right"]);
     assert!(grade(&submissions)[0].scenes().all(|scene| !scene.cached));
@@ -143,39 +144,39 @@ fn a_changed_program_is_graded_anew() {
 
 #[test]
 fn the_official_book_gives_verdict_and_points_and_results_are_not_mixed_up() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let submissions = stage.submissions(&["trailing"]);
     let results = tempfile::tempdir().expect("folder");
     let grade = |rules: Rules, recorded: bool| {
         let (plan, never) = (Plan { rules, ..small_plan() }, Cancellation::default());
         let mut grader = stage.grader(&plan);
-        grader.options.recorded = recorded;
-        run(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {}).grades.remove(0)
+        grader.options.uses_recordings = recorded;
+        grade_all(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {}).grades.remove(0)
     };
     let both = grade(Rules::Both, false);
     assert_eq!((both.verdict, both.points), (Verdict::Accepted, Some(15.0)));
-    assert!(both.scenes().all(|scene| scene.differs == Some(Cause::TrailingBytes)), "{both:?}");
+    assert!(both.scenes().all(|scene| scene.difference_cause == Some(Cause::TrailingBytes)), "{both:?}");
     let fair = grade(Rules::Fair, false);
     assert_eq!((fair.verdict, fair.points), (Verdict::BadTrace, Some(0.0)));
     let trailing = Reason::Trace(BadTrace::TrailingBytes);
     assert!(fair.scenes().all(|scene| !scene.cached && scene.reason == trailing));
     let parity = grade(Rules::Parity, false);
-    assert_eq!((parity.verdict, parity.differing()), (Verdict::Accepted, 0));
+    assert_eq!((parity.verdict, parity.count_differing()), (Verdict::Accepted, 0));
     // The kept results say the same, and recordings know parity only.
     let again = grade(Rules::Both, false);
-    assert!(again.scenes().all(|scene| scene.cached && scene.differs == Some(Cause::TrailingBytes)));
+    assert!(again.scenes().all(|scene| scene.cached && scene.difference_cause == Some(Cause::TrailingBytes)));
     assert_eq!(grade(Rules::Both, true).rules, Rules::Parity);
 }
 
 #[test]
 fn a_fault_of_the_grader_is_a_judge_error_of_its_scene_and_the_batch_goes_on() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let (plan, never) = (small_plan(), Cancellation::default());
     let names = ["fault-while-judging", "fault-while-explaining", "right"];
     let submissions = stage.submissions(&names);
     let grader = stage.grader(&plan);
     let results = tempfile::tempdir().expect("folder");
-    let graded = run(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {});
+    let graded = grade_all(&grader, &submissions, Some(&journal(&results)), &never, &mut |_| {});
     assert!(graded.fault.is_none() && graded.grades.len() == names.len());
     for (grade, stage) in graded.grades.iter().zip([Some(Activity::Judging), Some(Activity::Explaining), None]) {
         let Some(stage) = stage else {
@@ -202,10 +203,10 @@ fn a_fault_of_the_grader_is_a_judge_error_of_its_scene_and_the_batch_goes_on() {
 
 #[test]
 fn a_display_that_fails_is_told_and_costs_no_grade() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let (plan, never) = (small_plan(), Cancellation::default());
     let mut told = 0;
-    let graded = run(&stage.grader(&plan), &stage.submissions(&["right", "wrong"]), None, &never, &mut |event| {
+    let graded = grade_all(&stage.grader(&plan), &stage.submissions(&["right", "wrong"]), None, &never, &mut |event| {
         told += 1;
         assert!(!matches!(event, Event::SceneDone { .. }), "no display");
     });
@@ -219,20 +220,20 @@ fn after_some_time_outs_in_a_row_the_rest_is_not_run() {
     let scenes = small_plan().scenes().count();
     assert!(scenes > 6);
     for (jobs, time_outs) in [(1, 3), (4, 3), (1, 1), (1, 0)] {
-        let stage = Stage::new();
+        let stage = TestGrading::new();
         let mut plan = small_plan();
-        plan.patience.time_outs = time_outs;
+        plan.skip_limits.time_outs = time_outs;
         let never = Cancellation::default();
         let mut grader = stage.grader(&plan);
         grader.options.jobs = jobs;
-        let grades = run(&grader, &stage.submissions(&["slow", "right"]), None, &never, &mut |_| {}).grades;
+        let grades = grade_all(&grader, &stage.submissions(&["slow", "right"]), None, &never, &mut |_| {}).grades;
         let expected = if time_outs == 0 { scenes } else { time_outs as usize };
         // Jobs that work side by side may have begun with others meanwhile.
         let began = stage.started_count() - scenes;
         assert!(began == expected || jobs > 1 && began > expected, "{began} of {expected} with {jobs} jobs");
         assert_eq!((grades[0].verdict, grades[0].points), (Verdict::TimeLimit, Some(0.0)));
         assert_eq!(grades[1].points, Some(15.0), "the next submission is not held up");
-        let left_out = grades[0].scenes().filter(|scene| matches!(scene.reason, Reason::LeftOut(_))).count();
+        let left_out = grades[0].scenes().filter(|scene| matches!(scene.reason, Reason::Skipped(_))).count();
         assert_eq!(left_out, scenes - expected, "whatever the jobs");
     }
 }
@@ -240,67 +241,74 @@ fn after_some_time_outs_in_a_row_the_rest_is_not_run() {
 /// The reference's runs tell what the scenes have in common in which a program crashes.
 #[test]
 fn a_program_that_crashes_in_the_failsafe_is_told_so() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let suite = |hints: &str| {
         let text = format!(
             "schema = 1\nname = \"test\"\nhints = \"{hints}\"\n[[group]]\nname = \"all\"\nscenes = \
              [\"asset:ImpulsesTests/*\", \"asset:GeometricTests/*\"]\n"
         );
-        plan::load(&text, Path::new("nowhere")).expect("a sound suite")
+        plan::load_suite(&text, Path::new("nowhere")).expect("a sound suite")
     };
-    let mut grades = stage.grade_by(&suite("what"), &["crashes-in-the-failsafe"]);
+    let mut grades = stage.grade_with(&suite("what"), &["crashes-in-the-failsafe"]);
     let grade = grades.remove(0);
-    let located = grade.located.as_ref().expect("a place");
+    let located = grade.located_failure.as_ref().expect("a place");
     let crashed: Vec<_> = grade.scenes().filter(|scene| scene.verdict == Verdict::RuntimeError).collect();
     let others = grade.scenes().count() - crashed.len();
-    assert_eq!((located.failed, located.with, located.without), (crashed.len(), crashed.len(), others), "{located:?}");
     assert_eq!(
-        (located.failing, located.contents[0].family.as_ref()),
+        (located.failed, located.scenes_with_contents, located.scenes_without_contents),
+        (crashed.len(), crashed.len(), others),
+        "{located:?}"
+    );
+    assert_eq!(
+        (located.failure, located.contents[0].family.as_ref()),
         (FailureKind::Crash, "the failsafe moves a zone")
     );
     let Reason::Program(reached) = crashed[0].reason else { panic!("{:?}", crashed[0].reason) };
     assert_eq!((&located.first, located.step), (&crashed[0].scene, reached.steps));
-    let silent = stage.grade_by(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);
-    assert!(silent.located.is_some() && disclosed_grade(&grade).located.is_some(), "staff is told everything");
-    assert_eq!(disclosed_grade(&silent).located, None, "hints tell students less");
-    assert_eq!(stage.grade_by(&suite("what"), &["right"]).remove(0).located, None);
+    let silent = stage.grade_with(&suite("where"), &["crashes-in-the-failsafe"]).remove(0);
+    assert!(
+        silent.located_failure.is_some() && disclosed_grade(&grade).located_failure.is_some(),
+        "staff is told everything"
+    );
+    assert_eq!(disclosed_grade(&silent).located_failure, None, "hints tell students less");
+    assert_eq!(stage.grade_with(&suite("what"), &["right"]).remove(0).located_failure, None);
 }
 
 #[test]
 fn what_logs_nothing_is_not_written_yet() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let text = "schema = 1\nname = \"test\"\n[[group]]\nname = \"all\"\ncredit = \"steps\"\nscenes = \
                 [\"asset:ContinuousTimeTests/*\", \"asset:ImpulsesTests/o*\"]\n";
-    let plan = plan::load(text, Path::new("nowhere")).expect("a sound suite");
-    let grades = stage.grade_by(&plan, &["unwritten", "nothing", "half"]);
+    let plan = plan::load_suite(text, Path::new("nowhere")).expect("a sound suite");
+    let grades = stage.grade_with(&plan, &["unwritten", "nothing", "half"]);
     let verdicts: Vec<_> = grades.iter().map(|grade| grade.verdict).collect();
     assert_eq!(verdicts, [Verdict::Unwritten, Verdict::NoOutput, Verdict::BadTrace], "of the one all scenes say so");
-    assert_eq!((grades[0].points, grades[0].unfit().is_some()), (Some(0.0), true));
+    assert_eq!((grades[0].points, grades[0].submission_fault().is_some()), (Some(0.0), true));
     assert!(grades[0].scenes().all(|scene| scene.reason == Reason::Wrong(WrongTrace::Nothing)));
 }
 
 #[test]
 fn a_submission_has_only_so_much_time() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let mut plan = small_plan();
-    plan.patience.total = Duration::from_secs(25);
-    let grade = stage.grade_by(&plan, &["lengthy"]).remove(0);
+    plan.skip_limits.total = Duration::from_secs(25);
+    let grade = stage.grade_with(&plan, &["lengthy"]).remove(0);
     let verdicts: Vec<_> = grade.scenes().map(|scene| scene.verdict).collect();
     assert_eq!(verdicts[..4], [Verdict::Accepted, Verdict::Accepted, Verdict::Accepted, Verdict::TimeLimit]);
     assert!(verdicts[3..].iter().all(|verdict| *verdict == Verdict::TimeLimit));
     let last = grade.scenes().last().expect("a scene");
-    assert_eq!(last.reason, Reason::LeftOut(NotRunReason::Total(Duration::from_secs(25))));
+    assert_eq!(last.reason, Reason::Skipped(NotRunReason::Total(Duration::from_secs(25))));
     assert!(grade.points.is_some(), "that is the submission's own doing");
 }
 
 #[test]
 fn fail_fast_stops_at_the_first_scene_that_is_not_accepted_and_gives_no_points() {
     for jobs in [1, 3] {
-        let stage = Stage::new();
+        let stage = TestGrading::new();
         let (plan, never) = (small_plan(), Cancellation::default());
         let mut grader = stage.grader(&plan);
-        grader.options = Options { jobs, fail_fast: true, recorded: false };
-        let grades = run(&grader, &stage.submissions(&["wrong", "right"]), None, &never, &mut |_| {}).grades;
+        grader.options = Options { jobs, fail_fast: true, uses_recordings: false };
+        let grades = grade_all(&grader, &stage.submissions(&["wrong", "right"]), None, &never, &mut |_| {}).grades;
         let verdicts: Vec<_> = grades[0].scenes().map(|scene| scene.verdict).collect();
         assert_eq!(verdicts[0], Verdict::WrongAnswer);
         assert!(verdicts[1..].iter().all(|verdict| *verdict == Verdict::NotRun), "{verdicts:?}");
@@ -311,9 +319,9 @@ fn fail_fast_stops_at_the_first_scene_that_is_not_accepted_and_gives_no_points()
 
 #[test]
 fn a_wrong_first_record_costs_by_the_fair_rules_what_follows_from_it() {
-    let stage = Stage::new();
+    let stage = TestGrading::new();
     let plan = Plan { rules: Rules::Fair, ..small_plan() };
-    let grade = stage.grade_by(&plan, &["wrong"]).remove(0);
+    let grade = stage.grade_with(&plan, &["wrong"]).remove(0);
     let scene = grade.scenes().next().expect("a scene");
     assert_eq!((grade.verdict, scene.right_steps), (Verdict::WrongAnswer, scene.steps - 1));
     assert_eq!(first_divergence(scene), (0, 0), "{scene:?}");
@@ -338,9 +346,9 @@ fn bytes_behind_the_last_record_have_one_consequence_whoever_ends_first() {
         ("right-then-flood-sleeps", parity, fair),
     ] {
         for (rules, expected) in [(Rules::Both, by_parity), (Rules::Parity, by_parity), (Rules::Fair, by_fair)] {
-            let (stage, mut plan) = (Stage::new(), Plan { rules, ..small_plan() });
+            let (stage, mut plan) = (TestGrading::new(), Plan { rules, ..small_plan() });
             plan.limits.trace = SMALL_TRACE as u64;
-            let grade = stage.grade_by(&plan, &[name]).remove(0);
+            let grade = stage.grade_with(&plan, &[name]).remove(0);
             assert_eq!(
                 (grade.verdict, grade.groups[0].verdict),
                 (expected, expected),
@@ -352,12 +360,12 @@ fn bytes_behind_the_last_record_have_one_consequence_whoever_ends_first() {
 
 #[test]
 fn a_trace_beyond_its_limit_before_the_last_record_is_an_output_limit() {
-    let (stage, mut plan) = (Stage::new(), small_plan());
+    let (stage, mut plan) = (TestGrading::new(), small_plan());
     plan.limits.trace = 100;
     for rules in [Rules::Both, Rules::Fair] {
         plan.rules = rules;
         let names = ["right", "right-then-flood-exits", "right-then-flood-unread", "flood-of-nonsense"];
-        for grade in stage.grade_by(&plan, &names) {
+        for grade in stage.grade_with(&plan, &names) {
             assert_eq!(grade.verdict, Verdict::OutputLimit, "{grade:?}");
             assert!(grade.scenes().all(|scene| scene.verdict == Verdict::OutputLimit), "{grade:?}");
         }

@@ -2,10 +2,10 @@ use super::*;
 
 #[test]
 fn the_template_is_a_valid_suite() {
-    let template = template("t2m2").expect("a template");
+    let template = suite_template("t2m2").expect("a template");
     let suite = read(&template).expect("sound");
-    assert_eq!((suite.limits, suite.patience), (RunLimits::default(), Patience::default()));
-    assert_eq!(suite.run, default_run());
+    assert_eq!((suite.limits, suite.skip_limits), (RunLimits::default(), SkipLimits::default()));
+    assert_eq!(suite.command, default_command());
     assert_eq!(suite.rules, Rules::Fair);
     let without = template.replacen("rules = \"fair\"\n", "", 1);
     assert_eq!(read(&without).expect("sound").rules, Rules::Fair, "the default");

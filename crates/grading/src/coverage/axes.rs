@@ -10,7 +10,7 @@ pub struct Axis {
 }
 
 /// A value of a property: the property's name, and the index of the value.
-pub(super) type Value = (&'static str, usize);
+pub(super) type AxisValue = (&'static str, usize);
 
 /// Declares a property as an enum whose variants are its values.
 macro_rules! axis {

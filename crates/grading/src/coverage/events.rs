@@ -17,7 +17,7 @@ use fosssim_num::{
 const NEAR_END: f64 = 0.05;
 
 /// Returns the stage in which a pair is checked, as a value of a property.
-pub(super) const fn place_of_stage(stage: Stage) -> Found {
+pub(super) const fn stage_value(stage: Stage) -> Found {
     match stage {
         Stage::Simple | Stage::ContinuousTime => Found::Continuous,
         Stage::Impulses { round: 0 } => Found::First,
@@ -97,11 +97,11 @@ pub(super) fn fixed_of_three(scene: &Scene, bodies: &[usize]) -> FixedOfThree {
     }
 }
 
-pub(super) fn fixed_one(scene: &Scene, bodies: &[usize]) -> FixedOne {
+pub(super) fn fixed_single(scene: &Scene, bodies: &[usize]) -> FixedOne {
     if scene.particles[bodies[0]].fixed { FixedOne::Fixed } else { FixedOne::Free }
 }
 
-pub(super) fn some_fixed(scene: &Scene, bodies: &[usize]) -> SomeFixed {
+pub(super) fn any_fixed(scene: &Scene, bodies: &[usize]) -> SomeFixed {
     match bodies.iter().filter(|&&body| scene.particles[body].fixed).count() {
         0 => SomeFixed::None,
         all if all == bodies.len() => SomeFixed::All,
@@ -148,7 +148,7 @@ fn position(detection: &Detection<'_>, body: usize, time: f64) -> Vec2 {
     start + time * (vector_at(detection.q_end, body) - start)
 }
 
-pub(super) fn place(detection: &Detection<'_>, bodies: &[usize], time: f64) -> Place {
+pub(super) fn contact_place(detection: &Detection<'_>, bodies: &[usize], time: f64) -> Place {
     let [one, two, three] = [0, 1, 2].map(|index| position(detection, bodies[index], time));
     match (one - two).dot(&(three - two)) / (three - two).dot(&(three - two)) {
         ..NEAR_END => Place::First,

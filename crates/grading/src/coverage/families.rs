@@ -1,8 +1,8 @@
 //! The kinds of events in a step that are counted. Each has properties, and pairs of values that exclude each other.
 use super::axes::{
-    Age, Axis, Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Forces, Found, Held, Hits, Integrator,
-    Kind, Likeness, Limit, Links, LoopEnd, Motion, Normal, Penalty, Place, Position, Radii, Restitution, Rounds, Side,
-    Size, SomeFixed, Value, When, Why, ZoneCount, ZoneEdge,
+    Age, Axis, AxisValue, Company, EdgeMotion, Ends, FixedOfThree, FixedOfTwo, FixedOne, Forces, Found, Held, Hits,
+    Integrator, Kind, Likeness, Limit, Links, LoopEnd, Motion, Normal, Penalty, Place, Position, Radii, Restitution,
+    Rounds, Side, Size, SomeFixed, When, Why, ZoneCount, ZoneEdge,
 };
 
 /// A kind of event and its properties. Scenes should contain every pair of values of any two properties.
@@ -13,7 +13,7 @@ pub struct Family {
     /// The properties of such events.
     pub axes: &'static [Axis],
     /// The pairs of values that exclude each other, so that no event has both.
-    pub(super) never: &'static [(Value, Value)],
+    pub(super) impossible_pairs: &'static [(AxisValue, AxisValue)],
 }
 
 /// An event: the index of its kind in [`FAMILIES`], and for each property the index of its value.
@@ -28,7 +28,8 @@ macro_rules! family {
         }
 
         impl $type {
-            pub(super) const FAMILY: Family = Family { name: $name, axes: &[$($axis::AXIS),+], never: $never };
+            pub(super) const FAMILY: Family =
+                Family { name: $name, axes: &[$($axis::AXIS),+], impossible_pairs: $never };
 
             pub(super) fn event(self) -> Event {
                 ($number, vec![$(self.$field as usize),+])

@@ -5,9 +5,9 @@
 //! have properties ([`FAMILIES`]). A suite covers a pair of values of two properties if an event in one of its scenes
 //! has both values. Then a mistake that depends on one or two properties shows in at least one scene.
 mod axes;
+mod coverage_observer;
 mod events;
 mod families;
-mod watch;
 
 pub use axes::Axis;
 pub use families::{FAMILIES, Family};
@@ -26,9 +26,9 @@ pub struct Pairing {
     /// The kind of event, as an index in [`FAMILIES`].
     pub family: usize,
     /// The index of the first property, and the index of its value.
-    pub one: (usize, usize),
+    pub first: (usize, usize),
     /// The index of the second property, and the index of its value.
-    pub other: (usize, usize),
+    pub second: (usize, usize),
 }
 
 impl Pairing {
@@ -43,7 +43,11 @@ impl Pairing {
                     axes.flat_map(|(axis, values)| (0..values.values.len()).map(move |value| (axis, value)))
                 };
                 let pairs = values().flat_map(move |one| values().map(move |other| (one, other)));
-                pairs.filter(|(one, other)| one.0 < other.0).map(move |(one, other)| Self { family, one, other })
+                pairs.filter(|(one, other)| one.0 < other.0).map(move |(one, other)| Self {
+                    family,
+                    first: one,
+                    second: other,
+                })
             })
             .filter(|pairing| pairing.is_possible())
     }
@@ -51,8 +55,8 @@ impl Pairing {
     fn is_possible(self) -> bool {
         let family = &FAMILIES[self.family];
         let value = |(axis, value): (usize, usize)| (family.axes[axis].name, value);
-        let (one, other) = (value(self.one), value(self.other));
-        !family.never.iter().any(|never| *never == (one, other) || *never == (other, one))
+        let (one, other) = (value(self.first), value(self.second));
+        !family.impossible_pairs.iter().any(|never| *never == (one, other) || *never == (other, one))
     }
 
     /// Describes both values, such as `fixed: the first, time: start of the step`.
@@ -62,14 +66,14 @@ impl Pairing {
             let axis = &FAMILIES[self.family].axes[axis];
             format!("{}: {}", axis.name, axis.values[value])
         };
-        format!("{}, {}", value(self.one), value(self.other))
+        format!("{}, {}", value(self.first), value(self.second))
     }
 }
 
 /// The events that occur in one or several scenes.
 #[derive(Debug, Clone, Default, PartialEq, Eq)]
 pub struct Coverage {
-    seen: BTreeSet<Pairing>,
+    pairings: BTreeSet<Pairing>,
 }
 
 impl Coverage {
@@ -82,7 +86,7 @@ impl Coverage {
     pub fn for_scene(scene: &Scene) -> Result<Self, StepError> {
         let mut coverage = Self::default();
         if scene.assignment() == Assignment::T2M2 {
-            let mut watch = watch::Watch::new(scene, &mut coverage);
+            let mut watch = coverage_observer::CoverageObserver::new(scene, &mut coverage);
             let mut simulation = Simulation::new(scene, RootSearch::OnDemand);
             for _ in 0..scene.step_count() {
                 simulation.step(&mut watch)?;
@@ -93,28 +97,28 @@ impl Coverage {
 
     /// Adds the events that occur in other scenes.
     pub fn add(&mut self, other: &Self) {
-        self.seen.extend(&other.seen);
+        self.pairings.extend(&other.pairings);
     }
 
     /// Returns whether no event has been recorded.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.seen.is_empty()
+        self.pairings.is_empty()
     }
 
     /// Returns whether any event has both values.
     #[must_use]
-    pub fn has(&self, pairing: Pairing) -> bool {
-        self.seen.contains(&pairing)
+    pub fn contains(&self, pairing: Pairing) -> bool {
+        self.pairings.contains(&pairing)
     }
 
     /// Returns the single values that occur. Each is given by the indices of the kind of event, the property, and the
     /// value.
     pub fn values(&self) -> impl Iterator<Item = (usize, usize, usize)> {
         let values = self
-            .seen
+            .pairings
             .iter()
-            .flat_map(|pairing| [pairing.one, pairing.other].map(|(axis, value)| (pairing.family, axis, value)));
+            .flat_map(|pairing| [pairing.first, pairing.second].map(|(axis, value)| (pairing.family, axis, value)));
         values.collect::<BTreeSet<_>>().into_iter()
     }
 
@@ -122,19 +126,19 @@ impl Coverage {
     #[must_use]
     pub fn counts(&self, family: usize) -> (usize, usize) {
         let all = || Pairing::all().filter(|pairing| pairing.family == family);
-        (all().filter(|pairing| self.has(*pairing)).count(), all().count())
+        (all().filter(|pairing| self.contains(*pairing)).count(), all().count())
     }
 
     /// Returns the possible pairs of values that do not occur.
     pub fn missing(&self) -> impl Iterator<Item = Pairing> {
-        Pairing::all().filter(|pairing| !self.has(*pairing))
+        Pairing::all().filter(|pairing| !self.contains(*pairing))
     }
 
     /// Records that an event occurs.
-    fn note(&mut self, (family, values): &families::Event) {
+    fn note_event(&mut self, (family, values): &families::Event) {
         for (first, &one) in values.iter().enumerate() {
             for (second, &other) in values.iter().enumerate().skip(first + 1) {
-                self.seen.insert(Pairing { family: *family, one: (first, one), other: (second, other) });
+                self.pairings.insert(Pairing { family: *family, first: (first, one), second: (second, other) });
             }
         }
     }

@@ -9,7 +9,7 @@ fn of(text: &str) -> Coverage {
 fn has(coverage: &Coverage, one: &str, other: &str) -> bool {
     let is = |pairing: &Pairing| pairing.describe() == format!("{one}, {other}");
     assert!(Pairing::all().any(|pairing| is(&pairing)), "no such pair: {one}, {other}");
-    Pairing::all().any(|pairing| is(&pairing) && coverage.has(pairing))
+    Pairing::all().any(|pairing| is(&pairing) && coverage.contains(pairing))
 }
 
 #[test]
@@ -38,7 +38,7 @@ fn earlier_assignments_contain_nothing_of_this() {
 fn nothing_is_seen_that_cannot_be() {
     for name in library::names() {
         let scene = read(name, library::scene(name).expect("a scene")).expect("sound").scene;
-        let seen = Coverage::for_scene(&scene).expect("a run").seen;
+        let seen = Coverage::for_scene(&scene).expect("a run").pairings;
         let wrong: Vec<String> =
             seen.iter().filter(|one| !one.is_possible()).map(|one| format!("{name}: {}", one.describe())).collect();
         assert!(wrong.is_empty(), "{wrong:#?}");
@@ -49,7 +49,7 @@ fn nothing_is_seen_that_cannot_be() {
 fn the_newest_version_contains_more_than_the_one_before() {
     let covered = |suite: &str| {
         let mut coverage = Coverage::default();
-        for task in plan::find(suite).expect("a suite").scenes() {
+        for task in plan::find_suite(suite).expect("a suite").scenes() {
             coverage.add(&Coverage::for_scene(&task.scene).expect("a run"));
         }
         (0..FAMILIES.len())

@@ -1,8 +1,8 @@
 use super::*;
 use crate::{
-    batch::{BatchResult, Event, GradeFault, run},
+    batch::{BatchResult, Event, GradeFault, grade_all},
     cards::JudgedTrace,
-    cast::{Stage, small_plan},
+    fake_programs::{TestGrading, small_plan},
     grade::Grade,
     result::Measurements,
     results::FolderResults,
@@ -12,7 +12,7 @@ use std::collections::BTreeMap;
 /// Results that are gone when the grader is.
 #[derive(Default)]
 struct MemoryResults {
-    kept: Mutex<BTreeMap<Key, SceneResult>>,
+    kept: Mutex<BTreeMap<ResultKey, SceneResult>>,
     /// The greatest number of keys: later ones can't be kept, as on a disk that is full. Without it there is no limit.
     room: Option<usize>,
 }
@@ -24,14 +24,14 @@ impl MemoryResults {
 }
 
 impl Results for MemoryResults {
-    fn find(&self, key: &Key) -> Option<SceneResult> {
+    fn find(&self, key: &ResultKey) -> Option<SceneResult> {
         lock(&self.kept).get(key).cloned()
     }
 
-    fn keep(&self, key: &Key, _: &str, result: &SceneResult) -> Result<(), KeepError> {
+    fn store(&self, key: &ResultKey, _: &str, result: &SceneResult) -> Result<(), StoreError> {
         let mut kept = lock(&self.kept);
         if !kept.contains_key(key) && self.room.is_some_and(|room| kept.len() >= room) {
-            return Err(KeepError(format!("there is room for {} results only", kept.len())));
+            return Err(StoreError(format!("there is room for {} results only", kept.len())));
         }
         kept.insert(key.clone(), result.clone());
         Ok(())
@@ -46,7 +46,7 @@ fn grade(
     let mut told = Vec::new();
     let submission = std::slice::from_ref(submission);
     let BatchResult { grades, fault } =
-        run(grader, submission, Some(results), &Cancellation::default(), &mut |event| {
+        grade_all(grader, submission, Some(results), &Cancellation::default(), &mut |event| {
             if let Event::SceneDone { submission: 0, scene, cached } = event {
                 told.push(format!("{scene} {cached}"));
             }
@@ -65,7 +65,7 @@ fn says(grade: &Grade) -> (Verdict, Option<f64>, Vec<SceneResult>) {
 
 #[test]
 fn a_submission_is_graded_the_same_wherever_its_results_are_kept_and_nothing_is_run_twice() {
-    let (stage, plan) = (Stage::new(), small_plan());
+    let (stage, plan) = (TestGrading::new(), small_plan());
     let scenes = plan.scenes().count();
     let grader = stage.grader(&plan);
     let folder = tempfile::tempdir().expect("folder");
@@ -74,17 +74,17 @@ fn a_submission_is_graded_the_same_wherever_its_results_are_kept_and_nothing_is_
         let before = stage.started_count();
         let memory = MemoryResults::default();
         let (first, fault, told) = grade(&grader, &submission, &memory);
-        assert!(fault.is_none() && first.taken_over() == 0);
+        assert!(fault.is_none() && first.count_reused() == 0);
         assert_eq!((told.len(), memory.len(), stage.started_count() - before), (scenes, scenes, scenes));
         let (again, _, told) = grade(&grader, &submission, &memory);
-        assert_eq!((again.taken_over(), stage.started_count() - before), (scenes, scenes), "all of it is found");
+        assert_eq!((again.count_reused(), stage.started_count() - before), (scenes, scenes), "all of it is found");
         assert!(told.iter().all(|line| line.ends_with("true")));
         let journal = FolderResults::open(folder.path(), false).expect("a journal");
         let (on_disk, _, _) = grade(&grader, &submission, &journal);
         drop(journal);
         let read = FolderResults::open(folder.path(), false).expect("a journal");
         let (from_disk, _, _) = grade(&grader, &submission, &read);
-        assert_eq!((on_disk.taken_over(), from_disk.taken_over()), (0, scenes));
+        assert_eq!((on_disk.count_reused(), from_disk.count_reused()), (0, scenes));
         for other in [&again, &on_disk, &from_disk] {
             assert_eq!(says(other), says(&first), "{name}");
         }
@@ -93,24 +93,24 @@ fn a_submission_is_graded_the_same_wherever_its_results_are_kept_and_nothing_is_
 
 #[test]
 fn where_results_have_no_room_grading_stops_and_says_so_and_keeps_what_it_has() {
-    let (stage, plan) = (Stage::new(), small_plan());
+    let (stage, plan) = (TestGrading::new(), small_plan());
     let mut grader = stage.grader(&plan);
     grader.options.jobs = 1;
     let submission = stage.submissions(&["right"]).remove(0);
     let small = MemoryResults { room: Some(3), ..MemoryResults::default() };
     let (stopped, fault, told) = grade(&grader, &submission, &small);
-    assert!(matches!(&fault, Some(GradeFault::Keeping(error)) if error.to_string().contains("room")), "{fault:?}");
+    assert!(matches!(&fault, Some(GradeFault::Storing(error)) if error.to_string().contains("room")), "{fault:?}");
     assert_eq!((stopped.points, stopped.is_incomplete(), stopped.verdict), (None, true, Verdict::NotRun));
     assert_eq!((small.len(), stage.started_count()), (3, 4), "the fourth result was one too many");
     assert_eq!(told.len(), plan.scenes().count(), "every scene is told of all the same");
     // A teacher who makes room goes on from there.
     let (resumed, _, _) = grade(&grader, &submission, &small);
-    assert_eq!((resumed.taken_over(), stage.started_count()), (3, 5));
+    assert_eq!((resumed.count_reused(), stage.started_count()), (3, 5));
 }
 
 #[test]
 fn what_panics_on_one_scene_is_its_judge_error_and_is_tried_again() {
-    let (stage, plan) = (Stage::new(), small_plan());
+    let (stage, plan) = (TestGrading::new(), small_plan());
     let scenes = plan.scenes().count();
     let troubled = plan.scenes().nth(2).expect("a scene").name.clone();
     let submission = stage.submissions(&["wrong"]).remove(0);
@@ -128,27 +128,27 @@ fn what_panics_on_one_scene_is_its_judge_error_and_is_tried_again() {
     assert_eq!(errors.iter().map(|scene| scene.scene.as_str()).collect::<Vec<_>>(), [troubled.as_str()]);
     assert_eq!((failed.points, memory.len()), (None, scenes - 1), "nobody's zero, and not kept");
     let (mended, _, _) = grade(&stage.grader(&plan), &submission, &memory);
-    assert_eq!((mended.verdict, mended.taken_over()), (Verdict::WrongAnswer, scenes - 1));
+    assert_eq!((mended.verdict, mended.count_reused()), (Verdict::WrongAnswer, scenes - 1));
 }
 
 /// A place that fails in the worst way.
 struct Panics;
 
 impl Results for Panics {
-    fn find(&self, _: &Key) -> Option<SceneResult> {
+    fn find(&self, _: &ResultKey) -> Option<SceneResult> {
         None
     }
 
-    fn keep(&self, _: &Key, _: &str, _: &SceneResult) -> Result<(), KeepError> {
+    fn store(&self, _: &ResultKey, _: &str, _: &SceneResult) -> Result<(), StoreError> {
         panic!("no place")
     }
 }
 
 #[test]
 fn a_place_that_panics_is_a_fault_and_no_end() {
-    let (stage, plan) = (Stage::new(), small_plan());
+    let (stage, plan) = (TestGrading::new(), small_plan());
     let submission = stage.submissions(&["right"]).remove(0);
     let (stopped, fault, _) = grade(&stage.grader(&plan), &submission, &Panics);
-    assert!(matches!(&fault, Some(GradeFault::Keeping(error)) if error.to_string().contains("no place")), "{fault:?}");
+    assert!(matches!(&fault, Some(GradeFault::Storing(error)) if error.to_string().contains("no place")), "{fault:?}");
     assert!(stopped.is_incomplete());
 }

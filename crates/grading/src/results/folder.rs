@@ -3,8 +3,8 @@
 //! A line is written and flushed before its result is reported. If a crash cuts a line short, the line is removed when
 //! the journal is next opened. Lines of other versions are ignored. A lock prevents two graders from using the same
 //! folder.
-use super::{KeepError, Results, format_line, read_line};
-use crate::{key::Key, result::SceneResult};
+use super::{Results, StoreError, format_line, read_line};
+use crate::{key::ResultKey, result::SceneResult};
 use fosssim_files::{FileError, Folder};
 use std::{
     collections::BTreeMap,
@@ -41,7 +41,7 @@ pub struct FolderResults {
 struct Journal {
     path: PathBuf,
     file: File,
-    found: BTreeMap<Key, SceneResult>,
+    results: BTreeMap<ResultKey, SceneResult>,
 }
 
 impl FolderResults {
@@ -56,7 +56,7 @@ impl FolderResults {
             move |reason: io::Error| io::Error::new(reason.kind(), format!("{}: {reason}", path.display()))
         };
         let opened = Folder::to_write(folder).map_err(at(""))?;
-        let lock = own_file(&opened, LOCK_FILE).map_err(at(LOCK_FILE))?;
+        let lock = open_own_file(&opened, LOCK_FILE).map_err(at(LOCK_FILE))?;
         lock.try_lock().map_err(|error| match error {
             std::fs::TryLockError::WouldBlock => io::Error::other(format!(
                 "another grader is using {}: wait for it, or choose another --output folder",
@@ -64,7 +64,7 @@ impl FolderResults {
             )),
             std::fs::TryLockError::Error(reason) => at(LOCK_FILE)(reason),
         })?;
-        let mut file = own_file(&opened, JOURNAL_NAME).map_err(at(JOURNAL_NAME))?;
+        let mut file = open_own_file(&opened, JOURNAL_NAME).map_err(at(JOURNAL_NAME))?;
         let metadata = file.metadata().map_err(at(JOURNAL_NAME))?;
         if metadata.len() > MAX_JOURNAL_BYTES && !fresh {
             let text = format!("the journal has more than {MAX_JOURNAL_BYTES} bytes; --fresh starts a new one");
@@ -81,7 +81,7 @@ impl FolderResults {
         file.set_len(sound).map_err(at(JOURNAL_NAME))?;
         file.seek(io::SeekFrom::Start(sound)).map_err(at(JOURNAL_NAME))?;
         let path = folder.join(JOURNAL_NAME);
-        Ok(Self { journal: Mutex::new(Journal { path, file, found }), _lock: lock })
+        Ok(Self { journal: Mutex::new(Journal { path, file, results: found }), _lock: lock })
     }
 
     fn journal(&self) -> MutexGuard<'_, Journal> {
@@ -89,7 +89,7 @@ impl FolderResults {
     }
 }
 
-fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
+fn open_own_file(folder: &Folder, name: &str) -> io::Result<File> {
     folder.own_file(name).map_err(|error| match error {
         FileError::System { source, .. } => source,
         FileError::NotRegular { what, .. } => {
@@ -100,7 +100,7 @@ fn own_file(folder: &Folder, name: &str) -> io::Result<File> {
 }
 
 /// Reads the results in a journal. Returns the position after the last whole line.
-fn read(file: &File, found: &mut BTreeMap<Key, SceneResult>) -> io::Result<u64> {
+fn read(file: &File, found: &mut BTreeMap<ResultKey, SceneResult>) -> io::Result<u64> {
     let mut sound = 0;
     for_each_line(BufReader::new(file), |line| -> io::Result<()> {
         sound += line.len() as u64;
@@ -149,14 +149,14 @@ fn copy(mut file: &File, length: u64, folder: &Folder) -> io::Result<File> {
 }
 
 impl Results for FolderResults {
-    fn find(&self, key: &Key) -> Option<SceneResult> {
-        self.journal().found.get(key).cloned()
+    fn find(&self, key: &ResultKey) -> Option<SceneResult> {
+        self.journal().results.get(key).cloned()
     }
 
-    fn keep(&self, key: &Key, submission: &str, result: &SceneResult) -> Result<(), KeepError> {
+    fn store(&self, key: &ResultKey, submission: &str, result: &SceneResult) -> Result<(), StoreError> {
         let line = format_line(key, submission, result);
-        let Journal { path, file, found } = &mut *self.journal();
-        append(file, &line).map_err(|reason| KeepError(format!("{}: {reason}", path.display())))?;
+        let Journal { path, file, results: found } = &mut *self.journal();
+        append(file, &line).map_err(|reason| StoreError(format!("{}: {reason}", path.display())))?;
         found.insert(key.clone(), result.clone());
         Ok(())
     }
@@ -181,16 +181,16 @@ mod tests {
         SceneResult::without_run("Group/scene", 5, verdict, Reason::Right)
     }
 
-    fn key(word: &str) -> Key {
-        Key::from_program(&blake3::hash(b"program"), b"scene", &[word])
+    fn key(word: &str) -> ResultKey {
+        ResultKey::from_program(&blake3::hash(b"program"), b"scene", &[word])
     }
 
     #[test]
     fn results_survive_and_a_line_cut_short_does_not_matter() {
         let folder = tempfile::tempdir().expect("folder");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
-        journal.keep(&key("a"), "sub", &result(Verdict::WrongAnswer)).expect("kept");
-        journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect("kept");
+        journal.store(&key("a"), "sub", &result(Verdict::WrongAnswer)).expect("kept");
+        journal.store(&key("b"), "sub", &result(Verdict::Accepted)).expect("kept");
         drop(journal);
         let path = folder.path().join("journal.jsonl");
         let bytes = std::fs::read(&path).expect("bytes");
@@ -199,7 +199,7 @@ mod tests {
         let found = journal.find(&key("a")).expect("kept");
         assert_eq!(found, result(Verdict::WrongAnswer));
         assert_eq!(journal.find(&key("b")), None);
-        journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect("kept");
+        journal.store(&key("b"), "sub", &result(Verdict::Accepted)).expect("kept");
         drop(journal);
         assert!(FolderResults::open(folder.path(), false).expect("journal").find(&key("b")).is_some());
     }
@@ -230,14 +230,14 @@ mod tests {
     fn a_journal_with_a_second_name_is_read_and_not_changed() {
         let folder = tempfile::tempdir().expect("folder");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
-        journal.keep(&key("a"), "sub", &result(Verdict::TimeLimit)).expect("kept");
+        journal.store(&key("a"), "sub", &result(Verdict::TimeLimit)).expect("kept");
         drop(journal);
         let (path, backup) = (folder.path().join(JOURNAL_NAME), folder.path().join("backup"));
         std::fs::hard_link(&path, &backup).expect("a backup");
         let before = std::fs::read(&backup).expect("bytes");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
         assert!(journal.find(&key("a")).is_some());
-        journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect("kept");
+        journal.store(&key("b"), "sub", &result(Verdict::Accepted)).expect("kept");
         drop(journal);
         assert_eq!(std::fs::read(&backup).expect("bytes"), before);
         assert!(FolderResults::open(folder.path(), false).expect("journal").find(&key("b")).is_some());
@@ -265,7 +265,7 @@ mod tests {
     fn fresh_forgets() {
         let folder = tempfile::tempdir().expect("folder");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
-        journal.keep(&key("a"), "sub", &result(Verdict::TimeLimit)).expect("kept");
+        journal.store(&key("a"), "sub", &result(Verdict::TimeLimit)).expect("kept");
         drop(journal);
         assert!(FolderResults::open(folder.path(), true).expect("journal").find(&key("a")).is_none());
     }
@@ -274,10 +274,10 @@ mod tests {
     fn a_full_disk_is_told_and_leaves_whole_lines() {
         let folder = tempfile::tempdir().expect("folder");
         let journal = FolderResults::open(folder.path(), false).expect("journal");
-        journal.keep(&key("a"), "sub", &result(Verdict::Accepted)).expect("kept");
+        journal.store(&key("a"), "sub", &result(Verdict::Accepted)).expect("kept");
         // There is no room for what is written here.
         journal.journal().file = std::fs::OpenOptions::new().write(true).open("/dev/full").expect("a full device");
-        let error = journal.keep(&key("b"), "sub", &result(Verdict::Accepted)).expect_err("full").to_string();
+        let error = journal.store(&key("b"), "sub", &result(Verdict::Accepted)).expect_err("full").to_string();
         assert!(error.contains("journal.jsonl") && error.contains("No space left"), "{error}");
         assert_eq!(journal.find(&key("b")), None);
         drop(journal);

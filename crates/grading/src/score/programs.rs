@@ -2,15 +2,18 @@
 use crate::{
     config::Visibility,
     execute::Runner,
+    failure_cause::{Contents, FailureKind, LocatedFailure, TriedScene, locate_failure},
     grade::Grade,
     grader::{SubmissionGrading, lock},
     guard::catch_panic,
-    located::{Contents, FailureKind, LocatedFailure, TriedScene, locate},
-    milestone, one_file, patience,
+    milestone,
     plan::PlannedGroup,
+    program_file,
     result::{Reason, RunEnd, SceneResult},
-    score,
-    smallest::{DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, group_causes, shorten_limits},
+    score, skipped_scenes,
+    smallest_scene::{
+        DescribeSmallest, QUICK_LIMITS, Shrinker, SmallestScene, WrongScene, group_causes, shorten_limits,
+    },
     staging::StagedProgram,
     verdict::Verdict,
 };
@@ -34,13 +37,13 @@ impl SubmissionGrading<'_> {
             .iter()
             .map(|(result, _)| Some((result.verdict, result.measured.wall + result.measured.judging)))
             .collect();
-        if let Some((end, why)) = patience::find_end(&plan.patience, options.fail_fast, &known) {
+        if let Some((end, why)) = skipped_scenes::find_first_skipped(&plan.skip_limits, options.fail_fast, &known) {
             for (result, scene) in results.iter_mut().zip(plan.scenes()).skip(end) {
-                *result = (patience::left_out(scene, why), false);
+                *result = (skipped_scenes::skipped_result(scene, why), false);
             }
         }
         self.time_scenes(&mut results);
-        let looks_like = self.looks_like(&results);
+        let looks_like = self.infer_milestone(&results);
         let wall = results.iter().map(|(result, _)| result.measured.wall).sum();
         if self.grader.smallest.is_some() && results.iter().any(|(result, _)| is_wrong(result)) {
             drop(self.staged_program());
@@ -54,7 +57,7 @@ impl SubmissionGrading<'_> {
         };
         let mut warnings = self.grader.backend.weaknesses();
         if self.submission.file.as_ref().is_some_and(|file| file.is_shared && !file.is_anothers) {
-            warnings.push(one_file::SHARED_FILE.to_owned());
+            warnings.push(program_file::SHARED_FILE.to_owned());
         }
         let is_visible = |group: &PlannedGroup| group.marking.visibility == Visibility::Visible;
         let active = self.grader.backend.layers().iter().filter(|report| report.active);
@@ -65,12 +68,12 @@ impl SubmissionGrading<'_> {
             warnings,
             layers: active.map(|report| report.layer.name().to_owned()).collect(),
             wall,
-            looks_like,
+            inferred_milestone: looks_like,
             program: program.map(|digest| digest.to_string()),
             ..score::grade(plan, self.submission.name.clone(), true, results)
         };
         if plan.staff_hints.explains() {
-            grade.located = locate_failure(&grade, || self.shared.contents(plan));
+            grade.located_failure = locate_grade_failure(&grade, || self.shared.contents(plan));
         }
         reconcile_explanations(&mut grade);
         if let (Some(describe), Some(Ok(staged))) = (self.grader.smallest, staged.as_deref()) {
@@ -98,7 +101,7 @@ impl SubmissionGrading<'_> {
         let Some(first) = plan.scenes().next() else { return Vec::new() };
         let limits = shorten_limits(&plan.limits);
         let shrinker = Shrinker {
-            runner: Runner { limits: &limits, cards: None, ..self.runner(first, None) },
+            runner: Runner { limits: &limits, cards: None, ..self.new_runner(first, None) },
             program: &staged.program,
             assignment: plan.assignment(),
             limits: QUICK_LIMITS,
@@ -118,7 +121,7 @@ impl SubmissionGrading<'_> {
     /// Infers the milestone for which the program was written, if the library of that milestone lacks features that the
     /// suite's milestone has. This is tried only if no scene is accepted and at least half of the scenes have no
     /// readable trace.
-    fn looks_like(&self, results: &[(SceneResult, bool)]) -> Option<Assignment> {
+    fn infer_milestone(&self, results: &[(SceneResult, bool)]) -> Option<Assignment> {
         let expected = self.grader.plan.milestone?;
         let count = |is: fn(Verdict) -> bool| results.iter().filter(|(result, _)| is(result.verdict)).count();
         let unread = |verdict| matches!(verdict, Verdict::RuntimeError | Verdict::BadTrace | Verdict::NoOutput);
@@ -128,7 +131,7 @@ impl SubmissionGrading<'_> {
         let (staged, first) = (self.staged_program(), self.grader.plan.scenes().next()?);
         let program = &staged.as_ref().as_ref().ok()?.program;
         // The grade must not be lost if this part fails.
-        let found = milestone::infer_milestone(&self.runner(first, None), program).ok().flatten();
+        let found = milestone::infer_milestone(&self.new_runner(first, None), program).ok().flatten();
         found.filter(|found| milestone::lacks(*found, expected))
     }
 }
@@ -141,9 +144,9 @@ fn is_wrong(result: &SceneResult) -> bool {
 
 /// Returns the contents that all failing scenes have in common. `contents` computes the contents of all scenes, in
 /// order. It is called only if some scenes fail and others do not.
-fn locate_failure<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
+fn locate_grade_failure<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) -> Option<LocatedFailure> {
     let failing = |ended: &Option<RunEnd>| ended.as_ref().and_then(FailureKind::from_end);
-    let was_run = |reason: &Reason| !matches!(reason, Reason::LeftOut(_) | Reason::Stopped | Reason::Failed(_));
+    let was_run = |reason: &Reason| !matches!(reason, Reason::Skipped(_) | Reason::Stopped | Reason::Failed(_));
     let run = || grade.scenes().filter(|scene| was_run(&scene.reason) && scene.ended.is_some());
     let failed = run().filter(|scene| failing(&scene.ended).is_some()).count();
     if failed == 0 || failed == run().count() {
@@ -158,8 +161,8 @@ fn locate_failure<'a>(grade: &Grade, contents: impl FnOnce() -> &'a [Contents]) 
                 Reason::Program(reached) => reached.steps,
                 _ => 0,
             };
-            TriedScene { scene: &scene.scene, failing: failing(&scene.ended), steps, contents }
+            TriedScene { scene: &scene.scene, failure: failing(&scene.ended), steps, contents }
         })
         .collect();
-    locate(&tried)
+    locate_failure(&tried)
 }

@@ -7,21 +7,21 @@ use crate::{
 };
 use fosssim_findings::{
     Rules,
-    explanation::{About, Explanation, NanStage, NotFinite},
+    explanation::{Explanation, ExplanationTopic, NanStage, NonFiniteValue},
 };
 use fosssim_mistakes::together::{find_likely_mistakes, mistake_points, reconcile_explanations};
 use std::time::Duration;
 
-fn explanation(key: &str, about: About, reproduced: u64) -> Explanation {
+fn explanation(key: &str, about: ExplanationTopic, reproduced: u64) -> Explanation {
     Explanation {
         key: key.to_owned(),
-        about,
+        topic: about,
         details: Vec::new(),
         reproduced,
         samples: reproduced,
         example: None,
         same_as: Vec::new(),
-        denies: Vec::new(),
+        contradicted_keys: Vec::new(),
         claims: Vec::new(),
     }
 }
@@ -36,7 +36,7 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         credit: Credit::Scenes,
         visibility: Visibility::Visible,
         hints: Hints::Full,
-        extra: false,
+        is_extra: false,
         speed: None,
     };
     let results = scenes.into_iter().enumerate().map(wrong).collect();
@@ -53,12 +53,12 @@ fn grade(scenes: Vec<Vec<Explanation>>) -> Grade {
         warnings: Vec::new(),
         layers: Vec::new(),
         wall: Duration::ZERO,
-        refuted: Vec::new(),
-        looks_like: None,
-        located: None,
+        refuted_keys: Vec::new(),
+        inferred_milestone: None,
+        located_failure: None,
         program: None,
         same_program: Vec::new(),
-        before: None,
+        earlier_grade: None,
         smallest: Vec::new(),
         notes: std::collections::BTreeMap::new(),
     };
@@ -73,13 +73,15 @@ fn each_scene_says_what_all_together_say() {
     let end = |step, stage| {
         explanation(
             Explanation::NOT_FINITE,
-            About::NotFinite(NotFinite { step: Some(step), stage, is_nan: true, ends: false }),
+            ExplanationTopic::NotFinite(NonFiniteValue { step: Some(step), stage, is_nan: true, recovers: false }),
             0,
         )
     };
-    let short = explanation("loop-one-fewer", About::Mistake, 4);
-    let empty =
-        Explanation { same_as: vec!["loop-one-fewer".to_owned()], ..explanation("loop-empty", About::Mistake, 2) };
+    let short = explanation("loop-one-fewer", ExplanationTopic::Mistake, 4);
+    let empty = Explanation {
+        same_as: vec!["loop-one-fewer".to_owned()],
+        ..explanation("loop-empty", ExplanationTopic::Mistake, 2)
+    };
     let grade = grade(vec![
         vec![empty],
         vec![end(7, NanStage::Zones), short.clone()],
@@ -90,13 +92,13 @@ fn each_scene_says_what_all_together_say() {
         find_likely_mistakes(&grade).into_iter().map(|(one, count)| (one.key, count)).collect();
     assert_eq!(heads, [("loop-one-fewer".to_owned(), 3), (Explanation::NOT_FINITE.to_owned(), 2)]);
     let said: Vec<Vec<&str>> =
-        grade.scenes().map(|scene| scene.settled.iter().map(|one| one.key.as_str()).collect()).collect();
+        grade.scenes().map(|scene| scene.corrected_explanations.iter().map(|one| one.key.as_str()).collect()).collect();
     let both = ["loop-one-fewer", Explanation::NOT_FINITE];
     assert_eq!(said, [&both[..1], &both, &both, &both[1..]]);
     let steps: Vec<Option<u32>> = grade
         .scenes()
-        .filter_map(|scene| match &scene.settled.last()?.about {
-            About::NotFinite(found) => Some(found.step),
+        .filter_map(|scene| match &scene.corrected_explanations.last()?.topic {
+            ExplanationTopic::NotFinite(found) => Some(found.step),
             _ => None,
         })
         .collect();
@@ -109,11 +111,17 @@ fn where_numbers_end_comes_last() {
     let end = || {
         explanation(
             Explanation::NOT_FINITE,
-            About::NotFinite(NotFinite { step: Some(7), stage: NanStage::Zones, is_nan: true, ends: false }),
+            ExplanationTopic::NotFinite(NonFiniteValue {
+                step: Some(7),
+                stage: NanStage::Zones,
+                is_nan: true,
+                recovers: false,
+            }),
             0,
         )
     };
-    let short = |reproduced| Explanation { samples: 4, ..explanation("loop-one-fewer", About::Mistake, reproduced) };
+    let short =
+        |reproduced| Explanation { samples: 4, ..explanation("loop-one-fewer", ExplanationTopic::Mistake, reproduced) };
     let first =
         |scenes| find_likely_mistakes(&grade(scenes)).into_iter().next().map(|(one, _)| one.key).expect("a head");
     assert_eq!(first(vec![vec![end()], vec![end()]]), Explanation::NOT_FINITE);
@@ -126,7 +134,7 @@ fn where_numbers_end_comes_last() {
 /// nothing only as a whole.
 #[test]
 fn a_mistake_is_worth_the_points_that_it_alone_costs() {
-    let one = |key: &str| explanation(key, About::Mistake, 4);
+    let one = |key: &str| explanation(key, ExplanationTopic::Mistake, 4);
     let part = Explanation { samples: 5, ..one("loop-one-fewer") };
     let scenes = vec![vec![one("loop-one-fewer")], vec![one("loop-one-fewer"), one("pp-no-two")], vec![part], vec![]];
     let mut grade = grade(scenes);

@@ -59,7 +59,7 @@ impl JudgementBuilder {
         for (all, new) in self.factors.values_mut().flatten().zip(step.factors.values().flatten()) {
             all.add(new);
         }
-        self.judgement.lost += step.lost_decisions;
+        self.judgement.lost_decisions += step.lost_decisions;
         self.judgement.shares.max_with(&step.shares);
         let mut is_wrong = !step.findings.is_empty();
         for (form, place) in [(Form::Course, step.course_form), (Form::Right, step.right_form)] {
@@ -173,13 +173,13 @@ impl JudgementBuilder {
 
     /// Stops judging; later steps are not judged.
     pub(crate) fn stop_judging(&mut self, step: u32) {
-        self.judgement.given_up = Some(step);
+        self.judgement.first_unjudged_step = Some(step);
     }
 
     /// Computes the verdict.
     pub(crate) fn conclude(mut self, outcome: &Outcome) -> Judgement {
         if let Some(Stop::Step(StepError::Work { step })) = outcome.stop {
-            self.judgement.given_up.get_or_insert(step);
+            self.judgement.first_unjudged_step.get_or_insert(step);
         }
         let refusal = if matches!(outcome.stop, Some(Stop::Trace { .. })) {
             Some(FairRefusal::Stopped)
@@ -199,7 +199,7 @@ impl JudgementBuilder {
         said.findings.conclude();
         said.verdict = if said.refusal.is_some() || said.findings.counts.total() > 0 {
             FairVerdict::Rejected
-        } else if outcome.steps_judged == outcome.steps && said.given_up.is_none() {
+        } else if outcome.steps_judged == outcome.steps && said.first_unjudged_step.is_none() {
             FairVerdict::Accepted
         } else {
             FairVerdict::None

@@ -109,12 +109,12 @@ fn a_step_without_result_ends_nothing_but_the_originals_rules() {
             )
         };
         let both = judge(true, &trace);
-        assert!(matches!(both.parity.endless, Some(StepError::RootSearch { step: 2, .. })), "{both:?}");
+        assert!(matches!(both.parity.endless_step, Some(StepError::RootSearch { step: 2, .. })), "{both:?}");
         assert_eq!(
             (both.steps_judged, [Book::Parity, Book::Fair].map(|book| both.ruling(book))),
             (3, [Ruling::WrongAnswer; 2])
         );
-        assert_eq!([Book::Parity, Book::Fair].map(|book| both.judged_by(book)), [1, 3]);
+        assert_eq!([Book::Parity, Book::Fair].map(|book| both.steps_judged_by(book)), [1, 3]);
         let fair = &both.fair.as_ref().expect("asked").findings;
         assert_eq!((fair.counts.get(FindingKind::NoResult), fair.wrong_steps), (1, 2), "{fair:?}");
         let parity = judge(false, &trace);

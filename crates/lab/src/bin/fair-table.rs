@@ -72,8 +72,8 @@ fn describe_reason(fair: &Judgement) -> String {
     if fair.borderline > 0 {
         parts.push(format!("{} borderline", fair.borderline));
     }
-    if fair.lost > 0 {
-        parts.push(format!("{} lost", fair.lost));
+    if fair.lost_decisions > 0 {
+        parts.push(format!("{} lost", fair.lost_decisions));
     }
     parts.push(format!("{:?} {:.2?}", fair.form, fair.shares));
     parts.join("; ")

@@ -1,5 +1,5 @@
 //! Corrects the explanations of one trace with those of all traces of its program.
-use super::{About, Explanation, WrongPairs, is_named_in, naming::explain_by_row};
+use super::{Explanation, ExplanationTopic, WrongPairs, is_named_in, naming::explain_by_row};
 use fosssim_student::find;
 
 /// The explanations of one trace, after all traces of its program are known.
@@ -55,13 +55,16 @@ fn find_agreement(own: &[Explanation], likely: &Explanation) -> Vec<Explanation>
     let shown = own.iter().find(|one| is_named_in(likely, std::slice::from_ref(one)));
     let as_shown = |one: &Explanation| {
         // Steps are counted for known mistakes, and polynomials for guesses about polynomials.
-        let has_same_counts = matches!(one.about, About::Mistake) == matches!(likely.about, About::Mistake);
+        let has_same_counts =
+            matches!(one.topic, ExplanationTopic::Mistake) == matches!(likely.topic, ExplanationTopic::Mistake);
         let (reproduced, samples) = if has_same_counts { (one.reproduced, one.samples) } else { (0, 0) };
-        let about = match (&one.about, &likely.about) {
-            (About::Pairs(own), About::Pairs(all)) => About::Pairs(WrongPairs { first: own.first, ..all.clone() }),
+        let about = match (&one.topic, &likely.topic) {
+            (ExplanationTopic::Pairs(own), ExplanationTopic::Pairs(all)) => {
+                ExplanationTopic::Pairs(WrongPairs { first: own.first, ..all.clone() })
+            }
             (_, about) => about.clone(),
         };
-        Explanation { reproduced, samples, about, example: one.example.clone(), ..likely.clone() }
+        Explanation { reproduced, samples, topic: about, example: one.example.clone(), ..likely.clone() }
     };
     shown.map(as_shown).into_iter().collect()
 }
@@ -74,13 +77,13 @@ mod tests {
     fn named(key: &str, same_as: &[&str], counts: (u64, u64)) -> Explanation {
         Explanation {
             key: key.to_owned(),
-            about: About::Mistake,
+            topic: ExplanationTopic::Mistake,
             details: Vec::new(),
             reproduced: counts.0,
             samples: counts.1,
             example: None,
             same_as: same_as.iter().map(|&key| key.to_owned()).collect(),
-            denies: Vec::new(),
+            contradicted_keys: Vec::new(),
             claims: Vec::new(),
         }
     }

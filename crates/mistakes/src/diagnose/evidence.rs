@@ -6,10 +6,10 @@
 //! not allow one of them.
 use super::{
     Detail, Explanation, Guess, PolynomialDetail, Weight,
-    about::{About, OfPolynomials},
     explain::is_formula_area,
     naming::{alternative_statements, explain_by_row},
     polynomial::claim_of_form,
+    topic::{ExplanationTopic, PolynomialEvidence},
 };
 use fosssim_student::find;
 use std::collections::{BTreeMap, BTreeSet};
@@ -65,7 +65,7 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
         };
         Some(Symptom { explanation: one, allowed_statements: allowed })
     };
-    list.iter().filter(|one| one.is_vote() || !one.claims.is_empty()).filter_map(of_one).collect()
+    list.iter().filter(|one| one.is_about_program() || !one.claims.is_empty()).filter_map(of_one).collect()
 }
 
 /// The evidence for one statement.
@@ -105,14 +105,16 @@ impl Support<'_> {
 fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     let mut all: BTreeMap<&str, Support<'_>> = BTreeMap::new();
     for (number, trace) in open.iter().enumerate() {
-        for (place, symptom) in trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.explanation.is_vote()) {
+        for (place, symptom) in
+            trace.symptoms.iter().enumerate().filter(|(_, symptom)| symptom.explanation.is_about_program())
+        {
             let said = symptom.explanation.statement();
             for word in symptom.allowed_statements.keys() {
                 let evidence = all.entry(word.as_str()).or_default();
                 evidence.symptoms.insert((number, place));
                 evidence.first_trace += usize::from(place == 0 && *word == said);
                 // Of several explanations with the same statement, the one with the longest exact form is used.
-                let rank_of = |one: &Explanation| (one.is_settled(), !one.details.is_empty());
+                let rank_of = |one: &Explanation| (one.is_exhaustive(), !one.details.is_empty());
                 let says_more = |told: &Explanation| rank_of(told) < rank_of(&symptom.explanation);
                 if *word == said && evidence.reported.is_none_or(says_more) {
                     evidence.reported = Some(&symptom.explanation);
@@ -123,7 +125,10 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     for (word, evidence) in &mut all {
         let row = find(word);
         let is_named = |told: &Explanation| {
-            matches!(&told.about, About::Polynomials { found: OfPolynomials::Guess(Guess::Named(_)), .. })
+            matches!(
+                &told.topic,
+                ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(Guess::Named(_)), .. }
+            )
         };
         evidence.is_known = row.is_some() || evidence.reported.is_some_and(is_named);
         let place = evidence.symptoms.first().copied();
@@ -133,7 +138,7 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
             let told = evidence.reported;
             let is_kin = |one: &&Explanation| trace.symptoms.iter().any(|other| other.explanation.key == one.key);
             evidence.related_traces +=
-                usize::from(told.filter(|told| told.is_of_stage()).is_some_and(|told| is_kin(&told)));
+                usize::from(told.filter(|told| told.names_stage()).is_some_and(|told| is_kin(&told)));
             evidence.complete_traces += usize::from(trace.allows_complete_statement(word));
             if trace.allows_statement(word) {
                 evidence.traces += 1;
@@ -151,9 +156,11 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
 /// Returns whether a trace's explanation contradicts the reported one: it is about the same polynomials, but does not
 /// allow the report.
 fn contradicts(one: &Explanation, told: &Explanation) -> bool {
-    let is_of_formula = match &told.about {
-        About::Polynomials { found, .. } => matches!(found, OfPolynomials::Guess(_)),
-        About::Mistake => find(&told.key).is_some_and(|row| row.pair_kind().is_some() && is_formula_area(row.area)),
+    let is_of_formula = match &told.topic {
+        ExplanationTopic::Polynomials { found, .. } => matches!(found, PolynomialEvidence::Guess(_)),
+        ExplanationTopic::Mistake => {
+            find(&told.key).is_some_and(|row| row.pair_kind().is_some() && is_formula_area(row.area))
+        }
         _ => false,
     };
     let subjects = told.subjects();
@@ -198,20 +205,20 @@ fn merge_explanations(told: &Explanation, open: &[OpenTrace]) -> Explanation {
         .filter(|symptom| contradicts(&symptom.explanation, &told))
         .map(|symptom| symptom.explanation.samples)
         .sum::<u64>();
-    let About::Polynomials { subjects, found } = &mut told.about else { return told };
+    let ExplanationTopic::Polynomials { subjects, found } = &mut told.topic else { return told };
     let agreeing: Vec<&Symptom> = open
         .iter()
         .flat_map(|trace| &trace.symptoms)
         .filter(|one| one.allowed_statements.contains_key(&said))
         .collect();
     for symptom in agreeing.iter().filter(|symptom| symptom.explanation.statement() == said) {
-        if let About::Polynomials { subjects: theirs, .. } = &symptom.explanation.about {
+        if let ExplanationTopic::Polynomials { subjects: theirs, .. } = &symptom.explanation.topic {
             subjects.extend(theirs);
         }
     }
     subjects.sort_unstable();
     subjects.dedup();
-    if let ([subject], OfPolynomials::Guess(guess)) = (&subjects[..], found) {
+    if let ([subject], PolynomialEvidence::Guess(guess)) = (&subjects[..], found) {
         let forms = alternative_forms(&told.details);
         let is_allowed = |form: &Vec<PolynomialDetail>| {
             let word = claim_of_form(*subject, guess, form);

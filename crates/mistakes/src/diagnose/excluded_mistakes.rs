@@ -1,7 +1,7 @@
 //! Finds mistakes that a program does not make, although its wrong traces suggest them.
 use super::{
-    Explanation, about::About, joint_explanation::explain_together, known::mistake_is_visible_within,
-    naming::alternative_statements, non_finite::explain_source, sampling::Source, student_code::is_written_by_student,
+    Explanation, joint_explanation::explain_together, known::mistake_is_visible_within, naming::alternative_statements,
+    non_finite::explain_source, sampling::Source, student_code::is_written_by_student, topic::ExplanationTopic,
 };
 use fosssim_model::{assignments::Assignment, scene::Scene};
 use fosssim_student::{Area, Student, find, record_limited_trace};
@@ -67,7 +67,8 @@ pub fn refuted_keys(whose: Option<Assignment>, wrong: &[(&Scene, &[Explanation])
             Some(key) => refuted.push(key),
             None => {
                 let work = Cell::new(0);
-                let rivals = likely.iter().filter(|one| one.about == About::Mistake).flat_map(|one| &one.same_as);
+                let rivals =
+                    likely.iter().filter(|one| one.topic == ExplanationTopic::Mistake).flat_map(|one| &one.same_as);
                 refuted.extend(rivals.filter(|key| is_denied(key, &work)).cloned().collect::<Vec<_>>());
                 if likely.iter().any(Explanation::is_not_finite) && explain_non_finite_values(&likely, wrong) {
                     refuted.push(Explanation::NOT_FINITE.to_owned());

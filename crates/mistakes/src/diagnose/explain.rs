@@ -1,12 +1,12 @@
 //! Combines the explanations of a trace.
 use super::{
     Detail, Explanation,
-    about::About,
     known::{KnownMistakes, explain_kept_steps, is_empty_stage},
     naming::is_in_other_words,
     near_pairs, non_finite, polynomial,
     sampling::{KeptStep, Source, TraceSamples, sample_trace},
     stages,
+    topic::ExplanationTopic,
 };
 use fosssim_judge::kept_trace::KeptTrace;
 use fosssim_model::{
@@ -57,7 +57,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     }
     let mut polynomials = polynomial::explain(&detections);
     if known.iter().any(|one| find(&one.key).is_some_and(is_empty_stage)) {
-        polynomials.retain(|one| !one.is_of_missing());
+        polynomials.retain(|one| !one.reports_missing_polynomials());
     }
     for explanation in &mut known {
         let of_kind = find(&explanation.key).filter(|row| is_formula_area(row.area)).map(|row| row.pair_kind());
@@ -113,7 +113,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     // The sort is stable, so a known mistake stays before equally good guesses.
     all.sort_by_key(|one| (one.is_unexplained(), !one.is_complete()));
     all.extend(not_finite);
-    all.iter_mut().for_each(|one| one.denies.clone_from(&denies));
+    all.iter_mut().for_each(|one| one.contradicted_keys.clone_from(&denies));
     all
 }
 
@@ -123,8 +123,8 @@ fn add_letter_note(explanation: &mut Explanation) {
         return;
     }
     let row = find(&explanation.key);
-    let kinds = match &explanation.about {
-        About::Mistake => row.and_then(Row::pair_kind).into_iter().collect(),
+    let kinds = match &explanation.topic {
+        ExplanationTopic::Mistake => row.and_then(Row::pair_kind).into_iter().collect(),
         about => about.kinds(),
     };
     // A known mistake's last line names the place to check.

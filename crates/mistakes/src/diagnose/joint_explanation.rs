@@ -2,13 +2,13 @@
 //! unexplained rest ([`evidence`](super::evidence)).
 use super::{
     Detail, Explanation, Guess, ListGuess,
-    about::{About, OfPolynomials},
     evidence::{OpenTrace, Symptom, collect_symptoms, find_likeliest},
     explain::is_formula_area,
     fault::StepStage,
     known::is_empty_stage,
     naming::{explain_by_row, is_named_in},
     near_pairs,
+    topic::{ExplanationTopic, PolynomialEvidence},
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::{Area, CATALOGUE, Mistake, Row, assignments::t2m2::Subject, find};
@@ -32,7 +32,7 @@ pub fn explain_together<'a>(
 ) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
     // A stage that is visible in one trace is not empty, even if other traces do not show it.
-    let denied: BTreeSet<&String> = traces.iter().copied().flatten().flat_map(|one| &one.denies).collect();
+    let denied: BTreeSet<&String> = traces.iter().copied().flatten().flat_map(|one| &one.contradicted_keys).collect();
     let is_refuted = |key: &String| refuted.contains(key) || denied.contains(key);
     let mut open: Vec<OpenTrace> = traces
         .iter()
@@ -52,7 +52,7 @@ pub fn explain_together<'a>(
             is_confirmed(&open, &said)
         } else {
             (found.is_empty() && empty.is_empty())
-                || (next.is_settled() && is_supported(&open, &next) && !is_repetition(&found, &next, &open))
+                || (next.is_exhaustive() && is_supported(&open, &next) && !is_repetition(&found, &next, &open))
         };
         if is_told {
             remove_explained(&mut open, &said);
@@ -80,7 +80,7 @@ pub fn explain_together<'a>(
     wrong.retain(|list| !empty.iter().any(|one| is_named_in(one, list)));
     if let Some(head) = explain_wrong_polynomials(&wrong, &found, is_unwritten) {
         // After a wrong formula, later stages are wrong as a consequence.
-        found.retain(|one| !one.is_of_stage());
+        found.retain(|one| !one.names_stage());
         found.insert(0, head);
     }
     near_pairs::merge_explanations(&mut found, &traces);
@@ -94,19 +94,21 @@ fn explain_not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     let agreeing = |one: &Explanation| ends().filter(|other| other.statement() == one.statement()).count();
     let likeliest = ends().rev().max_by_key(|one| agreeing(one))?;
     let mut likeliest = likeliest.clone();
-    if let About::NotFinite(found) = &mut likeliest.about
+    if let ExplanationTopic::NotFinite(found) = &mut likeliest.topic
         && ends().count() > 1
     {
         found.step = None;
-        found.ends = ends().any(|one| matches!(&one.about, About::NotFinite(other) if other.ends));
+        found.recovers = ends().any(|one| matches!(&one.topic, ExplanationTopic::NotFinite(other) if other.recovers));
     }
     Some(likeliest)
 }
 
 /// Returns an explanation for each kind of pair whose coefficients are all zero, if `one` is about such coefficients.
 fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
-    let is_zero =
-        matches!(&one.about, About::Polynomials { found: OfPolynomials::Guess(Guess::List(ListGuess::AllZero)), .. });
+    let is_zero = matches!(
+        &one.topic,
+        ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(Guess::List(ListGuess::AllZero)), .. }
+    );
     let subjects = one.subjects();
     // The course supplies the approach of particles and edges.
     let is_theirs = |subject: &&Subject| **subject != Subject::EdgeApproach;
@@ -118,7 +120,7 @@ fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
         CATALOGUE.iter().find(of_kind)
     };
     let told = |row: &Row| Explanation {
-        details: vec![Detail::Term(row.id.into()), Detail::Look(row.area)],
+        details: vec![Detail::Term(row.id.into()), Detail::SearchArea(row.area)],
         example: None,
         ..explain_by_row(one, row, Vec::new())
     };
@@ -139,7 +141,7 @@ fn unite_empty_stages(empty: Vec<Explanation>) -> Vec<Explanation> {
         reproduced: sure.iter().map(|one| one.reproduced).sum(),
         samples: sure.iter().map(|one| one.samples).sum(),
         same_as: keys,
-        ..Explanation::about(Explanation::UNFINISHED, About::Unfinished)
+        ..Explanation::with_topic(Explanation::UNFINISHED, ExplanationTopic::Unfinished)
     };
     std::iter::once(all).chain(doubted).collect()
 }
@@ -155,7 +157,7 @@ fn explain_wrong_polynomials(
     for list in traces {
         let is_formula_row = |one: &&Explanation| find(&one.key).is_some_and(|row| is_formula_area(row.area));
         let of_polynomials =
-            list.iter().filter(|one| matches!(one.about, About::Polynomials { .. }) || is_formula_row(one));
+            list.iter().filter(|one| matches!(one.topic, ExplanationTopic::Polynomials { .. }) || is_formula_row(one));
         let subjects: BTreeSet<Subject> = of_polynomials.flat_map(Explanation::subjects).collect();
         let subjects = subjects.into_iter().filter(|one| !is_unwritten(one));
         subjects.for_each(|subject| *wrong.entry(subject).or_default() += 1);
@@ -169,17 +171,20 @@ fn explain_wrong_polynomials(
         return None;
     }
     let subjects: Vec<Subject> = wrong.into_iter().filter(|(_, count)| *count == most).map(|(one, _)| one).collect();
-    let guesses = traces.iter().flatten().filter_map(|one| match &one.about {
-        About::Polynomials { subjects: theirs, found: OfPolynomials::Guess(guess) } if *theirs == subjects => {
+    let guesses = traces.iter().flatten().filter_map(|one| match &one.topic {
+        ExplanationTopic::Polynomials { subjects: theirs, found: PolynomialEvidence::Guess(guess) }
+            if *theirs == subjects =>
+        {
             Some(guess)
         }
         _ => None,
     });
-    let heads = guesses.map(|guess| Explanation::for_wrong(subjects.clone(), OfPolynomials::Guess(guess.clone())));
+    let heads = guesses
+        .map(|guess| Explanation::for_wrong_polynomials(subjects.clone(), PolynomialEvidence::Guess(guess.clone())));
     let likeliest = heads.map(|head| (named_in(&head), head)).max_by_key(|(named, _)| *named);
     match likeliest {
         Some((named, head)) if named * 2 > most => Some(head),
-        _ => Some(Explanation::for_wrong(subjects, OfPolynomials::Nothing)),
+        _ => Some(Explanation::for_wrong_polynomials(subjects, PolynomialEvidence::Nothing)),
     }
 }
 
@@ -196,26 +201,26 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
     let are_needed = is_needed(next, open);
     let subjects = next.subjects();
     let is_said = |one: &Explanation| {
-        if are_needed && matches!(one.about, About::Mistake) {
+        if are_needed && matches!(one.topic, ExplanationTopic::Mistake) {
             return false;
         }
         let theirs = one.subjects();
         // If a trace shows no polynomial of a known mistake, that mistake may be the cause of a reported guess.
-        let is_guess = matches!(one.about, About::Polynomials { .. });
+        let is_guess = matches!(one.topic, ExplanationTopic::Polynomials { .. });
         let kind = find(&next.key).filter(|row| is_formula_area(row.area)).and_then(Row::pair_kind);
         let in_one_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
             Some(kind) => theirs.iter().any(|subject| subject.kind() == kind),
             None => !subjects.is_empty() && subjects.iter().all(|subject| theirs.contains(subject)),
         };
-        let in_one_stage = match (&one.about, &next.about) {
-            (About::Stage(one), About::Stage(next)) => {
+        let in_one_stage = match (&one.topic, &next.topic) {
+            (ExplanationTopic::Stage(one), ExplanationTopic::Stage(next)) => {
                 let are_of_two_kinds = one.kind().zip(next.kind()).is_some_and(|(one, next)| one != next);
                 one.stage() == next.stage() && !are_of_two_kinds
             }
-            (_, About::Stage(fault)) => find(&one.key).is_some_and(|row| {
+            (_, ExplanationTopic::Stage(fault)) => find(&one.key).is_some_and(|row| {
                 fault.areas().contains(&row.area) || area_stage(row.area).is_some_and(|stage| stage <= fault.stage())
             }),
-            (About::Stage(fault), _) => find(&next.key).is_some_and(|row| fault.areas().contains(&row.area)),
+            (ExplanationTopic::Stage(fault), _) => find(&next.key).is_some_and(|row| fault.areas().contains(&row.area)),
             _ => false,
         };
         let is_of_vector = |row: &&Row| row.area == Area::ContactVector && row.pair_kind().is_some();
@@ -233,7 +238,7 @@ fn drop_consequences(open: &mut Vec<OpenTrace>) {
         symptom.allowed_statements.iter().any(|(word, is_whole)| *is_whole && is_state_mistake(word))
     };
     if open.iter().flat_map(|trace| &trace.symptoms).any(names_one) {
-        open.iter_mut().for_each(|trace| trace.symptoms.retain(|symptom| !symptom.explanation.is_of_stage()));
+        open.iter_mut().for_each(|trace| trace.symptoms.retain(|symptom| !symptom.explanation.names_stage()));
         open.retain(|trace| !trace.symptoms.is_empty());
     }
 }
@@ -245,7 +250,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     let all = || open.iter().flat_map(|trace| &trace.symptoms).map(|symptom| &symptom.explanation);
     let Some(earliest) = all().filter_map(Explanation::stage).min() else { return };
     let is_of_it = |one: &Explanation| one.stage() == Some(earliest);
-    let kind_of = |one: &Explanation| if let About::Stage(fault) = &one.about { fault.kind() } else { None };
+    let kind_of = |one: &Explanation| if let ExplanationTopic::Stage(fault) = &one.topic { fault.kind() } else { None };
     let observed = |row: &Row| {
         let is_of_kind = |one: &Explanation| row.pair_kind().is_none_or(|kind| kind_of(one) == Some(kind));
         let shows = |trace: &&OpenTrace| {
@@ -296,11 +301,11 @@ fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
     let naming = |is_covered: bool| {
         open.iter().filter(|trace| trace.is_covered == is_covered && trace.allows_complete_statement(&said)).count()
     };
-    if next.is_of_stage() {
+    if next.names_stage() {
         return naming(false) > 1 && !next.is_vague();
     }
-    let is_partner = matches!(next.about, About::Mistake) && is_needed(next, open);
-    !next.is_of_missing() && (naming(false) > 0 || is_partner || naming(true) >= open.len().min(2))
+    let is_partner = matches!(next.topic, ExplanationTopic::Mistake) && is_needed(next, open);
+    !next.reports_missing_polynomials() && (naming(false) > 0 || is_partner || naming(true) >= open.len().min(2))
 }
 
 /// Removes everything that a mistake explains; of a trace that the mistake explains, only other complete explanations

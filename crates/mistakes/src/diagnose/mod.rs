@@ -23,13 +23,13 @@ pub use corrected_trace::{CorrectedTrace, correct_trace};
 pub use excluded_mistakes::refuted_keys;
 pub use explain::{explain, explain_kept_trace};
 pub use fosssim_findings::explanation::{
-    About, Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Detail, Example,
-    ExamplePlace, ExampleValue, Explanation, Guess, ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PairCounts,
-    PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault, StepRecord, StepStage, Substitute,
-    Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPairs, WrongPositions,
-    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Detail, Example,
+    ExamplePlace, ExampleValue, Explanation, ExplanationTopic, Guess, ListGuess, LoopEnd, NanStage, NonFiniteValue,
+    PairCounts, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
+    StepRecord, StepStage, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+    WrongPairs, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
-use fosssim_findings::explanation::{about, fault, guess};
+use fosssim_findings::explanation::{fault, guess, topic};
 pub use fosssim_student::{assignments::probe_scenes, formula_detector::find_formula};
 pub use joint_explanation::explain_together;
 pub use known::{find_known, may_change_trace, mistake_is_visible, reproduces};

@@ -1,5 +1,5 @@
 //! Compares explanations: whether they mean the same mistake.
-use super::about::{About, OfPolynomials};
+use super::topic::{ExplanationTopic, PolynomialEvidence};
 use fosssim_findings::explanation::{Detail, Explanation};
 use fosssim_student::{Row, all_rows, find};
 use std::collections::{BTreeMap, BTreeSet};
@@ -8,11 +8,11 @@ use std::collections::{BTreeMap, BTreeSet};
 pub(super) fn explain_by_row(one: &Explanation, row: &Row, same_as: Vec<String>) -> Explanation {
     let of_row = |detail: &Detail| match detail {
         Detail::Term(_) => Detail::Term(row.id.into()),
-        Detail::Look(_) => Detail::Look(row.area),
+        Detail::SearchArea(_) => Detail::SearchArea(row.area),
         other => other.clone(),
     };
     let details = one.details.iter().map(of_row).collect();
-    Explanation { key: row.id.to_owned(), about: About::Mistake, details, same_as, ..one.clone() }
+    Explanation { key: row.id.to_owned(), topic: ExplanationTopic::Mistake, details, same_as, ..one.clone() }
 }
 
 /// Returns whether a trace's explanations name a mistake, as reported or as indistinguishable; for unwritten work, one
@@ -23,12 +23,13 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
         let is_stage = |key: &String| mistake.same_as.contains(key);
         return explanations.iter().any(|one| is_stage(&one.key) || one.same_as.iter().any(is_stage));
     }
-    if let (true, About::Polynomials { subjects, found }) = (mistake.is_unexplained(), &mistake.about) {
-        let says_so = |one: &Explanation| match (found, &one.about) {
-            (OfPolynomials::Guess(guess), About::Polynomials { found: OfPolynomials::Guess(theirs), .. }) => {
-                guess == theirs
-            }
-            (found, _) => *found == OfPolynomials::Nothing,
+    if let (true, ExplanationTopic::Polynomials { subjects, found }) = (mistake.is_unexplained(), &mistake.topic) {
+        let says_so = |one: &Explanation| match (found, &one.topic) {
+            (
+                PolynomialEvidence::Guess(guess),
+                ExplanationTopic::Polynomials { found: PolynomialEvidence::Guess(theirs), .. },
+            ) => guess == theirs,
+            (found, _) => *found == PolynomialEvidence::Nothing,
         };
         let is_about = |one: &Explanation| one.subjects().iter().any(|subject| subjects.contains(subject));
         return explanations.iter().any(|one| is_about(one) && says_so(one));
@@ -42,8 +43,8 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
 /// everything that this explanation is about.
 pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool> {
     let is_known = |key: &&String| find(key).is_some();
-    let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.statement(), one.is_settled())]);
-    all.extend(one.same_as.iter().filter(is_known).map(|key| (key.clone(), one.is_settled())));
+    let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.statement(), one.is_exhaustive())]);
+    all.extend(one.same_as.iter().filter(is_known).map(|key| (key.clone(), one.is_exhaustive())));
     if one.is_complete() {
         all.extend(all_rows().filter(|row| is_in_other_words(one, row)).map(|row| (row.id.to_owned(), true)));
     }
@@ -65,6 +66,6 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
 /// particles and edges is `pe-radii-squared-apart`.
 pub(super) fn is_in_other_words(one: &Explanation, row: &Row) -> bool {
     let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == one.key);
-    let About::Polynomials { subjects, .. } = &one.about else { return false };
+    let ExplanationTopic::Polynomials { subjects, .. } = &one.topic else { return false };
     is_called_so && subjects.first().is_some_and(|first| Some(first.kind()) == row.pair_kind())
 }

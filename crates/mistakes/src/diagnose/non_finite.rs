@@ -5,9 +5,9 @@
 //! with finite input and an output that is not finite proves a mistake.
 use super::{
     Explanation,
-    about::About,
-    fault::{NanStage, NotFinite},
+    fault::{NanStage, NonFiniteValue},
     sampling::{Capture, Reference, Source, StepFrames, StepReader, pair_particles},
+    topic::ExplanationTopic,
 };
 use fosssim_judge::kept_trace::KeptTrace;
 use fosssim_model::{
@@ -39,14 +39,15 @@ pub(super) fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanati
 pub(super) struct NonFiniteSearch {
     is_found: bool,
     /// The first such value; `None` if the reference has the same value.
-    explanation: Option<NotFinite>,
+    explanation: Option<NonFiniteValue>,
 }
 
 impl NonFiniteSearch {
     /// Checks the first record.
     pub(super) fn check_first_record(&mut self, frames: &StepFrames) {
         if let Some(wild) = find_non_finite_value(&frames.before.state) {
-            let told = NotFinite { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan(), ends: false };
+            let told =
+                NonFiniteValue { step: Some(0), stage: NanStage::FirstRecord, is_nan: wild.is_nan(), recovers: false };
             *self = Self { is_found: true, explanation: Some(told) };
         }
     }
@@ -63,9 +64,9 @@ impl NonFiniteSearch {
         if self.is_found {
             let is_finite = || ![&frames.before, &frames.mid, &frames.end].into_iter().any(has_non_finite_value);
             if let Some(told) = &mut self.explanation
-                && !told.ends
+                && !told.recovers
             {
-                told.ends = is_finite();
+                told.recovers = is_finite();
             }
             return;
         }
@@ -78,7 +79,8 @@ impl NonFiniteSearch {
 
     /// Returns the explanation of the found value.
     pub(super) fn explanation(self) -> Option<Explanation> {
-        self.explanation.map(|found| Explanation::about(Explanation::NOT_FINITE, About::NotFinite(found)))
+        self.explanation
+            .map(|found| Explanation::with_topic(Explanation::NOT_FINITE, ExplanationTopic::NotFinite(found)))
     }
 }
 
@@ -104,13 +106,18 @@ fn has_non_finite_value(frame: &LenientFrame) -> bool {
 
 /// Returns the stage of a step that computes a value that is not finite from a finite state; `None` if the reference
 /// does so as well.
-fn find_in_step(reference: &mut Reference<'_>, scene: &Scene, step: u32, frames: &StepFrames) -> Option<NotFinite> {
+fn find_in_step(
+    reference: &mut Reference<'_>,
+    scene: &Scene,
+    step: u32,
+    frames: &StepFrames,
+) -> Option<NonFiniteValue> {
     let mut capture = Capture::new(&scene.collision);
     let has_result = reference.step(step, &frames.before.state, &mut capture).is_some();
     let (stage, value) = find_stage(scene, frames)?;
     let is_implicit = matches!(scene.integrator, Integrator::ImplicitEuler | Integrator::LinearizedImplicitEuler);
     let stage = if is_implicit && stage == NanStage::Motion { NanStage::ImplicitMotion } else { stage };
-    let found = NotFinite { step: Some(step), stage, is_nan: value.is_nan(), ends: false };
+    let found = NonFiniteValue { step: Some(step), stage, is_nan: value.is_nan(), recovers: false };
     (has_result && capture.records.is_finite()).then_some(found)
 }
 

@@ -4,7 +4,7 @@ use fosssim_findings::{
     Hints, SceneResult, Verdict,
     explanation::Explanation,
     result::{Reason, WrongTrace},
-    smallest::SmallestScene,
+    smallest_scene::SmallestScene,
 };
 use fosssim_student::find;
 
@@ -15,7 +15,7 @@ pub fn limit_result(hints: Hints, result: &mut SceneResult) {
         return;
     }
     if hints == Hints::None && matches!(result.verdict, Verdict::WrongAnswer | Verdict::Unwritten) {
-        result.reason = Reason::Wrong(WrongTrace::Untold);
+        result.reason = Reason::Wrong(WrongTrace::Undisclosed);
     }
     result.disclosure = result.disclosure.take().and_then(|all| hints.disclose(all));
     result.explanations = limit_explanations(hints, std::mem::take(&mut result.explanations));
@@ -26,7 +26,7 @@ pub fn limit_result(hints: Hints, result: &mut SceneResult) {
 #[must_use]
 pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<SmallestScene> {
     small.explanations = limit_explanations(hints, std::mem::take(&mut small.explanations));
-    small.cut(hints);
+    small.limit_to_hints(hints);
     (hints > Hints::None).then_some(small)
 }
 
@@ -54,7 +54,7 @@ pub fn limit_explanations(hints: Hints, explanations: Vec<Explanation>) -> Vec<E
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::diagnose::{self, About, Example, ExamplePlace, NanStage, NotFinite};
+    use crate::diagnose::{self, Example, ExamplePlace, ExplanationTopic, NanStage, NonFiniteValue};
     use fosssim_findings::{
         Rules,
         disclosure::{DisclosedFinding, Disclosure},
@@ -74,13 +74,13 @@ mod tests {
         };
         Explanation {
             key: "pe-square-no-eh".to_owned(),
-            about: About::Mistake,
+            topic: ExplanationTopic::Mistake,
             details: vec![diagnose::Detail::Term("pe-square-no-eh".into())],
             reproduced: 3,
             samples: 3,
             example: Some(example),
             same_as: vec!["other".to_owned(), "pe-square-two-eh".to_owned()],
-            denies: Vec::new(),
+            contradicted_keys: Vec::new(),
             claims: Vec::new(),
         }
     }
@@ -90,21 +90,21 @@ mod tests {
         let told = |hints: Hints| limit_explanations(hints, vec![explanation()]);
         assert_eq!((told(Hints::None), told(Hints::Where)), (Vec::new(), Vec::new()));
         let what = told(Hints::What).remove(0);
-        assert_eq!((what.about, what.details.len(), what.example), (About::Mistake, 0, None));
+        assert_eq!((what.topic, what.details.len(), what.example), (ExplanationTopic::Mistake, 0, None));
         assert_eq!(what.same_as, ["pe-square-two-eh"], "what is found in polynomials alone may be a formula's name");
         assert_eq!(told(Hints::Full), [explanation()]);
         for hints in [Hints::None, Hints::Where, Hints::What, Hints::Full] {
             assert_eq!(hints.explains(), !told(hints).is_empty(), "{hints:?}");
             // The first value that is not finite is a place and not a guess.
-            let end = NotFinite { step: Some(3), stage: NanStage::Zones, is_nan: true, ends: false };
-            let end = Explanation { about: About::NotFinite(end), ..explanation() };
+            let end = NonFiniteValue { step: Some(3), stage: NanStage::Zones, is_nan: true, recovers: false };
+            let end = Explanation { topic: ExplanationTopic::NotFinite(end), ..explanation() };
             assert_eq!(limit_explanations(hints, vec![end]).len(), usize::from(hints > Hints::None), "{hints:?}");
         }
     }
 
     #[test]
     fn a_result_that_is_cut_twice_keeps_the_picture_for_students() {
-        let mut result = SceneResult::without_run("a", 1, Verdict::WrongAnswer, Reason::Wrong(WrongTrace::Untold));
+        let mut result = SceneResult::without_run("a", 1, Verdict::WrongAnswer, Reason::Wrong(WrongTrace::Undisclosed));
         (result.card, result.card_for_students) = (Some("all".to_owned()), Some("part".to_owned()));
         for _ in 0..2 {
             limit_result(Hints::What, &mut result);
@@ -117,10 +117,10 @@ mod tests {
         let detail = FindingDetail::Position { particle: 2, expected: [1.5, 0.0], actual: [1.25, 0.0], residual: 0.25 };
         let finding = Finding { step: 4, frame: 8, detail };
         let place = DisclosedFinding::Place { step: 4, kind: finding.kind(), place: FindingPlace::Particle(2) };
-        assert_eq!(Hints::None.finding(&finding), None);
-        assert_eq!(Hints::Where.finding(&finding), Some(place.clone()));
-        assert_eq!(Hints::What.finding(&finding), Some(place));
-        assert_eq!(Hints::Full.finding(&finding), Some(DisclosedFinding::Full(finding)));
+        assert_eq!(Hints::None.disclose_finding(&finding), None);
+        assert_eq!(Hints::Where.disclose_finding(&finding), Some(place.clone()));
+        assert_eq!(Hints::What.disclose_finding(&finding), Some(place));
+        assert_eq!(Hints::Full.disclose_finding(&finding), Some(DisclosedFinding::Full(finding)));
     }
 
     #[test]

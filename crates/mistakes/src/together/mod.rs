@@ -6,7 +6,7 @@ use fosssim_findings::{
     Hints, Visibility,
     explanation::Explanation,
     grade::{Grade, GroupGrade, SceneGrade},
-    smallest::SmallestScene,
+    smallest_scene::SmallestScene,
 };
 use std::{borrow::Cow, time::Duration};
 
@@ -30,7 +30,7 @@ pub fn disclosed_grade(grade: &Grade) -> Cow<'_, Grade> {
         }
     }
     if !disclosed.groups.iter().all(|group| group.hints.explains()) {
-        disclosed.located = None;
+        disclosed.located_failure = None;
     }
     reconcile_explanations(&mut disclosed);
     Cow::Owned(disclosed)
@@ -54,7 +54,7 @@ pub fn immediate_grade(grade: &Grade) -> Cow<'_, Grade> {
         max_points,
         groups,
         // The counts include scenes that are not in this grade.
-        located: None,
+        located_failure: None,
         wall: Duration::ZERO,
         ..grade.as_ref().clone()
     };
@@ -116,10 +116,10 @@ pub fn find_likely_mistake(grade: &Grade) -> Option<Explanation> {
 /// ([`explain_together`]).
 #[must_use]
 pub fn find_likely_mistakes(grade: &Grade) -> Vec<(Explanation, usize)> {
-    explain_together(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted)
+    explain_together(grade.scenes().map(|scene| scene.explanations.as_slice()), &grade.refuted_keys)
         .into_iter()
         .filter(|likely| {
-            likely.reproduced > 0 || likely.is_of_stage() || likely.is_not_finite() || likely.is_unexplained()
+            likely.reproduced > 0 || likely.names_stage() || likely.is_not_finite() || likely.is_unexplained()
         })
         .map(|likely| (likely.clone(), count_explained_scenes(grade, &likely)))
         .collect()
@@ -135,11 +135,11 @@ pub fn count_explained_scenes(grade: &Grade, mistake: &Explanation) -> usize {
 /// right one can refute it. A caller that removes groups from a grade must call it again, so that nothing about them is
 /// revealed.
 pub fn reconcile_explanations(grade: &mut Grade) {
-    let speak_together = !grade.refuted.is_empty() || find_likely_mistake(grade).is_some();
+    let speak_together = !grade.refuted_keys.is_empty() || find_likely_mistake(grade).is_some();
     let likely = if speak_together { find_likely_mistakes(grade) } else { Vec::new() };
     let likely: Vec<Explanation> = likely.into_iter().map(|(one, _)| one).collect();
     for scene in grade.groups.iter_mut().flat_map(|group| &mut group.scenes) {
-        let of_scene = correct_trace(&scene.result.explanations, &likely, &grade.refuted);
-        (scene.settled, scene.agreed) = (of_scene.explanations, of_scene.agreed);
+        let of_scene = correct_trace(&scene.result.explanations, &likely, &grade.refuted_keys);
+        (scene.corrected_explanations, scene.agreed_count) = (of_scene.explanations, of_scene.agreed);
     }
 }

@@ -7,7 +7,7 @@ use crate::{
     style::Style,
     words::explanation::explain_letters,
 };
-use fosssim_findings::{PairWords, PassWords, explanation::Subject};
+use fosssim_findings::{PairText, PassText, explanation::Subject};
 use fosssim_judge::{overlap::OverlapStudy, study::Study};
 use fosssim_model::{
     scene::{Collision, Scene},
@@ -53,19 +53,19 @@ impl<'a> CollisionWalk<'a> {
         if pass.stage == Stage::Simple {
             let study = &OverlapStudy::for_pair(self.scene, 1, &State::for_scene(self.scene), pair).ok()??;
             let report = Overlap { study, scene: "small.xml", trace: None, step: 1, pair, logged: None };
-            return Some(format!("{}:\n{}\n", PairWords(pair), report.body(format_short, Style::Plain)));
+            return Some(format!("{}:\n{}\n", PairText(pair), report.body(format_short, Style::Plain)));
         }
         let motion = &PairMotion::from_positions(self.scene, pair, q_start, q_end);
         let computation =
             Detect { study: &Study::for_motion(motion).ok()?, place: None }.computation(format_short, Style::Plain);
         let moving = detect::render_motion(motion, format_short, Style::Plain);
-        Some(format!("{}:\n{moving}\n{}{computation}\n", PairWords(pair), render_letters(motion)))
+        Some(format!("{}:\n{moving}\n{}{computation}\n", PairText(pair), render_letters(motion)))
     }
 }
 
 impl Observer for CollisionWalk<'_> {
     fn begin_pass(&mut self, pass: Pass) {
-        self.text += &format!("Pass {}: {}\n", pass.index + 1, PassWords(pass));
+        self.text += &format!("Pass {}: {}\n", pass.index + 1, PassText(pass));
     }
 
     fn observe_positions(&mut self, _: &[f64], q_end: &[f64]) {
@@ -82,7 +82,7 @@ impl Observer for CollisionWalk<'_> {
             self.seen = State { positions: detection.q_end.to_vec(), velocities: detection.velocities.to_vec() };
             let when =
                 if pass.stage == Stage::Simple { String::new() } else { format!(" at t = {}", format_short(time)) };
-            self.text += &format!("  {} collide{when} with n = {}\n", PairWords(pair), format_vector(normal));
+            self.text += &format!("  {} collide{when} with n = {}\n", PairText(pair), format_vector(normal));
         }
     }
 
@@ -98,7 +98,7 @@ impl Observer for CollisionWalk<'_> {
         let (first, second) = (pair.first as usize, pair.second as usize);
         let is_simple = matches!(scene.collision, Collision::Simple { .. });
         let u = unit(normal);
-        let mut text = format!("Response to {}: u = n / |n| = {}\n", PairWords(pair), format_vector(u));
+        let mut text = format!("Response to {}: u = n / |n| = {}\n", PairText(pair), format_vector(u));
         let weights = match pair.kind {
             PairKind::ParticleParticle => vec![(first, 1.0), (second, -1.0)],
             PairKind::ParticleHalfPlane => vec![(first, 1.0)],

@@ -10,7 +10,7 @@ use fosssim_model::assignments::CollisionType;
 pub(crate) fn lines(check: &Check<'_>) -> Vec<&'static str> {
     let Some(first) = first::find_first(check) else { return Vec::new() };
     match check.explanations.iter().find(|one| explanation::is_known(one)) {
-        Some(known) if known.is_of_stage() => explanation::where_to_look(known).into_iter().collect(),
+        Some(known) if known.names_stage() => explanation::where_to_look(known).into_iter().collect(),
         Some(_) => Vec::new(),
         None => finding_advice(first, check.outcome.collisions).to_vec(),
     }

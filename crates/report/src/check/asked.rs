@@ -15,7 +15,7 @@ pub fn is_wrong(outcome: &Outcome) -> bool {
 /// Returns the reason why no trace of this scene can get a verdict; `None` for nearly all scenes.
 #[must_use]
 pub fn describe_no_verdict(outcome: &Outcome, scene: &str) -> Option<String> {
-    match outcome.parity.endless {
+    match outcome.parity.endless_step {
         Some(StepError::VortexHessian { .. }) => Some(format!(
             "the scene {scene} has a vortexforce, which has no Hessian: choose an integrator that is not implicit"
         )),

@@ -4,7 +4,7 @@ use super::super::{
     style::{Look, Style},
     table::{Align, Cell, Table},
 };
-use fosssim_judge::{Finding, FindingDetail, Power, RescaledCoefficient, find_differing_powers, find_factor};
+use fosssim_judge::{Finding, FindingDetail, PowerText, RescaledCoefficient, find_differing_powers, find_factor};
 use fosssim_model::trace::LoggedImpulse;
 
 /// Renders the block about one finding, with a heading and without advice.
@@ -27,7 +27,7 @@ pub(crate) fn describe_place(finding: &Finding, steps: u32) -> String {
 
 /// Renders one finding as a sentence, with its values side by side.
 pub(super) fn render_finding(finding: &Finding, style: Style) -> String {
-    format!("  {}\n{}", finding.what(), side_by_side(&finding.detail).text(style))
+    format!("  {}\n{}", finding.describe(), side_by_side(&finding.detail).text(style))
 }
 
 /// One of the values that a finding compares.
@@ -127,7 +127,7 @@ pub(crate) fn side_by_side(detail: &FindingDetail) -> SideBySide {
             let factor = if own == 0.0 { find_factor(reference, trace) } else { expected / own };
             let mut sides = polynomials_with(place, reference, trace, factor, Some(*power));
             sides.original = rescaled.as_ref().map(|RescaledCoefficient { power, expected, actual, .. }| {
-                let (power, actual, expected) = (Power(*power), format_exact(*actual), format_exact(*expected));
+                let (power, actual, expected) = (PowerText(*power), format_exact(*actual), format_exact(*expected));
                 format!("(after the original's rescaling: {power} {actual}, expected {expected})")
             });
             sides

@@ -7,7 +7,7 @@ use super::super::{
 };
 use fosssim_findings::{BookFindings, Cause};
 use fosssim_judge::{
-    Outcome, PairWords, PassWords,
+    Outcome, PairText, PassText,
     fair::{FairRefusal, FairVerdict, Form, Judgement, find_cause},
 };
 
@@ -42,7 +42,7 @@ pub(super) fn render(outcome: &Outcome, style: Style) -> Option<String> {
         ));
         for decision in &fair.borderline_examples {
             let word = if decision.collides { "collides" } else { "does not collide" };
-            let (pair, pass) = (PairWords(decision.pair), PassWords(decision.pass));
+            let (pair, pass) = (PairText(decision.pair), PassText(decision.pass));
             line(format!("  step {}: {pair} ({pass}): the trace {word}", decision.step));
         }
         let more = fair.borderline - fair.borderline_examples.len() as u64;
@@ -104,7 +104,7 @@ pub(super) fn summarize(fair: &Judgement, outcome: &Outcome) -> String {
         };
         wrong + &first
     });
-    let given_up = fair.given_up.map(|step| format!("judging would take too long from step {step} on"));
+    let given_up = fair.first_unjudged_step.map(|step| format!("judging would take too long from step {step} on"));
     let nothing = (fair.verdict == FairVerdict::None).then(|| "nothing is wrong so far".to_owned());
     let parts = [refusal.map(str::to_owned), found.or(nothing), given_up];
     match parts.into_iter().flatten().collect::<Vec<_>>() {
@@ -136,7 +136,7 @@ fn format_percent(share: f64) -> String {
 
 /// Returns a sentence about which rule book accepts the trace, and which one rejects it.
 pub(crate) const fn describe_sides(cause: Cause) -> &'static str {
-    if cause.original_fails() {
+    if cause.is_original_too_strict() {
         "the original rejects this trace, but the fair rules accept it"
     } else {
         "the original accepts this trace, but the fair rules reject it"

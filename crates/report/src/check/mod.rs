@@ -32,7 +32,7 @@ use super::{
 pub(crate) use fair_view::CauseView;
 use fair_view::{CountedView, FairView};
 use fosssim_findings::{Book, BookFindings, Damage, FindingKind, Outcome, Overall, Residuals, Rules, Ruling, Stop};
-use fosssim_judge::{ReadFailure, WithoutResult, fair::find_cause};
+use fosssim_judge::{MissingResult, ReadFailure, fair::find_cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::SearchCounts;
 use serde::Serialize;
@@ -115,7 +115,7 @@ impl Check<'_> {
         let mut text = String::new();
         let title = format!("{}: {}", self.trace, self.verdict());
         if !self.is_accepted() {
-            let place = self.outcome.stop_of(self.book()).map(|stop| describe_stop(&stop, self.outcome));
+            let place = self.outcome.stop_by(self.book()).map(|stop| describe_stop(&stop, self.outcome));
             let first = first::find_first(self).map(|first| first.to_string());
             let likely = explain::render_sentence(self.explanations).filter(|_| !first::is_other_scene(self));
             let words: Vec<String> =
@@ -215,7 +215,7 @@ view! {
         /// none.
         shown_steps: Option<Vec<WrongStepView>> = steps::step_views(check),
         /// The reason why judging stopped before the scene's last step; null if all steps were judged.
-        problem: Option<StopView> = check.outcome.stop_of(check.book()).as_ref().map(StopView::from),
+        problem: Option<StopView> = check.outcome.stop_by(check.book()).as_ref().map(StopView::from),
         /// The first damage that the original's reader skips without a message; null if there is none.
         damage: Option<DamageView> = check.outcome.damage.as_ref().map(DamageView::from),
         /// Whether bytes follow the last record.
@@ -298,7 +298,7 @@ impl From<&Stop> for StopView {
                 Self { kind, place: DamageView { step: *step, frame, offset, message } }
             }
             Stop::Step(error) => {
-                let (step, message) = (error.step(), WithoutResult(*error).to_string());
+                let (step, message) = (error.step(), MissingResult(*error).to_string());
                 Self {
                     kind: StopKind::StepWithoutResult,
                     place: DamageView { step, frame: None, offset: None, message },

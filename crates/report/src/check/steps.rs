@@ -123,7 +123,7 @@ impl Steps {
 fn steps_of(check: &Check<'_>) -> (Book, Steps) {
     let of = |book| (book, check.steps.findings_of(book, check.outcome.findings_by(book)));
     let official = of(check.book());
-    if official.1.numbers.is_empty() && official.1.kept.is_empty() && check.rules.ask_fair() {
+    if official.1.numbers.is_empty() && official.1.kept.is_empty() && check.rules.includes_fair() {
         return of(Book::Fair);
     }
     official
@@ -174,7 +174,7 @@ fn describe_right(check: &Check<'_>, step: u32) -> String {
     let outcome = check.outcome;
     let sound = outcome.steps_judged - outcome.damaged_steps;
     match step {
-        0 if check.rules.ask_fair() => "First record: nothing is wrong".to_owned(),
+        0 if check.rules.includes_fair() => "First record: nothing is wrong".to_owned(),
         0 => "First record: only the fair rules check it".to_owned(),
         _ if step <= sound => format!("Step {step} of {}: nothing is wrong", outcome.steps),
         _ if step <= outcome.steps_judged => {

@@ -12,7 +12,7 @@ use super::{
     first::{find_first, is_other_scene},
     follows, steps,
 };
-use fosssim_judge::{Book, BookFindings, Outcome, Overall, ReadFailure, Ruling, Stop, WithoutResult};
+use fosssim_judge::{Book, BookFindings, MissingResult, Outcome, Overall, ReadFailure, Ruling, Stop};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_model::sim::StepError;
 use std::{fmt::Display, iter};
@@ -34,7 +34,7 @@ pub(super) fn render(check: &Check<'_>, style: Style) -> String {
     if check.is_not_a_trace() {
         return parts.concat();
     }
-    parts.extend(outcome.stop_of(check.book()).map(|stop| {
+    parts.extend(outcome.stop_by(check.book()).map(|stop| {
         let (place, message, advice) = describe_problem(&stop, outcome);
         let lines: String = iter::once(&*message).chain(advice).map(|line| format!("  {line}\n")).collect();
         format!("{} {place}\n{lines}", style.paint(Look::Strong, "Stopped at"))
@@ -124,8 +124,8 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
             share::describe_wrong(outcome.parity.findings.wrong_steps, outcome.steps, count) + &first
         }
         Overall::None => {
-            let judged = count(u64::from(outcome.judged_by(Book::Parity)));
-            let end = match &outcome.stop_of(Book::Parity) {
+            let judged = count(u64::from(outcome.steps_judged_by(Book::Parity)));
+            let end = match &outcome.stop_by(Book::Parity) {
                 Some(stop) if is_limit(stop) => "a limit of this program ended judging",
                 Some(Stop::Step(_)) => "the original would not terminate",
                 _ => "the trace could not be read further",
@@ -207,7 +207,7 @@ pub(crate) fn describe_problem(stop: &Stop, outcome: &Outcome) -> (String, Strin
             (place, what.to_string(), advice)
         }
         Stop::Step(error) => {
-            let (step, message) = (error.step(), WithoutResult(*error).to_string());
+            let (step, message) = (error.step(), MissingResult(*error).to_string());
             let advice = if is_limit(stop) { LIMIT_ADVICE } else { NO_RESULT };
             (format!("step {step} of {}", outcome.steps), message, advice)
         }

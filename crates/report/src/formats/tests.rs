@@ -5,11 +5,11 @@ use crate::page::{Audience, GradePage};
 use fosssim_grading::{
     Grade, Reason, SkippedEntry, Verdict,
     config::Visibility,
-    located::{Content, FailureKind, LocatedFailure},
+    failure_cause::{Content, FailureKind, LocatedFailure},
     result::{ProgramProgress, RunEnd, WrongTrace},
 };
 use fosssim_judge::{FindingKind, fair::Cause};
-use fosssim_mistakes::diagnose::{About, Explanation};
+use fosssim_mistakes::diagnose::{Explanation, ExplanationTopic};
 use fosssim_mistakes::together::reconcile_explanations;
 use fosssim_testing::{Need, skip};
 use std::{path::Path, slice, time::Duration};
@@ -71,7 +71,7 @@ fn json_follows_its_schema() {
 
 #[test]
 fn who_is_passed_over_is_told_of_a_class_in_every_format_and_once() {
-    let entry = |name: &str, why: &str| SkippedEntry { name: name.to_owned(), why: why.to_owned() };
+    let entry = |name: &str, why: &str| SkippedEntry { name: name.to_owned(), reason: why.to_owned() };
     let passed_over = [entry(".hidden", "its name begins with a dot"), entry("=a|b,<c>::d", "it is a link")];
     for format in Format::ALL.iter().filter(|format| format.takes_several()) {
         let document = format.render_class(&all(), &passed_over);
@@ -191,7 +191,7 @@ fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
     let named = |key: &str, same_as: &[&str]| Explanation {
         key: key.to_owned(),
         same_as: same_as.iter().map(|&key| key.to_owned()).collect(),
-        about: About::Mistake,
+        topic: ExplanationTopic::Mistake,
         reproduced: 4,
         samples: 4,
         ..crate::explain::tests::explanations().swap_remove(1)
@@ -227,12 +227,12 @@ fn what_failing_scenes_have_in_common_is_told_in_every_format() {
     grade.groups[0].scenes[0].result.verdict = Verdict::RuntimeError;
     grade.groups[1].visibility = Visibility::Visible;
     grade.verdict = Verdict::RuntimeError;
-    grade.located = Some(LocatedFailure {
-        failing: FailureKind::Crash,
+    grade.located_failure = Some(LocatedFailure {
+        failure: FailureKind::Crash,
         contents: vec![Content { family: "the failsafe moves a zone".into(), value: None }],
         failed: 24,
-        with: 24,
-        without: 61,
+        scenes_with_contents: 24,
+        scenes_without_contents: 61,
         first: "Detection/a".to_owned(),
         step: 14,
     });
@@ -318,15 +318,15 @@ fn with_hidden_groups_students_are_told_nothing_that_a_program_chose() {
         for scene in visible {
             let result = &mut scene.result;
             result.ended = Some(RunEnd::Exited(choice.cast_signed()));
-            result.differs = (choice == 1).then_some(Cause::AbsoluteCoefficients);
+            result.difference_cause = (choice == 1).then_some(Cause::AbsoluteCoefficients);
             result.right_steps = choice;
             (result.measured.cpu, result.measured.wall) =
                 (Duration::from_secs(choice.into()), Duration::from_secs(choice.into()));
             result.measured.memory = Some(u64::from(choice) << 20);
             (result.stdout, result.stderr) = (format!("choice {choice}"), format!("choice {choice}"));
             result.card = Some(format!("choice {choice}"));
-            scene.settled = crate::explain::tests::explanations();
-            scene.settled.truncate(choice as usize);
+            scene.corrected_explanations = crate::explain::tests::explanations();
+            scene.corrected_explanations.truncate(choice as usize);
         }
         grade.verdict = Verdict::RuntimeError;
         (grade.groups[0].verdict, grade.wall) = (Verdict::RuntimeError, Duration::from_secs(choice.into()));

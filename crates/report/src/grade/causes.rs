@@ -23,8 +23,8 @@ pub fn by_cause(grade: &Grade) -> Vec<AlikeScenes<'_>> {
     causes.sort_by_key(|(place, scenes)| {
         let first = scenes[0];
         let is_right = first.verdict.is_accepted();
-        let is_left_out = matches!(first.reason, Reason::LeftOut(_));
-        (is_right, is_left_out, rank(&likely, &first.settled), Reverse(scenes.len()), *place)
+        let is_left_out = matches!(first.reason, Reason::Skipped(_));
+        (is_right, is_left_out, rank(&likely, &first.corrected_explanations), Reverse(scenes.len()), *place)
     });
     for (_, scenes) in &mut causes {
         let best = (0..scenes.len()).min_by_key(|&place| clarity_rank(scenes[place])).unwrap_or(0);
@@ -52,19 +52,19 @@ pub(crate) fn rank(likely: &[Explanation], own: &[Explanation]) -> usize {
 /// steps.
 fn clarity_rank(scene: &SceneGrade) -> (bool, usize, usize, u64, u32) {
     let found = scene.disclosure.as_ref().map_or(0, |all| all.official().counts.total());
-    (scene.differs.is_some(), scene.settled.len(), scene.explanations.len(), found, scene.steps)
+    (scene.difference_cause.is_some(), scene.corrected_explanations.len(), scene.explanations.len(), found, scene.steps)
 }
 
 /// Returns whether the report describes the scene: it is not accepted, or the rule books differ.
 pub(crate) fn is_listed(scene: &SceneGrade) -> bool {
-    scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.differs.is_some())
+    scene.verdict != Verdict::NotRun && (!scene.verdict.is_accepted() || scene.difference_cause.is_some())
 }
 
 /// Returns texts that are equal for scenes whose verdicts have the same cause: the end of the program, its likely
 /// mistakes, the kind of the first finding, or the summary without numbers. Scenes that the rule books judge
 /// differently have a cause of their own.
 fn describe_cause(scene: &SceneGrade) -> Vec<String> {
-    if scene.verdict.is_accepted() || scene.differs.is_some() {
+    if scene.verdict.is_accepted() || scene.difference_cause.is_some() {
         return vec![scene.scene.clone()];
     }
     if !matches!(scene.verdict, Verdict::WrongAnswer | Verdict::BadTrace) {
@@ -72,8 +72,8 @@ fn describe_cause(scene: &SceneGrade) -> Vec<String> {
         let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::list_details(scene) };
         return std::iter::once(words::describe_ending(scene)).chain(details).collect();
     }
-    if !scene.settled.is_empty() {
-        return scene.settled.iter().map(words::explanation::describe).collect();
+    if !scene.corrected_explanations.is_empty() {
+        return scene.corrected_explanations.iter().map(words::explanation::describe).collect();
     }
     let first = scene.disclosure.as_ref().and_then(|all| all.official().first_divergence.as_ref());
     let kind = first.map(|first| format!("{:?}", first.kind()));

@@ -14,7 +14,7 @@ pub(crate) fn lines(grade: &Grade) -> Vec<(Look, String)> {
     let both = |(scene, then): &(&SceneGrade, Verdict)| {
         format!("{} ({}, was {})", scene.scene, scene.verdict.code(), then.code())
     };
-    let Changes { right, broke, others, .. } = &changes;
+    let Changes { newly_right: right, newly_wrong: broke, other_changes: others, .. } = &changes;
     let kinds: [(Look, &str, Vec<String>); 3] = [
         (Look::Good, "became right", right.iter().map(name).collect()),
         (Look::Bad, "broke", broke.iter().map(now).collect()),
@@ -54,7 +54,7 @@ mod tests {
         let mut now = samples::accepted_grade();
         now.groups[0].points = Some(5.0);
         now.groups[0].scenes[0].result.verdict = Verdict::WrongAnswer;
-        (now.points, now.before) = (Some(15.0), Some((&then).into()));
+        (now.points, now.earlier_grade) = (Some(15.0), Some((&then).into()));
         let words = |grade: &Grade| lines(grade).into_iter().map(|(_, line)| line).collect::<Vec<_>>();
         let expected =
             ["10 points before, 15 now", "1 scene became right: Impulses/a", "1 scene broke: Detection/a (WA)"];

@@ -108,7 +108,7 @@ impl ClassFigures {
         };
         let change = |grade: &Grade| Some(grade.points?.total_cmp(&grade.changes()?.points?));
         let changed = |wanted: Ordering| grades.iter().filter(|grade| change(grade) == Some(wanted)).count();
-        let is_compared = grades.iter().any(|grade| grade.before.is_some());
+        let is_compared = grades.iter().any(|grade| grade.earlier_grade.is_some());
         Self {
             submissions: grades.len(),
             ran: ran().count(),

@@ -24,8 +24,12 @@ pub(crate) fn render_scenes(grades: &[Grade], passed_over: &[SkippedEntry]) -> S
                     format!("{:.3}", scene.measured.cpu.as_secs_f64()),
                     format!("{:.3}", scene.measured.wall.as_secs_f64()),
                     escape_formula(&words::summarize(scene)),
-                    scene.differs.map(|cause| to_key(&cause)).unwrap_or_default(),
-                    scene.settled.first().map(|likeliest| escape_formula(&likeliest.key)).unwrap_or_default(),
+                    scene.difference_cause.map(|cause| to_key(&cause)).unwrap_or_default(),
+                    scene
+                        .corrected_explanations
+                        .first()
+                        .map(|likeliest| escape_formula(&likeliest.key))
+                        .unwrap_or_default(),
                 ]
             })
         })
@@ -53,7 +57,7 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> Str
     let rows = grades.iter().map(|grade| {
         let mistakes =
             find_likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
-        let mistakes: Vec<String> = grade.located.iter().map(words::describe_located).chain(mistakes).collect();
+        let mistakes: Vec<String> = grade.located_failure.iter().map(words::describe_located).chain(mistakes).collect();
         let mut row = vec![
             escape_formula(&grade.submission),
             grade.verdict.name().to_owned(),
@@ -62,7 +66,7 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> Str
             grade.scenes().filter(|scene| scene.verdict.is_accepted()).count().to_string(),
             grade.scenes().count().to_string(),
             format!("{:.3}", grade.wall.as_secs_f64()),
-            grade.differing().to_string(),
+            grade.count_differing().to_string(),
             escape_formula(&mistakes.join(" ")),
             escape_formula(&no_points(grade).or_else(|| words::describe_reason(grade)).unwrap_or_default()),
             escape_formula(&grade.same_program.join(", ")),
@@ -87,7 +91,7 @@ fn empty_rows(passed_over: &[SkippedEntry], head: &[String], reasons: &str) -> V
     let cell = |entry: &SkippedEntry, column: &str| match column {
         "submission" => escape_formula(&entry.name),
         "verdict" => NOT_GRADED.to_owned(),
-        column if column == reasons => escape_formula(&entry.why),
+        column if column == reasons => escape_formula(&entry.reason),
         _ => String::new(),
     };
     // A group may have the same name as another column.

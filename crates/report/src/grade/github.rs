@@ -32,12 +32,13 @@ pub(crate) fn render_annotations(grades: &[Grade]) -> String {
             let title = format!("{}: {}, {}", grade.submission, grade.verdict, format_score(grade));
             text += &join_annotation("error", &title, head.iter().map(String::as_str));
         }
-        let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted() && grade.unfit().is_none());
+        let wrong = grade.scenes().filter(|scene| !scene.verdict.is_accepted() && grade.submission_fault().is_none());
         for scene in wrong {
             let level = if scene.verdict == Verdict::NotRun { "warning" } else { "error" };
             let title = format!("{}: {} {}", grade.submission, scene.scene, scene.verdict);
-            let words: Vec<String> =
-                std::iter::once(words::summarize(scene)).chain(explain::render_sentence(&scene.settled)).collect();
+            let words: Vec<String> = std::iter::once(words::summarize(scene))
+                .chain(explain::render_sentence(&scene.corrected_explanations))
+                .collect();
             text += &render_annotation(level, &title, &words.join("; "));
         }
         for scene in grade.scenes() {
@@ -51,7 +52,7 @@ pub(crate) fn render_annotations(grades: &[Grade]) -> String {
 /// Renders one warning for each skipped entry.
 pub(crate) fn passed_over(entries: &[SkippedEntry]) -> String {
     let warning =
-        |entry: &SkippedEntry| render_annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.why);
+        |entry: &SkippedEntry| render_annotation("warning", &format!("{}: {NOT_GRADED}", entry.name), &entry.reason);
     entries.iter().map(warning).collect()
 }
 
@@ -60,7 +61,7 @@ pub(crate) fn list_of_passed_over(entries: &[SkippedEntry]) -> String {
     if entries.is_empty() {
         return String::new();
     }
-    let item = |entry: &SkippedEntry| format!("- {}: {}\n", escape_cell(&entry.name), escape_cell(&entry.why));
+    let item = |entry: &SkippedEntry| format!("- {}: {}\n", escape_cell(&entry.name), escape_cell(&entry.reason));
     format!("### Not graded\n\n{}\n", entries.iter().map(item).collect::<String>())
 }
 
@@ -86,7 +87,7 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
             let _ = writeln!(text, "**Warning:** {}\n", escape_cell(warning));
         }
         if let Some(build) = grade.failed_build() {
-            if grade.unfit().is_none() {
+            if grade.submission_fault().is_none() {
                 let _ = writeln!(text, "{}\n", escape_cell(&words::build(&build.end)));
             }
             for line in clean_output(&build.output).lines().take(40) {
@@ -94,7 +95,7 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
             }
             text.push('\n');
         }
-        if grade.unfit().is_some() {
+        if grade.submission_fault().is_some() {
             continue;
         }
         let _ = writeln!(text, "| scenes | verdict | points | reason |\n|---|---|---:|---|");
@@ -103,7 +104,7 @@ pub(crate) fn render_summary(grades: &[Grade]) -> String {
             let names: Vec<&str> = alike.iter().map(|scene| scene.scene.as_str()).collect();
             let scene = alike[0];
             let words: Vec<String> = std::iter::once(words::summarize(scene))
-                .chain(explain::render_sentence(&scene.settled))
+                .chain(explain::render_sentence(&scene.corrected_explanations))
                 .chain(describe_difference(scene))
                 .map(|words| escape_cell(&words))
                 .collect();

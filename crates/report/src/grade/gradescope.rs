@@ -60,7 +60,7 @@ pub(crate) fn render(grade: &Grade) -> String {
                 status: if scene.verdict.is_accepted() { "passed" } else { "failed" },
                 name: format!("{} ({})", strip_control_characters(&scene.scene), strip_control_characters(&group.name)),
                 number: format!("{}.{}", g + 1, s + 1),
-                output: match grade.unfit() {
+                output: match grade.submission_fault() {
                     Some(_) => format!("{}: {}", scene.verdict, see_above(scene)),
                     // Only staff see this test, so it may show everything.
                     None if tells_all || group.visibility == Visibility::Hidden => describe_scene(scene),
@@ -127,7 +127,7 @@ fn describe_grade(grade: &Grade) -> String {
         lines.push(format!("{}\n{}", strip_control_characters(&words::build(&build.end)), clean_output(&build.output)));
     } else {
         // A fault of the whole upload does not reveal anything about hidden scenes.
-        let shown = if grade.unfit().is_some() { Cow::Borrowed(grade) } else { immediate_grade(grade) };
+        let shown = if grade.submission_fault().is_some() { Cow::Borrowed(grade) } else { immediate_grade(grade) };
         lines.extend(head_lines(&shown).iter().map(|line| strip_control_characters(line)));
     }
     lines.extend(grade.warnings.iter().map(|warning| format!("Warning: {}", strip_control_characters(warning))));
@@ -137,7 +137,7 @@ fn describe_grade(grade: &Grade) -> String {
 /// Returns the message to a student whose grading was stopped at the platform's time limit. It names the scenes that
 /// used most of the time.
 fn describe_timeout(grade: &Grade) -> String {
-    let missing = grade.count(Verdict::NotRun);
+    let missing = grade.count_verdict(Verdict::NotRun);
     let mut text = format!(
         "Grading was stopped at its time limit. {missing} of {} have no result, so there is no score yet.",
         format_count(grade.scenes().count() as u64, "scene")
@@ -165,7 +165,9 @@ fn describe_scene(scene: &SceneGrade) -> String {
     let mut lines = vec![format!("{}: {}", scene.verdict, strip_control_characters(&words::summarize(scene)))];
     lines.extend(describe_difference(scene));
     lines.extend(words::list_details(scene).iter().map(|detail| strip_control_characters(detail)));
-    lines.extend(explain::lines(&scene.settled, Style::Plain).iter().map(|line| strip_control_characters(line)));
+    lines.extend(
+        explain::lines(&scene.corrected_explanations, Style::Plain).iter().map(|line| strip_control_characters(line)),
+    );
     if scene.verdict >= Verdict::NoOutput && !scene.stderr.is_empty() {
         lines.push(format!("The program's standard error:\n{}", clean_output(&scene.stderr)));
     }

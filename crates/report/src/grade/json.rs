@@ -11,7 +11,7 @@ use fosssim_findings::Verdict;
 use fosssim_findings::{
     Book, Build, CourseNote, Grade, GroupGrade, Rules, SceneGrade, SkippedEntry, Visibility,
     changes::Changes,
-    located::LocatedFailure,
+    located_failure::LocatedFailure,
     speed::{SpeedGrade, SpeedRatio, SpeedSource},
 };
 use fosssim_mistakes::together::{find_likely_mistake, find_likely_mistakes, mistake_points};
@@ -78,7 +78,7 @@ view! {
         build: Option<BuildView> = grade.build.as_ref().map(BuildView::from),
         /// The common contents of the scenes in which the program crashes or exceeds a limit; null if there are no such
         /// scenes.
-        located: Option<LocatedView> = grade.located.as_ref().map(LocatedView::from),
+        located: Option<LocatedView> = grade.located_failure.as_ref().map(LocatedView::from),
         /// The mistake that explains most of the wrong scenes; null if fewer than two scenes have explanations.
         likely_mistake: Option<ExplanationView> = find_likely_mistake(grade).as_ref().map(ExplanationView::from),
         /// Up to three mistakes that together explain the wrong scenes, the most frequent first.
@@ -96,7 +96,7 @@ view! {
         #[serde(skip_serializing_if = "BTreeMap::is_empty")]
         notes: BTreeMap<String, CourseNote> = find_likely_mistakes(grade)
             .iter()
-            .filter_map(|(mistake, _)| Some((mistake.key.clone(), grade.note(mistake)?.clone())))
+            .filter_map(|(mistake, _)| Some((mistake.key.clone(), grade.course_note(mistake)?.clone())))
             .collect(),
         /// The names of other submissions with an identical program, at most 20; left out if there are none.
         #[serde(skip_serializing_if = "Vec::is_empty")]
@@ -118,11 +118,12 @@ view! {
         /// The maximum number of points in the earlier grading.
         max_points: f64 = changes.max_points,
         /// The scenes that were not accepted before and are now.
-        right: Vec<String> = changes.right.iter().map(|scene| strip_control_characters(&scene.scene)).collect(),
+        right: Vec<String> = changes.newly_right.iter().map(|scene| strip_control_characters(&scene.scene)).collect(),
         /// The scenes that were accepted before and are not now.
-        broke: Vec<String> = changes.broke.iter().map(|scene| strip_control_characters(&scene.scene)).collect(),
+        broke: Vec<String> = changes.newly_wrong.iter().map(|scene| strip_control_characters(&scene.scene)).collect(),
         /// The scenes that were not accepted before and are not now, with a different verdict.
-        others: Vec<String> = changes.others.iter().map(|(scene, _)| strip_control_characters(&scene.scene)).collect(),
+        others: Vec<String> =
+            changes.other_changes.iter().map(|(scene, _)| strip_control_characters(&scene.scene)).collect(),
     }
 }
 
@@ -135,9 +136,9 @@ view! {
         /// The number of scenes in which the program fails.
         failed: usize = found.failed,
         /// The number of failing scenes that contain it.
-        with: usize = found.with,
+        with: usize = found.scenes_with_contents,
         /// The number of scenes that contain it and in which the program does not fail.
-        without: usize = found.without,
+        without: usize = found.scenes_without_contents,
         /// The first scene in which the program fails.
         first_scene: String = strip_control_characters(&found.first),
         /// The last step of `first_scene` that is complete in the trace.
@@ -231,11 +232,11 @@ view! {
         /// The reason for the verdict, in one line.
         summary: String = strip_control_characters(&words::summarize(scene)),
         /// The reason why the two rule books judge the scene differently; null if they agree.
-        difference: Option<CauseView> = scene.differs.as_ref().map(CauseView::from),
+        difference: Option<CauseView> = scene.difference_cause.as_ref().map(CauseView::from),
         /// The place of the first difference, and the number of findings of each kind, if the hints allow it.
         details: Vec<String> = words::list_details(scene).iter().map(|line| strip_control_characters(line)).collect(),
         /// The likely mistakes, the likeliest first, if the hints allow it.
-        explanations: Vec<ExplanationView> = scene.settled.iter().map(ExplanationView::from).collect(),
+        explanations: Vec<ExplanationView> = scene.corrected_explanations.iter().map(ExplanationView::from).collect(),
         /// The points that the submission gets for the scene; null if the grader failed or did not run it.
         #[schemars(range(min = 0.0))]
         points: Option<f64> = scene.points,
@@ -271,7 +272,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
 }
 
 fn with_plain_words(entry: &SkippedEntry) -> SkippedEntry {
-    SkippedEntry { name: strip_control_characters(&entry.name), why: strip_control_characters(&entry.why) }
+    SkippedEntry { name: strip_control_characters(&entry.name), reason: strip_control_characters(&entry.reason) }
 }
 
 /// Renders one line of JSON per grade, and one per skipped entry.
@@ -279,7 +280,7 @@ fn with_plain_words(entry: &SkippedEntry) -> SkippedEntry {
 pub fn lines(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     let grades = grades.iter().map(|grade| serde_json::to_string(&GradeView::from(grade)));
     let passed_over = passed_over.iter().map(|entry| {
-        let SkippedEntry { name, why } = with_plain_words(entry);
+        let SkippedEntry { name, reason: why } = with_plain_words(entry);
         let line = serde_json::json!({ "submission": name, "verdict": NOT_GRADED, "points": null, "reason": why });
         serde_json::to_string(&line)
     });

@@ -25,7 +25,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
                     strip_control_characters(warning),
                 ));
             }
-            for (number, line) in head_lines(grade).iter().enumerate().filter(|_| grade.unfit().is_none()) {
+            for (number, line) in head_lines(grade).iter().enumerate().filter(|_| grade.submission_fault().is_none()) {
                 suite.add_property(quick_junit::Property::new(
                     format!("likely_mistake.{number}"),
                     strip_control_characters(line),
@@ -44,7 +44,7 @@ pub(crate) fn render(grades: &[Grade], passed_over: &[SkippedEntry]) -> String {
     }
     if !passed_over.is_empty() {
         let mut suite = TestSuite::new(NOT_GRADED);
-        for SkippedEntry { name, why } in passed_over {
+        for SkippedEntry { name, reason: why } in passed_over {
             let mut status = TestCaseStatus::skipped();
             status.set_message(strip_control_characters(why));
             suite.add_test_case(TestCase::new(strip_control_characters(name), status));
@@ -73,14 +73,14 @@ fn test_case(grade: &Grade, scene: &SceneGrade) -> TestCase {
     let status = match scene.verdict {
         Verdict::Accepted => TestCaseStatus::success(),
         Verdict::NotRun => TestCaseStatus::skipped(),
-        _ if grade.unfit().is_some() => TestCaseStatus::skipped(),
+        _ if grade.submission_fault().is_some() => TestCaseStatus::skipped(),
         verdict => {
             let kind = if verdict == Verdict::JudgeError { NonSuccessKind::Error } else { NonSuccessKind::Failure };
             let mut status = TestCaseStatus::non_success(kind);
             status.set_type(verdict.name());
             status.set_message(strip_control_characters(&words::summarize(scene)));
             let mut description = words::list_details(scene);
-            description.extend(explain::lines(&scene.settled, Style::Plain));
+            description.extend(explain::lines(&scene.corrected_explanations, Style::Plain));
             if let Some(build) = grade.failed_build() {
                 description.extend([words::build(&build.end), clean_output(&build.output)]);
             }

@@ -11,7 +11,7 @@ use fosssim_findings::{Grade, SkippedEntry};
 /// skipped entries.
 pub fn add_warnings(grades: &mut [Grade], passed_over: &[SkippedEntry]) {
     if let [grade] = grades {
-        let words = |entry: &SkippedEntry| format!("skipped {}: {}", entry.name, entry.why);
+        let words = |entry: &SkippedEntry| format!("skipped {}: {}", entry.name, entry.reason);
         grade.warnings.extend(passed_over.iter().map(words));
     }
 }
@@ -23,7 +23,7 @@ pub fn not_graded(grades: &[Grade], passed_over: &[SkippedEntry], style: Style) 
         return String::new();
     }
     let mut table = Table::new([Align::Left, Align::Left]);
-    for SkippedEntry { name, why } in passed_over {
+    for SkippedEntry { name, reason: why } in passed_over {
         table.row([shorten_name(&one_line(name)).into(), one_line(why).into()]);
     }
     format!("{}\n{}", style.paint(Look::Strong, "Not graded"), table.render(style))

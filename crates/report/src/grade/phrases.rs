@@ -24,7 +24,7 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
         let worth = describe_worth(grade, &mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
         format!("{}: {what} (explains {explained} of {wrong}{worth})", std::mem::replace(&mut rank, "also likely"))
     };
-    let located = grade.located.as_ref().map(words::describe_located);
+    let located = grade.located_failure.as_ref().map(words::describe_located);
     located.into_iter().chain(find_likely_mistakes(grade).into_iter().map(line)).collect()
 }
 
@@ -37,7 +37,7 @@ pub(crate) fn describe_worth(grade: &Grade, mistake: &Explanation) -> Option<Str
 
 /// Returns the course's note on a mistake, in a form that follows the report's sentence; empty if there is no note.
 pub(crate) fn describe_note(grade: &Grade, mistake: &Explanation) -> String {
-    grade.note(mistake).map(|note| format!(" (The course: {note})")).unwrap_or_default()
+    grade.course_note(mistake).map(|note| format!(" (The course: {note})")).unwrap_or_default()
 }
 
 /// Returns how many scenes were to be explained, such as `12 wrong scenes`.
@@ -57,8 +57,8 @@ pub(super) const fn see_above(scene: &SceneGrade) -> &'static str {
 /// Returns a sentence about a scene that the two rule books judge differently; `None` if they agree.
 #[must_use]
 pub fn describe_difference(scene: &SceneGrade) -> Option<String> {
-    scene.differs.map(|cause| {
-        let verdicts = if cause.original_fails() {
+    scene.difference_cause.map(|cause| {
+        let verdicts = if cause.is_original_too_strict() {
             "the original rejects it, but the fair rules accept it"
         } else {
             "the original accepts it, but the fair rules reject it"
@@ -102,7 +102,7 @@ pub fn no_points(grade: &Grade) -> Option<String> {
     } else if grade.is_our_fault() {
         Some("no points: the grader failed, which is not the submission's fault".to_owned())
     } else {
-        let (missing, all) = (grade.count(Verdict::NotRun), grade.scenes().count());
+        let (missing, all) = (grade.count_verdict(Verdict::NotRun), grade.scenes().count());
         if missing == 0 {
             return Some("no points yet: the time of the program could not be measured".to_owned());
         }

@@ -58,7 +58,11 @@ pub(crate) fn render(grade: &Grade) -> String {
             description: scene.verdict.name().to_owned(),
             points: scene.points,
             max_points: scene.max_points,
-            message: if grade.unfit().is_some() { see_above(scene).to_owned() } else { cut(&words::summarize(scene)) },
+            message: if grade.submission_fault().is_some() {
+                see_above(scene).to_owned()
+            } else {
+                cut(&words::summarize(scene))
+            },
             output: cut(&describe_scene(scene)),
         })
         .chain(shown.groups.iter().filter_map(|group| Some((group, group.speed.as_ref()?))).map(|(group, speed)| {
@@ -77,7 +81,7 @@ pub(crate) fn render(grade: &Grade) -> String {
     // A fault of the whole upload applies to all groups.
     let head = match build {
         Some(_) => Vec::new(),
-        None if grade.unfit().is_some() => head_lines(grade),
+        None if grade.submission_fault().is_some() => head_lines(grade),
         None => head_lines(&shown),
     };
     let is_gradable = grade.points.is_some() && grade.verdict != Verdict::Unusable;
@@ -126,7 +130,7 @@ pub(crate) fn render(grade: &Grade) -> String {
 fn describe_scene(scene: &SceneGrade) -> String {
     let mut lines: Vec<String> = describe_difference(scene).into_iter().collect();
     lines.extend(words::list_details(scene));
-    lines.extend(explain::lines(&scene.settled, Style::Plain));
+    lines.extend(explain::lines(&scene.corrected_explanations, Style::Plain));
     lines.join("\n")
 }
 

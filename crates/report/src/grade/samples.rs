@@ -1,5 +1,5 @@
 //! Grades for tests: an accepted one, and others with every kind of fault and with hostile text.
-use fosssim_findings::{FindingPlace, smallest::SmallestScene};
+use fosssim_findings::{FindingPlace, smallest_scene::SmallestScene};
 use fosssim_grading::{
     Build, Grade, GroupGrade, Reason, SceneResult, Verdict,
     config::{Credit, Hints, Marking, Visibility},
@@ -8,7 +8,7 @@ use fosssim_grading::{
     score,
 };
 use fosssim_judge::{Book, FindingCounts, FindingKind, PolynomialPlace, Role, Rules, Ruling, fair::Cause};
-use fosssim_mistakes::diagnose::{About, Explanation};
+use fosssim_mistakes::diagnose::{Explanation, ExplanationTopic};
 use fosssim_mistakes::together::reconcile_explanations;
 use fosssim_model::sim::{Pair, PairKind, Pass, Stage};
 use std::{collections::BTreeMap, time::Duration};
@@ -35,7 +35,7 @@ fn group(name: &str, visibility: Visibility, scenes: Vec<SceneResult>) -> GroupG
     let scenes = scenes.into_iter().map(|scene| (scene, false)).collect();
     score::grade_group(
         name,
-        Marking { points: 10.0, credit: Credit::Scenes, visibility, hints: Hints::Full, extra: false, speed: None },
+        Marking { points: 10.0, credit: Credit::Scenes, visibility, hints: Hints::Full, is_extra: false, speed: None },
         scenes,
     )
 }
@@ -49,12 +49,12 @@ fn grade(submission: &str, groups: Vec<GroupGrade>) -> Grade {
         verdict,
         points: groups.iter().map(|group| group.points).sum(),
         max_points: groups.iter().map(|group| group.max_points).sum(),
-        refuted: Vec::new(),
-        looks_like: None,
-        located: None,
+        refuted_keys: Vec::new(),
+        inferred_milestone: None,
+        located_failure: None,
         program: None,
         same_program: Vec::new(),
-        before: None,
+        earlier_grade: None,
         smallest: Vec::new(),
         notes: BTreeMap::new(),
         shows_output: groups.iter().all(|group| group.visibility == Visibility::Visible),
@@ -85,7 +85,7 @@ pub(crate) fn accepted_grade() -> Grade {
 pub(crate) fn failing_grade() -> Grade {
     let mut wrong =
         scene("Detection/a", Verdict::WrongAnswer, "40 of 100 steps are wrong, first step 3: wrong coefficient");
-    wrong.differs = Some(Cause::AbsoluteCoefficients);
+    wrong.difference_cause = Some(Cause::AbsoluteCoefficients);
     wrong.explanations = crate::explain::tests::explanations();
     let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
     let pass = Pass { stage: Stage::Impulses { round: 0 }, index: 0 };
@@ -124,7 +124,7 @@ pub(crate) fn failing_grade() -> Grade {
     );
     grade.warnings = vec!["graded without a sandbox".to_owned()];
     grade.build =
-        Some(Build { end: BuildEnd::Ended(RunEnd::Exited(2)), output: "a.cpp:1: error: \u{1b}[1mno".to_owned() });
+        Some(Build { end: BuildEnd::Failure(RunEnd::Exited(2)), output: "a.cpp:1: error: \u{1b}[1mno".to_owned() });
     grade
 }
 
@@ -161,7 +161,7 @@ pub(crate) fn endless() -> Grade {
     stopped.ended = Some(RunEnd::CpuLimit);
     let left_out = |name| {
         let why = NotRunReason::Limits { scenes: 1, verdict: Verdict::TimeLimit };
-        SceneResult::without_run(name, 100, Verdict::TimeLimit, Reason::LeftOut(why))
+        SceneResult::without_run(name, 100, Verdict::TimeLimit, Reason::Skipped(why))
     };
     let scenes = vec![stopped, left_out("Detection/b"), left_out("Detection/c")];
     grade("eve", vec![group("Detection", Visibility::Visible, scenes)])
@@ -187,7 +187,7 @@ pub(crate) fn fault() -> Grade {
 pub(crate) fn unwritten() -> Grade {
     let empty = |key: &str| Explanation {
         key: key.to_owned(),
-        about: About::Mistake,
+        topic: ExplanationTopic::Mistake,
         reproduced: 4,
         samples: 4,
         ..crate::explain::tests::explanations().swap_remove(1)
@@ -217,7 +217,7 @@ pub(crate) fn smallest(explanations: Vec<Explanation>) -> SmallestScene {
         xml: "<scene>\n</scene>\n".to_owned(),
         bodies: 1,
         steps: 1,
-        again: "fosssim-oracle shrink ./FOSSSim Holistic/first --step 1 --suite t2m2".to_owned(),
+        command: "fosssim-oracle shrink ./FOSSSim Holistic/first --step 1 --suite t2m2".to_owned(),
         runs: 7,
         is_minimal: true,
         explanations,

@@ -7,7 +7,7 @@ use crate::{describe::pair_key, detect::Detect, number::format_g};
 use askama::Template;
 use fosssim_evidence::{CallLog, InspectedCall};
 use fosssim_judge::{
-    PairWords, PassWords, find_differing_powers, find_factor,
+    PairText, PassText, find_differing_powers, find_factor,
     study::{self, Study},
 };
 use fosssim_num::{first_time::positive_set, interval::Interval};
@@ -18,7 +18,7 @@ use fosssim_render::{
 
 /// Renders a detection call below its name. It is unfolded if `open`.
 pub(super) fn html(step: u32, call: &InspectedCall, depth: usize, open: bool) -> String {
-    let (pair, pass) = (PairWords(call.pair), PassWords(call.pass));
+    let (pair, pass) = (PairText(call.pair), PassText(call.pass));
     render_template(&CallContent { step, call, depth, open, pair, pass, key: pair_key(call.pair) })
 }
 
@@ -30,8 +30,8 @@ struct CallContent<'a> {
     call: &'a InspectedCall,
     depth: usize,
     open: bool,
-    pair: PairWords,
-    pass: PassWords,
+    pair: PairText,
+    pass: PassText,
     key: String,
 }
 
@@ -123,7 +123,7 @@ fn own_curves(step: u32, call: &InspectedCall, study: &Study, logged: &[Vec<f64>
     }
     let common = common_intervals(logged);
     let impact = common.iter().map(|set| set.lo).reduce(f64::min);
-    let title = format!("Yours in step {step}: {}", PairWords(call.pair));
+    let title = format!("Yours in step {step}: {}", PairText(call.pair));
     let svg = PolynomialPlot { title: &title, curves: &curves, common: Some(&common), impact }.svg(PlotTarget::Page);
     format!("<figure tabindex=\"0\">{svg}</figure>\n")
 }

@@ -22,7 +22,7 @@ use crate::{
 use askama::Template;
 use fosssim_evidence::{Evidence, Focus, InspectedCall};
 use fosssim_findings::{Finding, FindingDetail, Hints};
-use fosssim_judge::{Book, BookFindings, PairWords, fair::find_cause};
+use fosssim_judge::{Book, BookFindings, PairText, fair::find_cause};
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_num::{
     bounded::UNIT_ROUNDOFF,
@@ -79,7 +79,7 @@ impl Case<'_> {
     /// Describes where and why judging stopped, with advice about what to check.
     fn describe_stop(&self) -> String {
         let outcome = self.check.outcome;
-        let Some(stop) = outcome.stop_of(self.check.rules.official()) else { return String::new() };
+        let Some(stop) = outcome.stop_by(self.check.rules.official()) else { return String::new() };
         let (place, message, advice) = describe_problem(&stop, outcome);
         let advice = advice.map(|advice| format!("<p>{advice}</p>")).unwrap_or_default();
         format!(
@@ -212,16 +212,16 @@ fn subject(finding: &Finding) -> String {
     match &finding.detail {
         FindingDetail::Coefficient { place, .. } | FindingDetail::PolynomialDegree { place, .. } => place.to_string(),
         FindingDetail::WrongNormal { expected, .. } | FindingDetail::ContactTime { expected, .. } => {
-            format!("the contact of {}", PairWords(expected.pair))
+            format!("the contact of {}", PairText(expected.pair))
         }
         FindingDetail::MissedCollision { expected } => {
-            format!("{} collide, but the trace misses it", PairWords(expected.pair))
+            format!("{} collide, but the trace misses it", PairText(expected.pair))
         }
         FindingDetail::Position { particle, .. } if finding.step > 0 => format!("where particle {particle} ends"),
         FindingDetail::Velocity { particle, .. } if finding.step > 0 => {
             format!("the velocity of particle {particle} at the end")
         }
-        _ => finding.what().to_string(),
+        _ => finding.describe().to_string(),
     }
 }
 

@@ -17,7 +17,7 @@ use crate::{
 };
 use askama::Template;
 use fosssim_findings::{
-    CourseNote, Grade, SceneGrade, SkippedEntry, Verdict, explanation::Explanation, smallest::SmallestScene,
+    CourseNote, Grade, SceneGrade, SkippedEntry, Verdict, explanation::Explanation, smallest_scene::SmallestScene,
 };
 use fosssim_mistakes::diagnose::is_named_in;
 use std::collections::BTreeMap;
@@ -51,7 +51,7 @@ impl ClassPage<'_> {
         let content = ClassContent {
             class: self,
             mistakes: find_frequent(self.grades),
-            is_compared: self.grades.iter().any(|grade| grade.before.is_some()),
+            is_compared: self.grades.iter().any(|grade| grade.earlier_grade.is_some()),
         };
         render_document(&format!("Class: {}", suite_name(self.grades)), &render_template(&content), SCRIPT)
     }
@@ -128,7 +128,7 @@ impl ClassContent<'_> {
                 heading: one_line(&what_or(mistake)),
                 members: members.clone(),
                 scene: scene.map(|scene| (one_line(&scene.scene), self.address(first, &scene.scene))),
-                note: first.note(mistake),
+                note: first.course_note(mistake),
                 smallest: smallest
                     .filter(|small| is_named_in(mistake, &small.explanations))
                     .min_by_key(|small| small.size()),
@@ -188,13 +188,13 @@ fn points_before(grade: &Grade) -> Option<f64> {
 
 /// Returns the number of scenes that are accepted.
 fn accepted_of(grade: &Grade) -> usize {
-    grade.count(Verdict::Accepted)
+    grade.count_verdict(Verdict::Accepted)
 }
 
 /// Returns the first likely mistake of a submission, or the reason why it is not accepted.
 fn describe_reason(grade: &Grade) -> String {
     let likely = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
-    let likely: Vec<String> = grade.located.iter().map(words::describe_located).chain(likely).collect();
+    let likely: Vec<String> = grade.located_failure.iter().map(words::describe_located).chain(likely).collect();
     match likely.as_slice() {
         [] => words::describe_reason(grade).unwrap_or_default(),
         [only] => only.clone(),
@@ -206,8 +206,8 @@ fn describe_reason(grade: &Grade) -> String {
 fn disagreements(grades: &[Grade]) -> Vec<(String, Vec<(usize, usize)>)> {
     let mut found: BTreeMap<String, BTreeMap<usize, usize>> = BTreeMap::new();
     for (number, grade) in grades.iter().enumerate() {
-        for cause in grade.scenes().filter_map(|scene| scene.differs) {
-            let verdict = if cause.original_fails() { "rejects" } else { "accepts" };
+        for cause in grade.scenes().filter_map(|scene| scene.difference_cause) {
+            let verdict = if cause.is_original_too_strict() { "rejects" } else { "accepts" };
             let words = format!("The original {verdict} them: {cause}");
             *found.entry(words).or_default().entry(number).or_default() += 1;
         }
@@ -298,7 +298,7 @@ fn render_bars(grades: &[Grade]) -> String {
 mod tests {
     use super::*;
     use crate::grade::samples;
-    use fosssim_findings::smallest::SmallestScene;
+    use fosssim_findings::smallest_scene::SmallestScene;
     use fosssim_grading::{
         GroupGrade, Reason, SceneResult,
         config::{Credit, Hints, Marking, Visibility},
@@ -311,7 +311,7 @@ mod tests {
             credit: Credit::Scenes,
             visibility: Visibility::Visible,
             hints: Hints::Full,
-            extra: false,
+            is_extra: false,
             speed: None,
         };
         let groups: Vec<GroupGrade> = (0..5)

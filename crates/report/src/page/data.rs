@@ -9,7 +9,7 @@ use crate::{
 };
 use fosssim_evidence::{Evidence, InspectedPass, InspectedStep, Track};
 use fosssim_findings::Hints;
-use fosssim_judge::{FindingDetail, PassWords};
+use fosssim_judge::{FindingDetail, PassText};
 use fosssim_model::{
     scene::{self, Scene},
     sim::{Impulse, Pair, State},
@@ -116,7 +116,7 @@ fn state_data(state: &State) -> Vec<f64> {
 
 fn pass_data(up: &InspectedPass) -> Value {
     json!({
-        "name": PassWords(up.pass).to_string(),
+        "name": PassText(up.pass).to_string(),
         "q": up.q_end,
         "calls": up.calls,
         "hits": up.hits.iter().map(contact_data).collect::<Vec<_>>(),

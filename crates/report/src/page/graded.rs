@@ -18,7 +18,7 @@ use crate::{
 };
 use askama::Template;
 use fosssim_findings::{
-    Build, Grade, GroupGrade, SceneGrade, Visibility, located::LocatedFailure, smallest::SmallestScene,
+    Build, Grade, GroupGrade, SceneGrade, Visibility, located_failure::LocatedFailure, smallest_scene::SmallestScene,
 };
 use fosssim_mistakes::diagnose::Explanation;
 use fosssim_mistakes::together::immediate_grade;
@@ -68,7 +68,7 @@ impl GradePage<'_> {
             page: self,
             grade,
             rooms: room::distribute(told.iter().map(|(_, card)| card.as_ref())),
-            has_scenes: grade.unfit().is_none(),
+            has_scenes: grade.submission_fault().is_none(),
             is_accepted: told.iter().all(|(scene, _)| scene.verdict.is_accepted()),
             tells_who,
             columns: if tells_who { 6 } else { 5 },
@@ -160,8 +160,8 @@ pub(super) fn render_located(found: &LocatedFailure) -> String {
 
 /// Describes which rule book gives the verdict.
 fn describe_books(grade: &Grade) -> String {
-    let other = format_count(grade.differing() as u64, "scene");
-    match (grade.rules, grade.differing()) {
+    let other = format_count(grade.count_differing() as u64, "scene");
+    match (grade.rules, grade.count_differing()) {
         (fosssim_judge::Rules::Parity, _) => "by the original's rules".to_owned(),
         (fosssim_judge::Rules::Fair, 0) => "by the fair rules".to_owned(),
         (fosssim_judge::Rules::Both, 0) => "by the original's rules; the fair rules agree".to_owned(),
@@ -206,7 +206,7 @@ impl<'a> Article<'a> {
         // A detail is left out if the card already shows it together with the values.
         let is_shown = room != Room::Words && card.is_some_and(Card::has_values);
         let details = words::list_details(scene).into_iter().skip(usize::from(is_shown));
-        let mistakes = mistakes(&scene.settled, is_shown);
+        let mistakes = mistakes(&scene.corrected_explanations, is_shown);
         let no_room = |what: &str| format!("<p class=\"hint\">This page has no space for {what}.</p>\n");
         let shown = match (card, room) {
             (None, _) => mistakes,

@@ -3,7 +3,7 @@
 use super::{Card, case::mistakes, markup::text, render_template};
 use crate::{smallest::title, words::describe_first};
 use askama::Template;
-use fosssim_findings::smallest::SmallestScene;
+use fosssim_findings::smallest_scene::SmallestScene;
 
 /// Renders a smallest scene, and its card if it has one. `number` counts the smallest scenes of the page from 1.
 pub(super) fn render_article(small: &SmallestScene, card: Option<&Card>, number: usize) -> String {
@@ -26,7 +26,7 @@ struct SmallestContent<'a> {
 
 /// Returns the preformatted parts and their names. The scene itself comes first.
 pub(super) fn parts(small: &SmallestScene) -> Vec<(&'static str, &str)> {
-    let parts = [Some(small.xml.as_str()), small.differs.as_deref(), small.by_hand.as_deref()];
+    let parts = [Some(small.xml.as_str()), small.difference.as_deref(), small.calculation.as_deref()];
     let named = ["The scene", "The values that differ", "By hand"].into_iter().zip(parts);
     named.filter_map(|(name, words)| Some((name, words?))).collect()
 }

@@ -224,7 +224,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     };
     let case = Case { check, scene, evidence: Some(&evidence), what_if: Some(&what_if), hints, has_trace: false };
     let card = Card::for_case(&case, 3).and_then(|card| Card::from_stored(&card.to_stored()));
-    let why = Reason::Wrong(WrongTrace::Untold);
+    let why = Reason::Wrong(WrongTrace::Undisclosed);
     let mut result = SceneResult::without_run("Group/scene", scene.step_count(), Verdict::WrongAnswer, why);
     result.disclosure = Some(Disclosure::from_outcome(&outcome, Rules::Fair));
     result.explanations = all;
@@ -233,7 +233,14 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
 
 /// A group of ten points, of whose scenes students are told this much.
 fn marking(hints: Hints) -> Marking {
-    Marking { points: 10.0, credit: Credit::Scenes, visibility: Visibility::Visible, hints, extra: false, speed: None }
+    Marking {
+        points: 10.0,
+        credit: Credit::Scenes,
+        visibility: Visibility::Visible,
+        hints,
+        is_extra: false,
+        speed: None,
+    }
 }
 
 /// The wrong submission with these results.
@@ -408,7 +415,7 @@ fn a_student_s_page_has_no_hidden_group() {
         credit: Credit::Scenes,
         visibility,
         hints: Hints::Full,
-        extra: false,
+        is_extra: false,
         speed: None,
     };
     let named = |name: &str, group| fosssim_grading::GroupGrade { name: name.to_owned(), ..group };

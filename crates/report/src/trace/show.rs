@@ -5,7 +5,7 @@ use super::super::{
     table::{Align, Table},
     view::{SCHEMA, numbers},
 };
-use fosssim_judge::{PairWords, PassWords, Role};
+use fosssim_judge::{PairText, PassText, Role};
 use fosssim_model::trace::{Frame, PolynomialLabel};
 use fosssim_num::number_format::format_exact;
 use serde_json::{Value, json};
@@ -101,10 +101,10 @@ impl ShownStep<'_> {
                 && pass != Some(label.pass)
             {
                 pass = Some(label.pass);
-                text += &format!("    {}\n", style.paint(Look::Faint, &PassWords(label.pass).to_string()));
+                text += &format!("    {}\n", style.paint(Look::Faint, &PassText(label.pass).to_string()));
             }
             let place = label.map_or_else(String::new, |label| {
-                format!("{}, {}: ", PairWords(label.pair), Role::from_number(label.pair.kind, label.number))
+                format!("{}, {}: ", PairText(label.pair), Role::from_number(label.pair.kind, label.number))
             });
             text += &format!("    {index}  {place}{}\n", format_polynomial(coefficients, format_exact));
         }

@@ -1,5 +1,5 @@
 //! Describes what the scenes in which a program crashes or exceeds a limit have in common.
-use fosssim_findings::located::{Content, LocatedFailure};
+use fosssim_findings::located_failure::{Content, LocatedFailure};
 
 /// The maximum number of further contents that are named if the scenes can't distinguish them from the first one.
 const MAX_NAMED_CONTENTS: usize = 2;
@@ -7,7 +7,15 @@ const MAX_NAMED_CONTENTS: usize = 2;
 /// Describes what the failing scenes have in common, with counts, and how the program ended in the first of them.
 #[must_use]
 pub fn describe_located(found: &LocatedFailure) -> String {
-    let LocatedFailure { failing, contents, failed, with, without, first, step } = found;
+    let LocatedFailure {
+        failure: failing,
+        contents,
+        failed,
+        scenes_with_contents: with,
+        scenes_without_contents: without,
+        first,
+        step,
+    } = found;
     let Some((place, others)) = contents.split_first() else { return String::new() };
     let scenes = format!("{with} scenes {}", describe_place(place));
     let which = if failed == with { format!("All {scenes}") } else { format!("{failed} of the {scenes}") };
@@ -41,7 +49,7 @@ fn describe_place(content: &Content) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use fosssim_findings::located::FailureKind;
+    use fosssim_findings::located_failure::FailureKind;
 
     #[test]
     fn counts_and_ties_are_told() {
@@ -50,14 +58,14 @@ mod tests {
             value: value.map(|words| words.map(Into::into)),
         };
         let found = LocatedFailure {
-            failing: FailureKind::Crash,
+            failure: FailureKind::Crash,
             contents: vec![
                 content("the failsafe moves a zone", None),
                 content("a hybrid step", Some(["zones", "one"])),
             ],
             failed: 24,
-            with: 24,
-            without: 61,
+            scenes_with_contents: 24,
+            scenes_without_contents: 61,
             first: "GeometricTests/chain".to_owned(),
             step: 14,
         };
@@ -68,10 +76,10 @@ mod tests {
              step (zones: one)."
         );
         let some = LocatedFailure {
-            failing: FailureKind::Several,
+            failure: FailureKind::Several,
             contents: vec![content("the failsafe moves a zone", Some(["held by", "a half-plane"]))],
             failed: 7,
-            with: 9,
+            scenes_with_contents: 9,
             step: 0,
             ..found
         };

@@ -52,7 +52,7 @@ fn a_wrong_trace_says_how_many_steps_and_where_first() {
     let steps = |wrong| says(Reason::Wrong(WrongTrace::Steps { wrong, first: 3, kind: FindingKind::Coefficient }));
     assert_eq!(steps(12), "12 of 15 steps are wrong, first step 3: wrong coefficient");
     assert_eq!(steps(1), "1 of 15 steps is wrong, first step 3: wrong coefficient");
-    assert_eq!(says(Reason::Wrong(WrongTrace::Untold)), "the trace is wrong");
+    assert_eq!(says(Reason::Wrong(WrongTrace::Undisclosed)), "the trace is wrong");
     assert_eq!(
         says(Reason::Wrong(WrongTrace::FirstRecord(FindingKind::Position))),
         "the first record is wrong: wrong position"
@@ -62,7 +62,7 @@ fn a_wrong_trace_says_how_many_steps_and_where_first() {
 
 #[test]
 fn details_are_what_is_told_and_nothing_else() {
-    let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(WrongTrace::Untold));
+    let result = SceneResult::without_run("a/b", 15, Verdict::WrongAnswer, Reason::Wrong(WrongTrace::Undisclosed));
     assert_eq!(list_details(&result), [""; 0]);
     let first = DisclosedFinding::Place { step: 4, kind: FindingKind::Position, place: FindingPlace::Particle(2) };
     let objects = DisclosedFinding::Place {

@@ -142,7 +142,7 @@ impl AllowedPlaces {
         self.0.push((opened.into(), access));
     }
 
-    /// Adds a place as [`Places::add`] does, but leaves out the grader's own files below the path.
+    /// Adds a place as [`AllowedPlaces::add`] does, but leaves out the grader's own files below the path.
     fn add_around(&mut self, path: &Path, access: BitFlags<AccessFs>, own: &[PathBuf]) {
         for allowed in own_files::allow_all_except(path, own) {
             match allowed {

@@ -3,30 +3,30 @@
 use std::{fmt::Write, sync::OnceLock};
 
 /// A scene that is generated when it is needed.
-pub struct MadeScene {
+pub struct GeneratedScene {
     /// The name of the scene, in the same form as for embedded scenes.
     pub name: &'static str,
-    make: fn() -> String,
+    generate: fn() -> String,
     text: OnceLock<String>,
 }
 
 /// All timing scenes, in alphabetical order.
-pub static TIMING_SCENES: [MadeScene; 2] = [
-    MadeScene { name: "TimingTests/box-of-balls", make: box_of_balls, text: OnceLock::new() },
-    MadeScene { name: "TimingTests/pile-of-ribbons", make: pile_of_ribbons, text: OnceLock::new() },
+pub static TIMING_SCENES: [GeneratedScene; 2] = [
+    GeneratedScene { name: "TimingTests/box-of-balls", generate: box_of_balls, text: OnceLock::new() },
+    GeneratedScene { name: "TimingTests/pile-of-ribbons", generate: pile_of_ribbons, text: OnceLock::new() },
 ];
 
-impl MadeScene {
+impl GeneratedScene {
     /// Returns the content of the scene's file.
     pub fn xml(&'static self) -> &'static [u8] {
-        self.text.get_or_init(self.make).as_bytes()
+        self.text.get_or_init(self.generate).as_bytes()
     }
 }
 
 /// A linear congruential generator of pseudo-random whole numbers below 1000.
-struct DrawnNumbers(u32);
+struct PseudoRandomNumbers(u32);
 
-impl DrawnNumbers {
+impl PseudoRandomNumbers {
     fn next(&mut self) -> i32 {
         self.0 = self.0.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
         (self.0 >> 8).cast_signed() % 1000
@@ -38,7 +38,7 @@ fn format_thousandths(number: i32) -> String {
     format!("{}{}.{:03}", if number < 0 { "-" } else { "" }, number.abs() / 1000, number.abs() % 1000)
 }
 
-fn begin(description: &str, stiffness: u32) -> String {
+fn begin_scene(description: &str, stiffness: u32) -> String {
     format!(
         "<scene>\n<description text=\"{description}\"/>\n<duration time=\"0.2\"/>\n\
          <integrator type=\"forward-backward-euler\" dt=\"0.01\"/>\n\
@@ -59,8 +59,8 @@ fn add_particle(text: &mut String, place: [i32; 2], velocity: [i32; 2], radius: 
 /// Returns a scene of 15,000 balls in a box of four edges. Each ball is close to its neighbors, and a few balls are
 /// fast.
 fn box_of_balls() -> String {
-    let mut text = begin("15,000 balls in a box of four edges. The time that it takes counts.", 100);
-    let mut drawn = DrawnNumbers(1);
+    let mut text = begin_scene("15,000 balls in a box of four edges. The time that it takes counts.", 100);
+    let mut drawn = PseudoRandomNumbers(1);
     for corner in [[-400, -400], [30_400, -400], [30_400, 20_400], [-400, 20_400]] {
         add_particle(&mut text, corner, [0; 2], 400, true);
     }
@@ -80,8 +80,9 @@ fn box_of_balls() -> String {
 /// Returns a scene of 120 ribbons, one above the other, on a half-plane. Each ribbon has 40 particles.
 fn pile_of_ribbons() -> String {
     let (ribbons, length) = (120, 40);
-    let mut text = begin("120 ribbons fall onto each other and onto a half-plane. The time that it takes counts.", 200);
-    let mut drawn = DrawnNumbers(2);
+    let mut text =
+        begin_scene("120 ribbons fall onto each other and onto a half-plane. The time that it takes counts.", 200);
+    let mut drawn = PseudoRandomNumbers(2);
     let mut edges = String::new();
     for ribbon in 0..ribbons {
         let left = 2 * drawn.next();

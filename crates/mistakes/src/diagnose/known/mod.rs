@@ -25,8 +25,8 @@ pub(super) use refute::mistake_is_visible_within;
 
 use super::{
     Detail, Explanation,
-    about::About,
     sampling::{ROUND_OFF, Reference, Scan, Source, TraceSamples, find_first_difference, sample_trace},
+    topic::ExplanationTopic,
 };
 use candidates::Candidates;
 use combinations::RowCombination;
@@ -217,10 +217,10 @@ fn plausibility(row: &Row) -> u8 {
 /// Returns the explanation for a row, without an example.
 fn row_explanation(row: &Row, (reproduced, samples): (u64, u64)) -> Explanation {
     Explanation {
-        details: vec![Detail::Term(row.id.into()), Detail::Look(row.area)],
+        details: vec![Detail::Term(row.id.into()), Detail::SearchArea(row.area)],
         reproduced,
         samples,
-        ..Explanation::about(row.id, About::Mistake)
+        ..Explanation::with_topic(row.id, ExplanationTopic::Mistake)
     }
 }
 

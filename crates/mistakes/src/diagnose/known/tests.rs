@@ -1,7 +1,7 @@
 //! Traces with mistakes, made in memory, and what is said of them.
 use super::{find_known, mistake_is_visible};
 use crate::diagnose::is_named_in;
-use crate::diagnose::{About, ExamplePlace, Explanation, explain, explain_together};
+use crate::diagnose::{ExamplePlace, Explanation, ExplanationTopic, explain, explain_together};
 use fosssim_judge::Role;
 use fosssim_model::{
     scene::{Scene, original},
@@ -84,7 +84,10 @@ fn another_scenes_trace_is_asked_about_only() {
     for (trace, has_length) in [(right, true), (longer, false)] {
         let explanations = explain(&scene(), &trace);
         let [explanation] = &explanations[..] else { panic!("one question, not {explanations:?}") };
-        assert!(explanation.is_other_scene() && explanation.about == (About::Scene { has_length }), "{explanation:?}");
+        assert!(
+            explanation.is_other_scene() && explanation.topic == (ExplanationTopic::Scene { has_length }),
+            "{explanation:?}"
+        );
     }
 }
 
@@ -111,7 +114,7 @@ fn an_example_names_the_first_wrong_step() {
     let trace = student::record_trace(&scene(), Student::new(Some(row.mistake))).expect("a trace");
     let explanations = find_known(&scene(), &trace[..]);
     let [explanation] = &explanations[..] else { panic!("one explanation") };
-    assert_eq!((&*explanation.key, &explanation.about), (row.id, &About::Mistake));
+    assert_eq!((&*explanation.key, &explanation.topic), (row.id, &ExplanationTopic::Mistake));
     assert_eq!(explanation.reproduced, explanation.samples);
     let example = explanation.example.as_ref().expect("an example");
     let pair = Pair { kind: PairKind::ParticleParticle, first: 0, second: 1 };
@@ -216,15 +219,15 @@ fn mistakes_of_several_scenes_are_settled_together() {
     // Scenes of one program, each of which shows another part of what it lacks.
     let said = |ids: &[&str]| {
         let mut explanations = explain(&scene(), &made(&scene(), ids));
-        explanations.iter_mut().for_each(|one| one.denies.clear());
+        explanations.iter_mut().for_each(|one| one.contradicted_keys.clear());
         explanations
     };
     let (alone, other) = (said(&["pp-empty"]), said(&["pe-empty", "ph-empty"]));
     let found = explain_together([alone.as_slice(), other.as_slice()], &[]);
     assert_eq!((found.len(), found[0].key.as_str()), (1, Explanation::UNFINISHED), "{found:#?}");
     assert_eq!(
-        (&found[0].about, &found[0].same_as[..]),
-        (&About::Unfinished, &["pp-empty", "pe-empty", "ph-empty"].map(str::to_owned)[..])
+        (&found[0].topic, &found[0].same_as[..]),
+        (&ExplanationTopic::Unfinished, &["pp-empty", "pe-empty", "ph-empty"].map(str::to_owned)[..])
     );
     assert!(is_named_in(&found[0], &alone) && is_named_in(&found[0], &other));
     let (one, two) =

@@ -9,8 +9,8 @@ mod traits;
 
 use super::{
     Detail, Explanation, PairCounts, WrongPairs,
-    about::About,
     sampling::{Reference, Scan},
+    topic::ExplanationTopic,
 };
 use fosssim_judge::fair::count_applications;
 use fosssim_model::{
@@ -57,8 +57,8 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
     let steps = scan.wrong_steps.iter().take(MAX_STEPS).chain(scan.right_steps.iter().take(MAX_STEPS / 4));
     let mut left = MAX_WORK / (scene.particles.len() + scene.edges.len() + 1);
     let variants: Vec<TraitVariant> = traits::variants().collect();
-    let of_kind = |kind| PairCounts { kind, times: [0; 3], traits: vec![[0; 3]; variants.len()] };
-    let mut wrong = WrongPairs { first: None, kinds: PairKind::ALL.map(of_kind).into() };
+    let of_kind = |kind| PairCounts { kind, counts_by_times: [0; 3], traits: vec![[0; 3]; variants.len()] };
+    let mut wrong = WrongPairs { first: None, counts_by_kind: PairKind::ALL.map(of_kind).into() };
     let mut seen: BTreeSet<(Pair, usize)> = BTreeSet::new();
     for kept in steps {
         let own = reference.step(kept.step, &kept.before, &mut ())?;
@@ -72,8 +72,8 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
                 wrong.first = Some((pair, kept.step));
             }
             let near = PlacedPair { geometry: &moment, pair };
-            let counts = &mut wrong.kinds[pair.kind as usize];
-            counts.times[times] += 1;
+            let counts = &mut wrong.counts_by_kind[pair.kind as usize];
+            counts.counts_by_times[times] += 1;
             let held = variants.iter().zip(&mut counts.traits).filter(|(one, _)| one.holds(&near));
             held.for_each(|(_, counts)| counts[times] += 1);
         }
@@ -81,10 +81,10 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
     wrong.first?;
     let samples = scan.wrong_steps.len() as u64;
     Some(Explanation {
-        details: vec![Detail::Look(Area::NearPairs)],
+        details: vec![Detail::SearchArea(Area::NearPairs)],
         reproduced: samples,
         samples,
-        ..Explanation::about(Explanation::PAIRS, About::Pairs(wrong))
+        ..Explanation::with_topic(Explanation::PAIRS, ExplanationTopic::Pairs(wrong))
     })
 }
 
@@ -93,7 +93,7 @@ pub(super) fn explain(reference: &mut Reference<'_>, scene: &Scene, scan: &Scan)
 #[must_use]
 #[expect(clippy::cast_precision_loss, reason = "a share")]
 pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
-    let (wrong, right) = (pairs.times[times], pairs.times[1]);
+    let (wrong, right) = (pairs.counts_by_times[times], pairs.counts_by_times[1]);
     let counts = traits::variants().zip(&pairs.traits).map(|(one, counts)| (one, wrong - counts[times], counts[1]));
     let is_telling = |(one, exceptions, with): &(TraitVariant, u64, u64)| {
         // The probability that as many randomly chosen pairs all have the trait.
@@ -122,9 +122,9 @@ pub fn pair_traits(pairs: &PairCounts, times: usize) -> Vec<PairTrait> {
 /// Adds the pairs of all traces together for the explanations of a program.
 pub(super) fn merge_explanations(told: &mut [Explanation], traces: &[&[Explanation]]) {
     for one in told.iter_mut() {
-        let About::Pairs(sum) = &mut one.about else { continue };
-        let mut all = traces.iter().copied().flatten().filter_map(|one| match &one.about {
-            About::Pairs(wrong) => Some(wrong),
+        let ExplanationTopic::Pairs(sum) = &mut one.topic else { continue };
+        let mut all = traces.iter().copied().flatten().filter_map(|one| match &one.topic {
+            ExplanationTopic::Pairs(wrong) => Some(wrong),
             _ => None,
         });
         let Some(first) = all.next() else { continue };

@@ -1,6 +1,6 @@
 //! Searches with mistakes by request, in the scenes of the contest's suite.
 use super::{pair_traits, traits};
-use crate::diagnose::{About, Explanation, PairCounts, WrongPairs, explain, explain_together};
+use crate::diagnose::{Explanation, ExplanationTopic, PairCounts, WrongPairs, explain, explain_together};
 use fosssim_model::{
     scene::{Collision, Scene, original},
     sim::PairKind,
@@ -21,7 +21,7 @@ fn told(id: &str, scenes: &[Scene]) -> WrongPairs {
     let explained = |scene: &Scene| explain(scene, &record_trace(scene, student).expect("a trace"));
     let traces: Vec<Vec<Explanation>> = scenes.iter().map(explained).collect();
     let told = explain_together(traces.iter().map(Vec::as_slice), &[]);
-    let [Explanation { about: About::Pairs(wrong), .. }] = &told[..] else { panic!("{id}: {told:#?}") };
+    let [Explanation { topic: ExplanationTopic::Pairs(wrong), .. }] = &told[..] else { panic!("{id}: {told:#?}") };
     wrong.clone()
 }
 
@@ -45,11 +45,19 @@ fn wrong_pairs_are_told_with_what_they_have_in_common() {
         ("near-pairs-fixed-skipped", PairKind::ParticleParticle, 0, "fixed"),
     ] {
         let wrong = told(id, &scenes);
-        let pairs = &wrong.kinds[kind as usize];
+        let pairs = &wrong.counts_by_kind[kind as usize];
         let words: Vec<String> = pair_traits(pairs, times).into_iter().map(|one| one.description).collect();
-        let is_told = if word.is_empty() { 20 * pairs.times[1] <= pairs.times[times] } else { words.len() == 1 };
-        let is_right = pairs.times[times] > 0 && words.iter().all(|one| one.contains(word));
-        assert!(is_told && is_right && (!word.is_empty() || words.is_empty()), "{id}: {:?}, {words:?}", pairs.times);
+        let is_told = if word.is_empty() {
+            20 * pairs.counts_by_times[1] <= pairs.counts_by_times[times]
+        } else {
+            words.len() == 1
+        };
+        let is_right = pairs.counts_by_times[times] > 0 && words.iter().all(|one| one.contains(word));
+        assert!(
+            is_told && is_right && (!word.is_empty() || words.is_empty()),
+            "{id}: {:?}, {words:?}",
+            pairs.counts_by_times
+        );
     }
 }
 
@@ -64,14 +72,14 @@ fn no_pair_of_any_kind_is_found_without_a_search() {
     }
     let kinds: Vec<&PairCounts> = told
         .iter()
-        .flat_map(|one| match &one.about {
-            About::Pairs(wrong) => &wrong.kinds,
+        .flat_map(|one| match &one.topic {
+            ExplanationTopic::Pairs(wrong) => &wrong.counts_by_kind,
             _ => panic!("{one:#?}"),
         })
         .collect();
-    let [missing, once, twice] = [0, 1, 2].map(|times| kinds.iter().map(|one| one.times[times]).sum::<u64>());
+    let [missing, once, twice] = [0, 1, 2].map(|times| kinds.iter().map(|one| one.counts_by_times[times]).sum::<u64>());
     assert!(50 * (once + twice) <= missing, "{missing} missing, {once} once, {twice} twice");
-    assert!(PairKind::ALL.iter().all(|kind| kinds.iter().any(|one| one.kind == *kind && one.times[0] > 0)));
+    assert!(PairKind::ALL.iter().all(|kind| kinds.iter().any(|one| one.kind == *kind && one.counts_by_times[0] > 0)));
 }
 
 #[test]

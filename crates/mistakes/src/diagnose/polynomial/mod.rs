@@ -24,9 +24,9 @@ pub use super::sampling::Sample;
 
 use super::{
     Detail, Explanation, PolynomialDetail, Weight,
-    about::{About, OfPolynomials},
     guess::{CoefficientGuess, Guess, digest},
     sampling::{ROUND_OFF, polynomial_matches},
+    topic::{ExplanationTopic, PolynomialEvidence},
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::assignments::t2m2::{NAMED_EDITS, NamedEdit, Subject};
@@ -94,9 +94,9 @@ fn explain_missing(samples: &[Sample]) -> Option<Explanation> {
         details: take_distinct(details, MAX_OTHER_KEYS),
         reproduced: count,
         samples: count,
-        ..Explanation::about(
+        ..Explanation::with_topic(
             Explanation::MISSING_POLYNOMIALS,
-            About::Polynomials { subjects, found: OfPolynomials::Missing },
+            ExplanationTopic::Polynomials { subjects, found: PolynomialEvidence::Missing },
         )
     })
 }
@@ -132,7 +132,7 @@ impl WrongPolynomial<'_> {
             let is_likely = other.cost <= best.cost + MAX_COST_DIFFERENCE;
             is_likely && other.reproduced == best.reproduced && other.guess.key() != best.guess.key()
         };
-        let found = OfPolynomials::Guess(best.guess.clone());
+        let found = PolynomialEvidence::Guess(best.guess.clone());
         Explanation {
             details: best.details.iter().cloned().map(|one| guess_detail(one, &[self.study.subject])).collect(),
             reproduced: best.reproduced as u64,
@@ -143,7 +143,10 @@ impl WrongPolynomial<'_> {
                 MAX_OTHER_KEYS,
             ),
             claims: take_distinct(claims, usize::MAX),
-            ..Explanation::about(best.guess.key(), About::Polynomials { subjects: vec![self.study.subject], found })
+            ..Explanation::with_topic(
+                best.guess.key(),
+                ExplanationTopic::Polynomials { subjects: vec![self.study.subject], found },
+            )
         }
     }
 }
@@ -152,7 +155,7 @@ impl WrongPolynomial<'_> {
 /// digest covers the program's formula, not the right one.
 fn list_claims(subject: Subject, candidate: &Candidate) -> Vec<String> {
     if candidate.guess.is_general() {
-        return vec![format!("{subject:?}/{}/", candidate.guess.word())];
+        return vec![format!("{subject:?}/{}/", candidate.guess.claim_key())];
     }
     let only = std::slice::from_ref(&candidate.details);
     let forms = if candidate.forms.is_empty() { only } else { &candidate.forms };
@@ -171,7 +174,7 @@ pub(super) fn claim_of_form(subject: Subject, guess: &Guess, form: &[PolynomialD
     };
     let form: Vec<PolynomialDetail> = form.iter().map(bare).collect();
     // Factors are rounded, because they are measured.
-    format!("{subject:?}/{}/{:016x}", guess.word(), digest(&format!("{guess:?} {form:.5?}")))
+    format!("{subject:?}/{}/{:016x}", guess.claim_key(), digest(&format!("{guess:?} {form:.5?}")))
 }
 
 /// Returns the known mistakes in the formulas of this kind, or in passing them on, that give the logged polynomial in
@@ -243,9 +246,9 @@ fn explain_nearly_right(suspect: &WrongPolynomial) -> Option<Explanation> {
         details: vec![Detail::Polynomial(PolynomialDetail::RightUpTo(error))],
         samples,
         example: example::find_smallest_example(study).map(|(_, example)| example),
-        ..Explanation::about(
+        ..Explanation::with_topic(
             Explanation::NEARLY_RIGHT,
-            About::Polynomials { subjects: vec![study.subject], found: OfPolynomials::NearlyRight },
+            ExplanationTopic::Polynomials { subjects: vec![study.subject], found: PolynomialEvidence::NearlyRight },
         )
     })
 }
@@ -262,11 +265,11 @@ fn summarize_unexplained(hopeless: &[WrongPolynomial]) -> Option<Explanation> {
         samples: hopeless.iter().map(|suspect| suspect.study.cases.len() as u64).sum(),
         example: example::find_smallest_example(&first.study).map(|(_, example)| example),
         claims: take_distinct(hopeless.iter().flat_map(|suspect| suspect.list_claims(std::iter::empty())), usize::MAX),
-        ..Explanation::about(
+        ..Explanation::with_topic(
             Explanation::UNEXPLAINED,
-            About::Polynomials {
+            ExplanationTopic::Polynomials {
                 subjects: hopeless.iter().map(|suspect| suspect.study.subject).collect(),
-                found: OfPolynomials::Nothing,
+                found: PolynomialEvidence::Nothing,
             },
         )
     })
@@ -308,7 +311,7 @@ fn explain_shared(covered: &[WrongPolynomial], key: &str) -> Explanation {
     let samples = covered.iter().map(|suspect| suspect.study.cases.len() as u64).sum();
     let examples = covered.iter().filter_map(|suspect| example::find_smallest_example(&suspect.study));
     let details = guesses.iter().flat_map(|guess| &guess.details).map(|one| guess_detail(one.clone(), &subjects));
-    let found = OfPolynomials::Guess(guesses[0].guess.clone());
+    let found = PolynomialEvidence::Guess(guesses[0].guess.clone());
     Explanation {
         details: take_distinct(details, MAX_OTHER_KEYS),
         reproduced: samples,
@@ -319,7 +322,7 @@ fn explain_shared(covered: &[WrongPolynomial], key: &str) -> Explanation {
             covered.iter().flat_map(|suspect| suspect.list_claims(suspect.complete_guesses())),
             usize::MAX,
         ),
-        ..Explanation::about(key, About::Polynomials { subjects, found })
+        ..Explanation::with_topic(key, ExplanationTopic::Polynomials { subjects, found })
     }
 }
 

@@ -228,7 +228,7 @@ impl ContactStage {
             () => WrongVectors::Direction,
         };
         let details = match wrong {
-            WrongVectors::Inexact => vec![StageDetail::VectorsOff(parts().fold(0.0, f64::max))],
+            WrongVectors::Inexact => vec![StageDetail::VectorError(parts().fold(0.0, f64::max))],
             WrongVectors::Zero => Vec::new(),
             _ => vec![StageDetail::Vectors(ratios(&along))],
         };
@@ -247,8 +247,8 @@ impl ContactStage {
         if !shares.is_empty() {
             details.push(StageDetail::Times(ratios(&shares)));
         }
-        details.extend(common_value(&offsets).map(StageDetail::TimesOff));
-        details.push(StageDetail::TimesUsed);
+        details.extend(common_value(&offsets).map(StageDetail::TimeError));
+        details.push(StageDetail::TimeUse);
         Some(new_observation(StageFault::ContactTimes, details, self.times.len()))
     }
 }

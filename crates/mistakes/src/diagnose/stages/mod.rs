@@ -15,9 +15,9 @@ mod zones;
 
 use super::{
     Detail, Explanation, Ratios, StageDetail,
-    about::About,
     fault::StageFault,
     sampling::{KeptStep, Reference},
+    topic::ExplanationTopic,
 };
 use events::StepFacts;
 use fosssim_model::scene::{Collision, Scene};
@@ -72,7 +72,7 @@ fn new_observation(fault: StageFault, details: Vec<StageDetail>, samples: usize)
     Explanation {
         details: details.into_iter().map(Detail::Stage).collect(),
         samples: samples as u64,
-        ..Explanation::about(fault.key(), About::Stage(fault))
+        ..Explanation::with_topic(fault.key(), ExplanationTopic::Stage(fault))
     }
 }
 

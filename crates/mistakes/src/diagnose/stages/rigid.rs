@@ -219,8 +219,8 @@ impl ZoneMotions {
         if let Some(fault) = faults.into_iter().find(|fault| count(*fault) > 0) {
             let details = match fault {
                 WrongZones::KeepVelocities if self.has_stopped_otherwise || self.stop_ratios.is_empty() => Vec::new(),
-                WrongZones::KeepVelocities => vec![StageDetail::Stopped(ratios(&self.stop_ratios))],
-                _ => vec![StageDetail::OfZones { count: count(fault), of: all }],
+                WrongZones::KeepVelocities => vec![StageDetail::StoppedVelocities(ratios(&self.stop_ratios))],
+                _ => vec![StageDetail::ZoneCount { count: count(fault), of: all }],
             };
             return Some(new_observation(StageFault::Zones(fault), details, wrong));
         }
@@ -299,14 +299,14 @@ impl MotionErrors {
         if self.has_side_shift || !are_one(&self.shifts) {
             wrong.push(WrongMotion::Center);
             details.push(match common_value(&self.shifts) {
-                Some(_) if !self.has_side_shift => StageDetail::CenterMoves(ratios(&self.shifts)),
+                Some(_) if !self.has_side_shift => StageDetail::CenterMotion(ratios(&self.shifts)),
                 _ => StageDetail::CenterDirection,
             });
         }
         if !self.is_bent && !are_one(&self.turns) {
             wrong.push(describe_turn(&self.turns));
             if self.turns.iter().all(|ratio| ratio.is_finite()) {
-                details.push(StageDetail::Turns(ratios(&self.turns)));
+                details.push(StageDetail::Rotations(ratios(&self.turns)));
             }
         }
         if self.has_other_velocity {

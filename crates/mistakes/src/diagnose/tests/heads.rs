@@ -2,46 +2,46 @@
 use crate::{
     diagnose::is_named_in,
     diagnose::{
-        About, Detail, Explanation, Guess, ListGuess, NanStage, NotFinite, OfPolynomials, QuantityGuess, StageFault,
-        WrongMotion, WrongVectors, correct_trace, explain_together,
+        Detail, Explanation, ExplanationTopic, Guess, ListGuess, NanStage, NonFiniteValue, PolynomialEvidence,
+        QuantityGuess, StageFault, WrongMotion, WrongVectors, correct_trace, explain_together,
     },
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::assignments::t2m2::Subject;
 
-fn statement(key: &str, about: About, counts: (u64, u64), claims: &[&str]) -> Explanation {
+fn statement(key: &str, about: ExplanationTopic, counts: (u64, u64), claims: &[&str]) -> Explanation {
     Explanation {
         key: key.to_owned(),
-        about,
+        topic: about,
         details: Vec::new(),
         reproduced: counts.0,
         samples: counts.1,
         example: None,
         same_as: Vec::new(),
-        denies: Vec::new(),
+        contradicted_keys: Vec::new(),
         claims: claims.iter().map(|&claim| claim.to_owned()).collect(),
     }
 }
 
 fn letter(subject: Subject, form: &str) -> Explanation {
-    let found = OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other));
+    let found = PolynomialEvidence::Guess(Guess::Quantity(QuantityGuess::Other));
     let claim = format!("{subject:?}/letter/{form}");
-    statement("letter", About::Polynomials { subjects: vec![subject], found }, (5, 5), &[&claim])
+    statement("letter", ExplanationTopic::Polynomials { subjects: vec![subject], found }, (5, 5), &[&claim])
 }
 
 fn unexplained(subject: Subject) -> Explanation {
-    let about = About::Polynomials { subjects: vec![subject], found: OfPolynomials::Nothing };
+    let about = ExplanationTopic::Polynomials { subjects: vec![subject], found: PolynomialEvidence::Nothing };
     statement("unexplained", about, (0, 5), &[&format!("{subject:?}//")])
 }
 
 fn row(id: &str, claims: &[&str]) -> Explanation {
-    statement(id, About::Mistake, (4, 4), claims)
+    statement(id, ExplanationTopic::Mistake, (4, 4), claims)
 }
 
 fn stage(fault: StageFault) -> Explanation {
     statement(
         if matches!(fault, StageFault::Motion { .. }) { "stage-failsafe" } else { "stage-contact-vectors" },
-        About::Stage(fault),
+        ExplanationTopic::Stage(fault),
         (0, 3),
         &[],
     )
@@ -151,9 +151,9 @@ fn forms_that_differ_have_their_polynomial_in_common() {
     let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!(likely.len(), 1, "what is wrong behind a wrong formula follows: {likely:?}");
     assert!(likely[0].is_unexplained());
-    let About::Polynomials { subjects, found } = &likely[0].about else { panic!("{likely:?}") };
+    let ExplanationTopic::Polynomials { subjects, found } = &likely[0].topic else { panic!("{likely:?}") };
     assert_eq!(*subjects, [Subject::HalfPlaneOverlap]);
-    assert_eq!(*found, OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other)));
+    assert_eq!(*found, PolynomialEvidence::Guess(Guess::Quantity(QuantityGuess::Other)));
     assert_eq!(correct_trace(&traces[1], &likely, &[]).explanations[0].statement(), forms[1].statement());
 }
 
@@ -222,8 +222,8 @@ fn a_contact_vector_has_one_mistake() {
 fn forms_are_intersected_over_traces() {
     let of = |forms: [&str; 2]| {
         let claims = forms.map(|form| format!("EdgeOverlap/terms/{form}"));
-        let found = OfPolynomials::Guess(Guess::Quantity(QuantityGuess::Other));
-        let about = About::Polynomials { subjects: vec![Subject::EdgeOverlap], found };
+        let found = PolynomialEvidence::Guess(Guess::Quantity(QuantityGuess::Other));
+        let about = ExplanationTopic::Polynomials { subjects: vec![Subject::EdgeOverlap], found };
         statement("letter", about, (5, 5), &claims.each_ref().map(String::as_str))
     };
     let traces = [of(["a", "b"]), of(["c", "b"]), of(["b", "d"])].map(|one| vec![one]);
@@ -236,8 +236,8 @@ fn forms_are_intersected_over_traces() {
 #[test]
 fn what_the_starter_leaves_is_not_written_yet() {
     let zero = |subjects: &[Subject]| {
-        let found = OfPolynomials::Guess(Guess::List(ListGuess::AllZero));
-        statement("all-zero", About::Polynomials { subjects: subjects.to_vec(), found }, (5, 5), &[])
+        let found = PolynomialEvidence::Guess(Guess::List(ListGuess::AllZero));
+        statement("all-zero", ExplanationTopic::Polynomials { subjects: subjects.to_vec(), found }, (5, 5), &[])
     };
     let planes = [Subject::HalfPlaneOverlap, Subject::HalfPlaneApproach];
     let traces = [vec![row("loop-empty-succeeds", &[])], vec![zero(&planes)], vec![zero(&planes)]];
@@ -272,8 +272,8 @@ fn another_mistake_has_its_own_exact_form() {
 #[test]
 fn where_numbers_end_comes_behind_what_is_proven() {
     let end = |step, stage| {
-        let found = NotFinite { step: Some(step), stage, is_nan: true, ends: false };
-        statement(Explanation::NOT_FINITE, About::NotFinite(found), (0, 0), &[])
+        let found = NonFiniteValue { step: Some(step), stage, is_nan: true, recovers: false };
+        statement(Explanation::NOT_FINITE, ExplanationTopic::NotFinite(found), (0, 0), &[])
     };
     let first = row("pp-no-two", &[]);
     let traces = [
@@ -286,7 +286,10 @@ fn where_numbers_end_comes_behind_what_is_proven() {
         told.iter().map(Explanation::statement).collect::<Vec<_>>(),
         [first.statement(), end(1, NanStage::Zones).statement()]
     );
-    assert!(matches!(told[1].about, About::NotFinite(NotFinite { step: None, .. })));
+    assert!(matches!(told[1].topic, ExplanationTopic::NotFinite(NonFiniteValue { step: None, .. })));
     let of_third = correct_trace(&traces[2], &told, &[]).explanations;
-    assert!(matches!(of_third[0].about, About::NotFinite(NotFinite { step: Some(9), .. })), "{of_third:?}");
+    assert!(
+        matches!(of_third[0].topic, ExplanationTopic::NotFinite(NonFiniteValue { step: Some(9), .. })),
+        "{of_third:?}"
+    );
 }

@@ -1,6 +1,6 @@
 //! Programs with several mistakes, asked about on the probe scenes.
 use super::naming::is_in_other_words;
-use super::{About, Explanation, explain, explain_kept_trace, explain_together, probe_scenes};
+use super::{Explanation, ExplanationTopic, explain, explain_kept_trace, explain_together, probe_scenes};
 use fosssim_judge::kept_trace::KeptTrace;
 use fosssim_model::assignments::Assignment;
 use fosssim_student::{self as student, Row, Student};
@@ -40,13 +40,13 @@ fn one_of_many_traces_makes_no_stage_empty() {
         let of = |id: &&str| student::find(id).expect("it is known");
         let told = |row: &'static Row| Explanation {
             key: row.id.to_owned(),
-            about: About::Mistake,
+            topic: ExplanationTopic::Mistake,
             details: Vec::new(),
             reproduced: 3,
             samples: 3,
             example: None,
             same_as: Vec::new(),
-            denies: Vec::new(),
+            contradicted_keys: Vec::new(),
             claims: Vec::new(),
         };
         ids.iter().map(of).map(told).collect::<Vec<_>>()
@@ -72,9 +72,12 @@ fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
         explain(scene, &student::record_trace(scene, author).unwrap_or_else(|(bytes, _)| bytes))
     };
     let empty = said(&[row("failsafe-empty")], "zones-turn-little-and-far");
-    assert!(empty[0].key == "failsafe-empty" && empty[0].denies.contains(&"geometric-empty".to_owned()), "{empty:#?}");
+    assert!(
+        empty[0].key == "failsafe-empty" && empty[0].contradicted_keys.contains(&"geometric-empty".to_owned()),
+        "{empty:#?}"
+    );
     let partly = said(&[row("geometric-first-zone-only")], "zones-of-all-kinds");
-    assert!(partly[0].denies.contains(&"failsafe-empty".to_owned()), "{partly:#?}");
+    assert!(partly[0].contradicted_keys.contains(&"failsafe-empty".to_owned()), "{partly:#?}");
     let told = explain_together([empty.as_slice(), partly.as_slice()], &[]);
     assert!(told.iter().all(|one| !one.is_unfinished() && one.key != "failsafe-empty"), "{told:#?}");
 }

@@ -1,5 +1,7 @@
 //! Where numbers end is told with its step and stage, and what is no number accuses of nothing.
-use crate::diagnose::{About, Explanation, NanStage, NotFinite, explain, non_finite::explain_source, sampling::Source};
+use crate::diagnose::{
+    Explanation, ExplanationTopic, NanStage, NonFiniteValue, explain, non_finite::explain_source, sampling::Source,
+};
 use fosssim_model::{
     assignments::Assignment,
     scene::{Collision, Scene},
@@ -36,12 +38,12 @@ fn first(frames: &[LenientFrame], start: usize, holds: impl Fn(&LenientFrame) ->
     start + frames[start..].iter().step_by(2).position(holds).expect("such a record")
 }
 
-fn told(scene: &Scene, frames: Vec<LenientFrame>) -> NotFinite {
+fn told(scene: &Scene, frames: Vec<LenientFrame>) -> NonFiniteValue {
     let trace = written(scene, frames);
     let all = explain(scene, &trace);
     // Nothing but that: the steps before are right, and what follows from NaN speaks for nothing.
-    let [Explanation { about: About::NotFinite(found), .. }] = &all[..] else { panic!("{all:#?}") };
-    assert_eq!(explain_source(scene, Source::from_trace(&trace))[0].about, all[0].about);
+    let [Explanation { topic: ExplanationTopic::NotFinite(found), .. }] = &all[..] else { panic!("{all:#?}") };
+    assert_eq!(explain_source(scene, Source::from_trace(&trace))[0].topic, all[0].topic);
     *found
 }
 
@@ -69,9 +71,9 @@ fn nan_is_told_with_its_step_and_stage() {
         told(&struck, changed)
     };
     let of_vector = with(&|frame| frame.impulses[0].normal.x = f64::INFINITY);
-    assert_eq!(of_vector, NotFinite { step, stage: NanStage::ContactVectors, is_nan: false, ends: false });
+    assert_eq!(of_vector, NonFiniteValue { step, stage: NanStage::ContactVectors, is_nan: false, recovers: false });
     let of_response = with(&|frame| frame.state.velocities[0] = f64::NAN);
-    assert_eq!(of_response, NotFinite { step, stage: NanStage::Responses, is_nan: true, ends: false });
+    assert_eq!(of_response, NonFiniteValue { step, stage: NanStage::Responses, is_nan: true, recovers: false });
     let of_detection = with(&|frame| frame.polynomials.coefficients[0] = f64::NAN);
     assert!(matches!(of_detection.stage, NanStage::Detection(Some(_))), "{of_detection:?}");
     let mut changed = right;
@@ -98,14 +100,14 @@ fn nan_of_the_failsafe_is_no_sum_of_integers() {
         spoil(&mut of_zones[end..], &all);
         assert_eq!(
             told(&scene, of_zones),
-            NotFinite { step, stage: NanStage::Zones, is_nan: true, ends: false },
+            NonFiniteValue { step, stage: NanStage::Zones, is_nan: true, recovers: false },
             "{name}"
         );
         let mut of_rounds = right;
         spoil(&mut of_rounds[end - 1..], &all);
         assert_eq!(
             told(&scene, of_rounds),
-            NotFinite { step, stage: NanStage::ImpulseRounds, is_nan: true, ends: false },
+            NonFiniteValue { step, stage: NanStage::ImpulseRounds, is_nan: true, recovers: false },
             "{name}"
         );
     }
@@ -119,5 +121,5 @@ fn numbers_that_are_finite_again_are_told_as_such() {
     let mut changed = frames(&struck);
     changed[2].state.positions[0] = f64::NAN;
     let found = told(&struck, changed);
-    assert!(found.ends, "{found:?}");
+    assert!(found.recovers, "{found:?}");
 }

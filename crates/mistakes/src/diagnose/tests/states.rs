@@ -1,7 +1,7 @@
 //! Of states that no known mistake explains, the first thing that is wrong is told.
 use crate::diagnose::{
-    About, ChangeCause, ChangeRatio, ChangedParticles, Detail, Explanation, Quantity, StageDetail, StageFault,
-    WrongChange, WrongDecisions, explain, explain_together,
+    ChangeCause, ChangeRatio, ChangedParticles, Detail, Explanation, ExplanationTopic, Quantity, StageDetail,
+    StageFault, WrongChange, WrongDecisions, explain, explain_together,
 };
 use fosssim_model::{
     scene::{Scene, original},
@@ -40,7 +40,7 @@ fn positions_that_do_not_follow_from_velocities_are_told_with_their_factor() {
         positions.iter_mut().zip(&record[4..]).for_each(|(x, v)| *x += 0.1 * 2.5 * v);
     }
     let told = explain(&scene, &trace);
-    let [Explanation { about: About::Stage(StageFault::Change(wrong)), details, .. }] = &told[..] else {
+    let [Explanation { topic: ExplanationTopic::Stage(StageFault::Change(wrong)), details, .. }] = &told[..] else {
         panic!("{told:#?}")
     };
     let expected = WrongChange {
@@ -61,7 +61,7 @@ fn collisions_of_bodies_that_are_apart_are_told() {
     let trace = right(&scene(&BALLS.replace("radius=\"0.3\"", "radius=\"0.36\"")));
     let told = explain(&scene(BALLS), &trace);
     let fault = StageFault::Overlaps { kind: Some(PairKind::ParticleParticle), wrong: WrongDecisions::Superfluous };
-    assert!(told.len() == 1 && told[0].about == About::Stage(fault), "{told:#?}");
+    assert!(told.len() == 1 && told[0].topic == ExplanationTopic::Stage(fault), "{told:#?}");
 }
 
 /// The changes of states in one scene may follow from the mistake that another one names.
@@ -72,7 +72,7 @@ fn a_known_mistake_in_one_scene_stands_for_what_others_show() {
     let named = explain(&scene, &student::record_trace(&scene, Student::new(Some(row.mistake))).expect("a trace"));
     let pulled = original::read(FALL.replace("fx=\"0.1\"", "fx=\"0.7\"").as_bytes()).expect("a scene").scene;
     let seen = explain(&scene, &right(&pulled));
-    assert!(seen.len() == 1 && seen[0].is_of_stage(), "{seen:#?}");
+    assert!(seen.len() == 1 && seen[0].names_stage(), "{seen:#?}");
     let heads = explain_together([named.as_slice(), &seen, &seen], &[]);
     assert!(heads.len() == 1 && heads[0].key == row.id, "{heads:#?}");
 }

@@ -33,12 +33,12 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         }
         let _ = writeln!(text, "  - {}", style.paint(look, &one_line(&line)));
     }
-    if let Some(located) = &grade.located {
+    if let Some(located) = &grade.located_failure {
         let heading = style.paint(Look::Strong, "Where it fails");
         let _ = writeln!(text, "{heading}\n  - {}", one_line(&words::describe_located(located)));
     }
     // A fault of the whole submission explains what is wrong in all groups.
-    let mistakes = if grade.unfit().is_some() { Vec::new() } else { find_likely_mistakes(grade) };
+    let mistakes = if grade.submission_fault().is_some() { Vec::new() } else { find_likely_mistakes(grade) };
     let wrong = count_wrong(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
         if number == 0 {
@@ -49,14 +49,14 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
         let what = strip_control_characters(&words::explanation::what_or(mistake));
         let worth = describe_worth(grade, mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
         let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");
-        if let Some(note) = grade.note(mistake) {
+        if let Some(note) = grade.course_note(mistake) {
             let _ = writeln!(text, "    The course: {}", one_line(&note.to_string()));
         }
         for form in words::explanation::exact_forms(mistake) {
             let _ = writeln!(text, "    {}", strip_control_characters(&form));
         }
     }
-    if grade.unfit().is_some() {
+    if grade.submission_fault().is_some() {
         return text;
     }
     let causes = by_cause(grade);

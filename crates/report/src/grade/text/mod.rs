@@ -105,7 +105,7 @@ impl Text<'_> {
     /// Describes the fault of the whole submission. If the reader runs the command, the text also names the option that
     /// helps.
     fn unfit(&self, grade: &Grade) -> Option<String> {
-        let option = match (grade.unfit(), self.closer) {
+        let option = match (grade.submission_fault(), self.closer) {
             (Some(SubmissionFault::Milestone(other)), Some(_)) => {
                 format!(": grade it with --suite {}", other.definition().key)
             }
@@ -141,7 +141,7 @@ impl Text<'_> {
 /// Describes extra points, such as `, 15 of 20 extra points`; empty if the suite has no extra points.
 #[must_use]
 pub fn extra(grade: &Grade) -> String {
-    grade.extra().map_or_else(String::new, |(reached, most)| {
+    grade.extra_points().map_or_else(String::new, |(reached, most)| {
         format!(
             ", {} of {} extra point{}",
             format_points(reached),
@@ -153,7 +153,7 @@ pub fn extra(grade: &Grade) -> String {
 
 /// Names the rule book that gives the verdict, if that matters; empty if both books agree.
 fn describe_rules(grade: &Grade) -> String {
-    match (grade.rules, grade.differing() as u64) {
+    match (grade.rules, grade.count_differing() as u64) {
         (Rules::Parity, _) => ", by the original's rules".to_owned(),
         (Rules::Fair | Rules::Both, 0) => String::new(),
         (Rules::Fair, differing) => {

@@ -23,7 +23,7 @@ const MAX_NAMED: usize = 3;
 /// Renders the groups in which there is something to show.
 pub(super) fn render(options: &Text<'_>, grade: &Grade) -> String {
     // A fault of the whole submission is reported once, and not for each scene.
-    if options.shown < TextDetail::Wrong || grade.unfit().is_some() {
+    if options.shown < TextDetail::Wrong || grade.submission_fault().is_some() {
         return String::new();
     }
     let shown = |scene: &SceneGrade| options.shown == TextDetail::All || !scene.verdict.is_accepted();
@@ -118,10 +118,10 @@ impl<'a> Scenes<'a, '_> {
         lines.extend(describe_difference(scene));
         if self.is_described(scene) {
             let details = if scene.verdict == Verdict::Unwritten { Vec::new() } else { words::list_details(scene) };
-            let likely = explain::lines(&scene.settled, self.options.style);
+            let likely = explain::lines(&scene.corrected_explanations, self.options.style);
             lines.extend(details.iter().chain(&likely).map(|line| one_line(line)));
         } else {
-            lines.extend(explain::render_sentence(&scene.settled).map(|sentence| one_line(&sentence)));
+            lines.extend(explain::render_sentence(&scene.corrected_explanations).map(|sentence| one_line(&sentence)));
         }
         if let [first, alike @ ..] = self.alike_scenes(scene)
             && first.scene == scene.scene

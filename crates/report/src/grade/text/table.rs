@@ -30,8 +30,8 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
         of(heading, true, &|grade| grade.changes().map(cell).unwrap_or_default())
     };
     let before = since("before", &|changes| format_optional_points(changes.points));
-    let right = since("right", &|changes| format!("+{}", changes.right.len()));
-    let broke = since("broke", &|changes| format!("-{}", changes.broke.len()));
+    let right = since("right", &|changes| format!("+{}", changes.newly_right.len()));
+    let broke = since("broke", &|changes| format!("-{}", changes.newly_wrong.len()));
     let groups = grades.first().map_or(0, |grade| grade.groups.len());
     let names: Vec<&str> = grades.first().iter().flat_map(|grade| &grade.groups).map(|one| one.name.as_str()).collect();
     let is_tests = names.iter().all(|name| name.len() > GROUP_SUFFIX.len() && name.ends_with(GROUP_SUFFIX));
@@ -48,7 +48,7 @@ pub fn render_table(grades: &[Grade], width: Option<usize>, style: Style) -> Str
         format!("{accepted}/{}", grade.scenes().count())
     });
     let mut base = vec![&name, &score, &verdict];
-    if grades.iter().any(|grade| grade.before.is_some()) {
+    if grades.iter().any(|grade| grade.earlier_grade.is_some()) {
         base.extend([&before, &right, &broke]);
     }
     let base = || base.iter().copied();

@@ -9,7 +9,9 @@ mod places;
 mod polynomials;
 mod stages;
 
-use fosssim_mistakes::diagnose::{About, Detail, Explanation, OfPolynomials, PolynomialDetail, find_formula};
+use fosssim_mistakes::diagnose::{
+    Detail, Explanation, ExplanationTopic, PolynomialDetail, PolynomialEvidence, find_formula,
+};
 use fosssim_student::{Area, Mistake, Row, StepMistake, find};
 
 pub(crate) use letters::explain_letters;
@@ -18,17 +20,19 @@ pub(crate) use places::describe_place;
 /// Describes the mistake in one sentence for the student. The sentence does not reveal a formula.
 #[must_use]
 pub fn describe(explanation: &Explanation) -> String {
-    let sentence = match &explanation.about {
-        About::Mistake => known_sentence(&explanation.key).unwrap_or_else(|| format!("{}.", explanation.key)),
-        About::Unfinished => format!("Not written yet: {}.", describe_unfinished(&explanation.same_as)),
-        About::Scene { has_length } => {
+    let sentence = match &explanation.topic {
+        ExplanationTopic::Mistake => {
+            known_sentence(&explanation.key).unwrap_or_else(|| format!("{}.", explanation.key))
+        }
+        ExplanationTopic::Unfinished => format!("Not written yet: {}.", describe_unfinished(&explanation.same_as)),
+        ExplanationTopic::Scene { has_length } => {
             let length = if *has_length { "" } else { ", and neither is its length" };
             format!("Does this trace belong to this scene? Its first record differs from the scene's start{length}.")
         }
-        About::Polynomials { subjects, found } => polynomials::describe_fault_of(subjects, found),
-        About::Stage(fault) => stages::describe(fault),
-        About::Pairs(wrong) => near::describe(wrong),
-        About::NotFinite(found) => not_finite::describe(found),
+        ExplanationTopic::Polynomials { subjects, found } => polynomials::describe_fault_of(subjects, found),
+        ExplanationTopic::Stage(fault) => stages::describe(fault),
+        ExplanationTopic::Pairs(wrong) => near::describe(wrong),
+        ExplanationTopic::NotFinite(found) => not_finite::describe(found),
     };
     debug_assert!(find_formula(&sentence).is_none(), "a sentence gives a formula away: {sentence}");
     sentence
@@ -38,7 +42,7 @@ pub fn describe(explanation: &Explanation) -> String {
 /// distinguish from it.
 #[must_use]
 pub fn what_or(explanation: &Explanation) -> String {
-    let rivals = explanation.same_as.iter().filter(|_| explanation.about == About::Mistake);
+    let rivals = explanation.same_as.iter().filter(|_| explanation.topic == ExplanationTopic::Mistake);
     let rivals: Vec<String> = rivals.filter_map(|key| known_sentence(key)).collect();
     let sentence = describe(explanation);
     match rivals.as_slice() {
@@ -59,14 +63,14 @@ pub fn list_details(explanation: &Explanation) -> Vec<String> {
     let mut lines: Vec<String> = Vec::new();
     let is_exact = explanation.details.iter().any(|detail| matches!(detail, Detail::Term(_)));
     let is_doubt = |detail: &Detail| matches!(detail, Detail::Polynomial(PolynomialDetail::Alternative(_)));
-    if let (About::Pairs(wrong), [_, ..]) = (&explanation.about, &explanation.details[..]) {
+    if let (ExplanationTopic::Pairs(wrong), [_, ..]) = (&explanation.topic, &explanation.details[..]) {
         lines.extend(near::list_details(wrong));
     }
     for detail in explanation.details.iter().filter(|detail| !(is_exact && is_doubt(detail))) {
         let line = match detail {
             Detail::Term(key) => find(key).map(|row| row.term.to_owned()),
-            Detail::Look(Area::Integrator) => Some(look_at_step(&explanation.key).to_owned()),
-            Detail::Look(area) => Some(area.advice().to_owned()),
+            Detail::SearchArea(Area::Integrator) => Some(look_at_step(&explanation.key).to_owned()),
+            Detail::SearchArea(area) => Some(area.advice().to_owned()),
             Detail::Letters(kinds) => letters::explain_letters(&lines, kinds),
             Detail::Polynomial(detail) => Some(polynomials::describe_detail(detail)),
             Detail::Stage(detail) => stages::describe_detail(detail),
@@ -80,23 +84,23 @@ pub fn list_details(explanation: &Explanation) -> Vec<String> {
 pub(crate) fn exact_forms(explanation: &Explanation) -> Vec<String> {
     let is_form = |detail: &&Detail| matches!(detail, Detail::Polynomial(_)) && !explanation.is_unexplained();
     let details = explanation.details.iter().filter(is_form).cloned().collect();
-    match explanation.about {
-        About::Polynomials { .. } => self::list_details(&Explanation { details, ..explanation.clone() }),
+    match explanation.topic {
+        ExplanationTopic::Polynomials { .. } => self::list_details(&Explanation { details, ..explanation.clone() }),
         _ => Vec::new(),
     }
 }
 
 /// Returns advice about where in the program a wrong stage probably is.
 pub(crate) fn where_to_look(explanation: &Explanation) -> Option<&'static str> {
-    match &explanation.about {
-        About::Stage(fault) => fault.areas().first().map(|area| area.advice()),
+    match &explanation.topic {
+        ExplanationTopic::Stage(fault) => fault.areas().first().map(|area| area.advice()),
         _ => None,
     }
 }
 
 /// Returns whether an explanation says more than that something is wrong.
 pub(crate) fn is_known(explanation: &Explanation) -> bool {
-    !matches!(explanation.about, About::Polynomials { found: OfPolynomials::Nothing, .. })
+    !matches!(explanation.topic, ExplanationTopic::Polynomials { found: PolynomialEvidence::Nothing, .. })
 }
 
 /// Returns the sentence about a known mistake; `None` if the key is not in a catalogue.

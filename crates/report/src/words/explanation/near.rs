@@ -1,6 +1,6 @@
 //! Describes faults in a contest program's search for nearby pairs.
 use crate::number::{count, format_count};
-use fosssim_findings::PairWords;
+use fosssim_findings::PairText;
 use fosssim_mistakes::diagnose::{PairCounts, PairTrait, WrongPairs, pair_traits};
 use fosssim_model::sim::PairKind;
 
@@ -15,8 +15,9 @@ struct PairFault<'a> {
 /// Returns the faults. Kinds of pairs with the same fault and the same properties are reported together.
 fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
     let mut all: Vec<PairFault<'_>> = Vec::new();
-    for (times, pairs) in [0, 2].iter().flat_map(|&times| wrong.kinds.iter().map(move |pairs| (times, pairs))) {
-        if pairs.times[times] == 0 {
+    for (times, pairs) in [0, 2].iter().flat_map(|&times| wrong.counts_by_kind.iter().map(move |pairs| (times, pairs)))
+    {
+        if pairs.counts_by_times[times] == 0 {
             continue;
         }
         let traits = pair_traits(pairs, times);
@@ -36,7 +37,8 @@ fn faults(wrong: &WrongPairs) -> Vec<PairFault<'_>> {
 /// Describes which pairs are affected, what the fault is, and what the pairs have in common.
 pub(super) fn describe(wrong: &WrongPairs) -> String {
     let faults = faults(wrong);
-    let [missing, once, twice] = [0, 1, 2].map(|times| wrong.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>());
+    let [missing, once, twice] =
+        [0, 1, 2].map(|times| wrong.counts_by_kind.iter().map(|pairs| pairs.counts_by_times[times]).sum::<u64>());
     // Velocities of pairs that press on each other are not mentioned, because they may reveal too much.
     if 50 * (once + twice) <= missing {
         return "Not written yet: the search for nearby pairs. No pair is reported.".to_owned();
@@ -57,9 +59,9 @@ pub(super) fn describe(wrong: &WrongPairs) -> String {
 
 /// Returns lines about the first affected pair, the number of pairs, and the exact form of their common properties.
 pub(super) fn list_details(wrong: &WrongPairs) -> Vec<String> {
-    let first = wrong.first.map(|(pair, step)| format!("The first one is in step {step}: {}.", PairWords(pair)));
+    let first = wrong.first.map(|(pair, step)| format!("The first one is in step {step}: {}.", PairText(pair)));
     let of_fault = |fault: &PairFault<'_>| {
-        let sum = |times: usize| fault.kinds.iter().map(|pairs| pairs.times[times]).sum::<u64>();
+        let sum = |times: usize| fault.kinds.iter().map(|pairs| pairs.counts_by_times[times]).sum::<u64>();
         let (wrong, right) = (sum(fault.times), sum(1));
         let numbers =
             format!("Pairs that are {}: {}. Reported once: {}.", happens(fault.times), count(wrong), count(right));
@@ -78,9 +80,9 @@ const fn happens(times: usize) -> &'static str {
 
 /// Returns a word for how many pairs of a kind are reported `times` times, such as `all`.
 const fn describe_share(pairs: &PairCounts, times: usize) -> &'static str {
-    match pairs.times[1] {
+    match pairs.counts_by_times[1] {
         0 => "all",
-        right if 20 * right <= pairs.times[times] => "nearly all",
+        right if 20 * right <= pairs.counts_by_times[times] => "nearly all",
         _ => "some",
     }
 }
@@ -98,13 +100,13 @@ mod tests {
     use super::*;
 
     fn pairs(kind: PairKind, times: [u64; 3]) -> PairCounts {
-        PairCounts { kind, times, traits: Vec::new() }
+        PairCounts { kind, counts_by_times: times, traits: Vec::new() }
     }
 
     #[test]
     fn each_kind_of_pair_is_told_by_how_many_are_wrong() {
         let [particles, edges, half_planes] = PairKind::ALL;
-        let told = |kinds: [PairCounts; 3]| describe(&WrongPairs { first: None, kinds: kinds.into() });
+        let told = |kinds: [PairCounts; 3]| describe(&WrongPairs { first: None, counts_by_kind: kinds.into() });
         assert_eq!(
             told([pairs(particles, [90, 1, 0]), pairs(edges, [4, 0, 0]), pairs(half_planes, [0; 3])]),
             "Not written yet: the search for nearby pairs. No pair is reported."

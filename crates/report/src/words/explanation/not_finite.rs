@@ -1,14 +1,14 @@
 //! Describes traces with values that are not finite.
-use fosssim_mistakes::diagnose::{NanStage, NotFinite};
+use fosssim_mistakes::diagnose::{NanStage, NonFiniteValue};
 
 /// Describes the first step with a value that is not finite, the stage that computes it, and the usual reason.
-pub(super) fn describe(found: &NotFinite) -> String {
+pub(super) fn describe(found: &NonFiniteValue) -> String {
     let what = if found.is_nan { "NaN (not a number)" } else { "an infinite number" };
     let where_from = match (found.step, found.stage) {
         (_, NanStage::FirstRecord) => "In the first record".to_owned(),
-        (Some(step), _) if found.ends => format!("In step {step}, but not in all steps after it,"),
+        (Some(step), _) if found.recovers => format!("In step {step}, but not in all steps after it,"),
         (Some(step), _) => format!("From step {step} on"),
-        (None, _) if found.ends => "In some steps".to_owned(),
+        (None, _) if found.recovers => "In some steps".to_owned(),
         (None, _) => "From some step on".to_owned(),
     };
     let (makes, divisors) = match found.stage {

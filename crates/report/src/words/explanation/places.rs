@@ -1,5 +1,5 @@
 //! Describes the place of an example: the step, the record and the objects.
-use fosssim_judge::PairWords;
+use fosssim_judge::PairText;
 use fosssim_mistakes::diagnose::{ExamplePlace, StepRecord};
 use fosssim_model::sim::PairKind;
 
@@ -7,10 +7,10 @@ use fosssim_model::sim::PairKind;
 pub(crate) fn describe_place(place: &ExamplePlace) -> String {
     match place {
         ExamplePlace::Given { pair, pass, subject } => {
-            format!("{}, pass {}, {} polynomial", PairWords(*pair), pass + 1, subject.name())
+            format!("{}, pass {}, {} polynomial", PairText(*pair), pass + 1, subject.name())
         }
         ExamplePlace::Polynomial { pair, pass, role } => {
-            format!("{}, pass {}, {role} polynomial", PairWords(*pair), pass + 1)
+            format!("{}, pass {}, {role} polynomial", PairText(*pair), pass + 1)
         }
         ExamplePlace::NumberedPolynomial(number) => format!("polynomial {number}"),
         ExamplePlace::PolynomialCount => "number of polynomials".to_owned(),

@@ -1,20 +1,20 @@
 //! Describes wrong polynomials.
 use super::{capitalize, letters};
-use fosssim_mistakes::diagnose::{Guess, OfPolynomials, PolynomialDetail, Substitute, Weight};
+use fosssim_mistakes::diagnose::{Guess, PolynomialDetail, PolynomialEvidence, Substitute, Weight};
 use fosssim_student::assignments::t2m2::{Letter, Reading, Subject, find_edit, letter};
 
 /// Describes the fault of wrong polynomials.
-pub(super) fn describe_fault_of(subjects: &[Subject], found: &OfPolynomials) -> String {
+pub(super) fn describe_fault_of(subjects: &[Subject], found: &PolynomialEvidence) -> String {
     let names: Vec<&str> = subjects.iter().map(|subject| subject.name()).collect();
     let names = names.join(", ");
     let place = capitalize(&names);
     match found {
-        OfPolynomials::Guess(guess) => format!("{place}: {}.", describe_guess(guess)),
-        OfPolynomials::Missing => format!("Polynomials are not passed to the root finder: {names}."),
-        OfPolynomials::NearlyRight => {
+        PolynomialEvidence::Guess(guess) => format!("{place}: {}.", describe_guess(guess)),
+        PolynomialEvidence::Missing => format!("Polynomials are not passed to the root finder: {names}."),
+        PolynomialEvidence::NearlyRight => {
             format!("{place}: The formula is right, but has more round-off than the rules allow.")
         }
-        OfPolynomials::Nothing => {
+        PolynomialEvidence::Nothing => {
             let plural = if subjects.len() > 1 { "s" } else { "" };
             format!("No simple mistake explains the polynomial{plural}: {names}.")
         }

@@ -170,10 +170,10 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
         StageDetail::Vectors(Ratios::All(ratio)) if is(*ratio, -1.0) => "it points backwards".to_owned(),
         StageDetail::Vectors(Ratios::Between(..)) => "its length differs from contact to contact".to_owned(),
         StageDetail::Vectors(ratios) => format!("{} as long along the right one", describe_ratio(*ratios)),
-        StageDetail::VectorsOff(part) => format!("off by at most {part:.1e} of its length"),
+        StageDetail::VectorError(part) => format!("off by at most {part:.1e} of its length"),
         StageDetail::Times(ratios) => format!("{} what they should be", describe_ratio(*ratios)),
-        StageDetail::TimesOff(offset) => format!("off by {offset:.6}"),
-        StageDetail::TimesUsed => {
+        StageDetail::TimeError(offset) => format!("off by {offset:.6}"),
+        StageDetail::TimeUse => {
             "the time of impact from the root finder is used unchanged for contact vector and response".to_owned()
         }
         StageDetail::Passes { expected, actual, most } => {
@@ -191,18 +191,20 @@ pub(super) fn describe_detail(detail: &StageDetail) -> Option<String> {
             let body = body(changed);
             format!("{place}: the {quantity} of {body} changes {amount}{across} (in {wrong} of {of} isolated contacts)")
         }
-        StageDetail::OfZones { count, of } => format!("in {count} of {of} zones of the first round"),
-        StageDetail::Stopped(Ratios::All(ratio)) if is(*ratio, 1.0) => "they keep the velocity from before".to_owned(),
-        StageDetail::Stopped(ratios) => format!("{} their velocity before", describe_ratio(*ratios)),
-        StageDetail::CenterMoves(Ratios::All(ratio)) if is(*ratio, 0.0) => "it does not move".to_owned(),
-        StageDetail::CenterMoves(Ratios::Between(..)) => "how far it moves differs from zone to zone".to_owned(),
-        StageDetail::CenterMoves(ratios) => format!("it moves {} as far", describe_ratio(*ratios)),
+        StageDetail::ZoneCount { count, of } => format!("in {count} of {of} zones of the first round"),
+        StageDetail::StoppedVelocities(Ratios::All(ratio)) if is(*ratio, 1.0) => {
+            "they keep the velocity from before".to_owned()
+        }
+        StageDetail::StoppedVelocities(ratios) => format!("{} their velocity before", describe_ratio(*ratios)),
+        StageDetail::CenterMotion(Ratios::All(ratio)) if is(*ratio, 0.0) => "it does not move".to_owned(),
+        StageDetail::CenterMotion(Ratios::Between(..)) => "how far it moves differs from zone to zone".to_owned(),
+        StageDetail::CenterMotion(ratios) => format!("it moves {} as far", describe_ratio(*ratios)),
         StageDetail::CenterDirection => "its direction is wrong, too".to_owned(),
-        StageDetail::Turns(Ratios::All(ratio) | Ratios::Between(_, ratio)) if ratio.abs() < 1e-3 => {
+        StageDetail::Rotations(Ratios::All(ratio) | Ratios::Between(_, ratio)) if ratio.abs() < 1e-3 => {
             "they hardly turn".to_owned()
         }
-        StageDetail::Turns(Ratios::Between(..)) => "how far they turn differs from zone to zone".to_owned(),
-        StageDetail::Turns(ratios) => format!("they turn {} as far", describe_ratio(*ratios)),
+        StageDetail::Rotations(Ratios::Between(..)) => "how far they turn differs from zone to zone".to_owned(),
+        StageDetail::Rotations(ratios) => format!("they turn {} as far", describe_ratio(*ratios)),
         StageDetail::Velocities(ratios) => {
             format!("{} the displacement divided by the step size", describe_ratio(*ratios))
         }

@@ -2,9 +2,9 @@
 use super::*;
 use fosssim_mistakes::diagnose::{
     Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess, LoopEnd,
-    NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios, StageDetail, StageFault,
-    Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber, WrongPositions,
-    WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence, Quantity, QuantityGuess, Ratios, StageDetail,
+    StageFault, Substitute, Weight, WrongChange, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
+    WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::{
@@ -17,17 +17,17 @@ const EDGE: Option<PairKind> = Some(PairKind::ParticleEdge);
 const TWO: Ratios = Ratios::All(2.0);
 const OVERLAP: Reading = Reading { subject: Subject::EdgeOverlap, number: 0 };
 
-fn explanation(key: &str, about: About, details: Vec<Detail>) -> Explanation {
+fn explanation(key: &str, about: ExplanationTopic, details: Vec<Detail>) -> Explanation {
     let (key, same_as) = (key.to_owned(), Vec::new());
     Explanation {
         key,
-        about,
+        topic: about,
         details,
         reproduced: 0,
         samples: 0,
         example: None,
         same_as,
-        denies: Vec::new(),
+        contradicted_keys: Vec::new(),
         claims: Vec::new(),
     }
 }
@@ -128,18 +128,19 @@ fn faults() -> Vec<StageFault> {
 /// All that can be said of polynomials and stages, one explanation each.
 fn all() -> Vec<Explanation> {
     let edge = Subject::all_of_kind(PairKind::ParticleEdge).to_vec();
-    let of = |subjects: Vec<Subject>, found| explanation("k", About::Polynomials { subjects, found }, Vec::new());
+    let of =
+        |subjects: Vec<Subject>, found| explanation("k", ExplanationTopic::Polynomials { subjects, found }, Vec::new());
     let mut all = vec![
-        explanation("k", About::Scene { has_length: true }, Vec::new()),
-        explanation("k", About::Scene { has_length: false }, Vec::new()),
-        of(edge.clone(), OfPolynomials::Missing),
-        of(edge.clone(), OfPolynomials::Nothing),
-        of(vec![Subject::AlphaLow], OfPolynomials::Nothing),
-        of(vec![Subject::HalfPlaneOverlap], OfPolynomials::NearlyRight),
+        explanation("k", ExplanationTopic::Scene { has_length: true }, Vec::new()),
+        explanation("k", ExplanationTopic::Scene { has_length: false }, Vec::new()),
+        of(edge.clone(), PolynomialEvidence::Missing),
+        of(edge.clone(), PolynomialEvidence::Nothing),
+        of(vec![Subject::AlphaLow], PolynomialEvidence::Nothing),
+        of(vec![Subject::HalfPlaneOverlap], PolynomialEvidence::NearlyRight),
     ];
     let empty = ["pp-empty", "pe-empty", "ph-empty", "loop-empty", "geometric-empty", "failsafe-empty"];
     let same_as = empty.map(str::to_owned).into();
-    all.push(Explanation { same_as, ..explanation("k", About::Unfinished, Vec::new()) });
+    all.push(Explanation { same_as, ..explanation("k", ExplanationTopic::Unfinished, Vec::new()) });
     let stages = [
         NanStage::FirstRecord,
         NanStage::Motion,
@@ -151,13 +152,21 @@ fn all() -> Vec<Explanation> {
         NanStage::Zones,
         NanStage::ImplicitMotion,
     ];
-    let ends =
-        stages.map(|stage| NotFinite { step: Some(60), stage, is_nan: stage != NanStage::ContactVectors, ends: false });
-    let together = NotFinite { step: None, ..ends[7] };
-    let once = NotFinite { ends: true, ..ends[1] };
-    all.extend(ends.into_iter().chain([together, once]).map(|end| explanation("k", About::NotFinite(end), Vec::new())));
-    all.extend(guesses().into_iter().map(|guess| of(edge[..2].to_vec(), OfPolynomials::Guess(guess))));
-    all.extend(faults().into_iter().map(|fault| explanation("k", About::Stage(fault), Vec::new())));
+    let ends = stages.map(|stage| NonFiniteValue {
+        step: Some(60),
+        stage,
+        is_nan: stage != NanStage::ContactVectors,
+        recovers: false,
+    });
+    let together = NonFiniteValue { step: None, ..ends[7] };
+    let once = NonFiniteValue { recovers: true, ..ends[1] };
+    all.extend(
+        ends.into_iter()
+            .chain([together, once])
+            .map(|end| explanation("k", ExplanationTopic::NotFinite(end), Vec::new())),
+    );
+    all.extend(guesses().into_iter().map(|guess| of(edge[..2].to_vec(), PolynomialEvidence::Guess(guess))));
+    all.extend(faults().into_iter().map(|fault| explanation("k", ExplanationTopic::Stage(fault), Vec::new())));
     all
 }
 
@@ -207,20 +216,20 @@ fn lines_of_all_sorts() -> Vec<Detail> {
         StageDetail::Impacts { right: false, count: 3, low: 0.25, high: 0.75 },
         StageDetail::Impacts { right: true, count: 5, low: 0.125, high: 1.0 },
         StageDetail::Vectors(Ratios::Between(-1.0, 0.33333)),
-        StageDetail::VectorsOff(3.4e-8),
-        StageDetail::OfZones { count: 1, of: 3 },
+        StageDetail::VectorError(3.4e-8),
+        StageDetail::ZoneCount { count: 1, of: 3 },
         StageDetail::Vectors(Ratios::All(1.0 + 1e-6)),
         StageDetail::Times(TWO),
-        StageDetail::TimesOff(0.1),
-        StageDetail::TimesUsed,
+        StageDetail::TimeError(0.1),
+        StageDetail::TimeUse,
         StageDetail::Passes { expected: 4, actual: 2, most: 10 },
         change(Amount::Unwanted, false),
         change(Amount::Right, true),
         change(Amount::Ratio(TWO), false),
-        StageDetail::Stopped(TWO),
-        StageDetail::CenterMoves(TWO),
+        StageDetail::StoppedVelocities(TWO),
+        StageDetail::CenterMotion(TWO),
         StageDetail::CenterDirection,
-        StageDetail::Turns(Ratios::Between(0.5, 0.75)),
+        StageDetail::Rotations(Ratios::Between(0.5, 0.75)),
         StageDetail::Velocities(TWO),
     ];
     let polynomials = polynomials.map(Detail::Polynomial).into_iter();
@@ -231,7 +240,7 @@ fn lines_of_all_sorts() -> Vec<Detail> {
 /// Hints below `full` let no sentence through that gives a formula away, whatever is explained.
 #[test]
 fn no_sentence_gives_a_formula_away() {
-    let known = all_rows().map(|row| explanation(row.id, About::Mistake, Vec::new()));
+    let known = all_rows().map(|row| explanation(row.id, ExplanationTopic::Mistake, Vec::new()));
     for one in all().into_iter().chain(known) {
         let sentence = describe(&one);
         assert_eq!(find_formula(&sentence), None, "{sentence}");
@@ -243,7 +252,7 @@ fn no_sentence_gives_a_formula_away() {
 fn every_finding_has_its_sentence() {
     let sentences: Vec<String> = all().iter().map(describe).collect();
     insta::assert_snapshot!("sentences", sentences.join("\n"));
-    let lines = list_details(&explanation("k", About::Mistake, lines_of_all_sorts()));
+    let lines = list_details(&explanation("k", ExplanationTopic::Mistake, lines_of_all_sorts()));
     insta::assert_snapshot!("lines", lines.join("\n"));
 }
 
@@ -253,8 +262,8 @@ fn every_finding_has_its_sentence() {
 fn a_known_mistake_is_told_by_its_row() {
     let row = find("pe-square-no-eh").expect("a row");
     let details_of_row =
-        vec![Detail::Term(row.id.into()), Detail::Letters(vec![PairKind::ParticleEdge]), Detail::Look(row.area)];
-    let one = explanation(row.id, About::Mistake, details_of_row);
+        vec![Detail::Term(row.id.into()), Detail::Letters(vec![PairKind::ParticleEdge]), Detail::SearchArea(row.area)];
+    let one = explanation(row.id, ExplanationTopic::Mistake, details_of_row);
     assert_eq!(describe(&one), row.sentence());
     let lines = list_details(&one);
     assert_eq!(lines[0], row.term);

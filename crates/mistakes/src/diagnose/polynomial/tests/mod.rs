@@ -300,8 +300,9 @@ fn mistakes_in_two_coefficients_are_both_named_whatever_the_scale() {
         };
         let one = only(PairKind::ParticleEdge, "coefficients", weight(3, "f h", 2.0, -2.0), student);
         assert!(has(&one, weight(2, "i R^2", 2.0, 1.0)), "{one:#?}");
-        let found = OfPolynomials::Guess(Guess::Coefficients { powers: vec![3, 2], wrong: CoefficientGuess::Several });
-        assert_eq!(one.about, About::Polynomials { subjects: vec![Subject::EdgeOverlap], found });
+        let (subjects, wrong) = (vec![Subject::EdgeOverlap], CoefficientGuess::Several);
+        let found = PolynomialEvidence::Guess(Guess::Coefficients { powers: vec![3, 2], wrong });
+        assert_eq!(one.topic, ExplanationTopic::Polynomials { subjects, found });
     }
 }
 
@@ -398,7 +399,7 @@ fn wrong_inputs_are_one_explanation_for_all_polynomials() {
             },
         );
         assert_eq!(one.samples, 1200, "{one:#?}");
-        let About::Polynomials { subjects, .. } = &one.about else { panic!("{one:#?}") };
+        let ExplanationTopic::Polynomials { subjects, .. } = &one.topic else { panic!("{one:#?}") };
         assert_eq!(subjects[..], *Subject::all_of_kind(PairKind::ParticleEdge), "{one:#?}");
     }
 }
@@ -486,8 +487,7 @@ fn small_slips_in_quadratics_are_named() {
     overlap("cut", &is(PolynomialDetail::LastOnly(2)), &|lists| lists[0][0] = 0.0);
     let is_little = |detail: &PolynomialDetail| matches!(detail, PolynomialDetail::Factor { power: 0, factor } if (factor - 1.0 - 1e-9).abs() < 1e-14);
     overlap("coefficient-factor", &is_little, &|lists| lists[0][2] *= 1.0 + 1e-9);
-    let sign = PolynomialDetail::Factor { power: 0, factor: -1.0 };
-    overlap("coefficient-sign", &is(sign), &|lists| lists[0][2] *= -1.0);
+    overlap("coefficient-sign", &is(PolynomialDetail::Factor { power: 0, factor: -1.0 }), &|lists| lists[0][2] *= -1.0);
     overlap("term-sign", &weight(0, "x21.d21", 1.0, -1.0), &|lists| lists[1][1] *= -1.0);
     overlap("term-factor", &weight(1, "d21.d21", -2.0, -1.0), &|lists| lists[1][0] *= 2.0);
     let half_plane = |key: &str, told: Told, change: &dyn Fn(&PairMotion, &mut Lists)| {

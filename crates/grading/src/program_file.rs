@@ -6,7 +6,7 @@ use std::{fs::File, io, os::unix::fs::MetadataExt};
 /// The identity of a program's file, and whether other submissions share the file. A file may have several names (hard
 /// links).
 #[derive(Debug, Clone, PartialEq, Eq)]
-pub struct OneFile {
+pub struct ProgramFile {
     /// The identity of the file, by which names of the same file are recognized.
     pub identity: Identity,
     /// Whether the same file is in another submission.
@@ -26,7 +26,7 @@ pub(super) const FILE_OF_ANOTHER: &str = "it is a hard link to another submissio
 
 /// Returns whether an open file belongs to another submission, according to what was found when submissions were
 /// searched.
-pub(super) fn is_anothers(file: &File, noted: Option<&OneFile>) -> io::Result<bool> {
+pub(super) fn belongs_to_another(file: &File, noted: Option<&ProgramFile>) -> io::Result<bool> {
     let metadata = file.metadata()?;
     match noted {
         _ if metadata.nlink() == 1 => Ok(false),
@@ -51,14 +51,16 @@ mod tests {
         let file = File::open(at("one")).expect("a file");
         let noted = |name: &str, is_anothers| {
             let identity = Identity::from_metadata(&std::fs::metadata(at(name)).expect("data"));
-            OneFile { identity, is_shared: is_anothers, is_anothers }
+            ProgramFile { identity, is_shared: is_anothers, is_anothers }
         };
-        assert!(!is_anothers(&file, None).expect("known"), "one name is enough");
+        assert!(!belongs_to_another(&file, None).expect("known"), "one name is enough");
         std::fs::hard_link(at("one"), at("backup")).expect("a backup");
-        assert!(!is_anothers(&file, Some(&noted("one", false))).expect("known"));
-        assert!(is_anothers(&file, Some(&noted("one", true))).expect("known"));
+        assert!(!belongs_to_another(&file, Some(&noted("one", false))).expect("known"));
+        assert!(belongs_to_another(&file, Some(&noted("one", true))).expect("known"));
         for noted in [None, Some(noted("other", false))] {
-            assert!(is_anothers(&file, noted.as_ref()).expect_err("exchanged").to_string().contains("was replaced"));
+            assert!(
+                belongs_to_another(&file, noted.as_ref()).expect_err("exchanged").to_string().contains("was replaced")
+            );
         }
     }
 }

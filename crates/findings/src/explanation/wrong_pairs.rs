@@ -8,7 +8,8 @@ pub struct WrongPairs {
     /// The first wrong pair and its step; `None` if the explanation covers several traces.
     pub first: Option<(Pair, u32)>,
     /// The number of pairs for each kind.
-    pub kinds: Vec<PairCounts>,
+    #[serde(rename = "kinds")]
+    pub counts_by_kind: Vec<PairCounts>,
 }
 
 /// The nearby pairs of one kind, counted.
@@ -17,7 +18,8 @@ pub struct PairCounts {
     /// The kind of the pairs.
     pub kind: PairKind,
     /// The number of pairs that are reported zero times, once, and twice.
-    pub times: [u64; 3],
+    #[serde(rename = "times")]
+    pub counts_by_times: [u64; 3],
     /// For each trait, the number of pairs that have it, in the order of the table of traits. Each is split as in
     /// `times`.
     pub traits: Vec<[u64; 3]>,
@@ -28,8 +30,8 @@ impl WrongPairs {
     pub fn add(&mut self, other: &Self) {
         let add = |one: &mut [u64; 3], other: &[u64; 3]| one.iter_mut().zip(other).for_each(|(one, more)| *one += more);
         self.first = None;
-        for (one, other) in self.kinds.iter_mut().zip(&other.kinds) {
-            add(&mut one.times, &other.times);
+        for (one, other) in self.counts_by_kind.iter_mut().zip(&other.counts_by_kind) {
+            add(&mut one.counts_by_times, &other.counts_by_times);
             one.traits.iter_mut().zip(&other.traits).for_each(|(one, other)| add(one, other));
         }
     }

@@ -16,54 +16,54 @@ use std::fmt::{self, Display, Formatter};
 
 impl Display for Finding {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "step {}: {}", self.step, self.what())
+        write!(f, "step {}: {}", self.step, self.describe())
     }
 }
 
 /// A finding, written without its step.
-struct WithoutStep<'a>(&'a Finding);
+struct SteplessFinding<'a>(&'a Finding);
 
 impl Finding {
     /// Returns the text of the finding without its step. In sentences about the first record, bodies "start" somewhere;
     /// in those about other records, they "end" there.
     #[must_use]
-    pub fn what(&self) -> impl Display + '_ {
-        WithoutStep(self)
+    pub fn describe(&self) -> impl Display + '_ {
+        SteplessFinding(self)
     }
 }
 
 /// The text about a decision that differs because coefficients are missing. The trace's other polynomials show whether
 /// a factor explains why they are missing.
-const MISSING_COEFFICIENTS: &str = "the trace's polynomials lack the coefficients for it";
-const OTHER_FORM: &str = "the other of the two accepted forms; a program must use one of them throughout";
-const LEFT_OUT: &str = "are close enough for the penalty force, but no force was applied between them";
-const DOUBLED: &str = "are close enough for the penalty force, but the force between them was applied twice";
-const DROPPING: &str = "the course's library drops leading ones below 1e-12";
+const LOSS_TEXT: &str = "the trace's polynomials lack the coefficients for it";
+const OTHER_FORM_TEXT: &str = "the other of the two accepted forms; a program must use one of them throughout";
+const OMITTED_PAIR_TEXT: &str = "are close enough for the penalty force, but no force was applied between them";
+const DOUBLED_PAIR_TEXT: &str = "are close enough for the penalty force, but the force between them was applied twice";
+const DROPPING_TEXT: &str = "the course's library drops leading ones below 1e-12";
 
-impl Display for WithoutStep<'_> {
+impl Display for SteplessFinding<'_> {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let is_first = self.0.step == 0;
         let verb = if is_first { "starts" } else { "ends" };
         match self.0.detail {
             FindingDetail::MissedCollision { expected } => {
                 let Impulse { pair, normal, time } = expected;
-                let (pair, time, normal) = (PairWords(pair), ExactNumber(time), VectorWords(normal.into()));
+                let (pair, time, normal) = (PairText(pair), ExactNumber(time), VectorText(normal.into()));
                 write!(f, "{pair} collide at time {time} with normal {normal}, but the trace misses it")
             }
             FindingDetail::SuperfluousCollision { actual } => {
                 let LoggedImpulse { normal, time, .. } = actual;
-                let (pair, time, normal) = (LoggedPair(&actual), ExactNumber(time), VectorWords(normal.into()));
+                let (pair, time, normal) = (LoggedPair(&actual), ExactNumber(time), VectorText(normal.into()));
                 write!(f, "the trace has {pair} collide at time {time} with normal {normal}, but they do not")
             }
             FindingDetail::WrongNormal { expected, actual, .. } => {
-                let pair = PairWords(expected.pair);
+                let pair = PairText(expected.pair);
                 let (expected, actual) = (expected.normal, actual.normal);
                 let apart = VectorDifference { expected: [expected.x, expected.y], actual: [actual.x, actual.y] };
                 write!(f, "{pair}: contact normal {apart}")
             }
             FindingDetail::PolynomialCount { expected, actual, per_pass } => {
                 write!(f, "{actual} polynomials logged, expected {expected}")?;
-                write_passes(f, passes(expected, actual, per_pass))
+                write_passes(f, count_whole_passes(expected, actual, per_pass))
             }
             FindingDetail::PassCount { part, expected, actual } => {
                 let part = if part == Part::Impulses { "before the mid record" } else { "in the geometric part" };
@@ -78,7 +78,7 @@ impl Display for WithoutStep<'_> {
                 write!(f, "{place}: the reference's coefficients all vanish, but the trace's do not")
             }
             FindingDetail::Coefficient { place, power, expected, actual, .. } => {
-                write!(f, "{place}, {}: {}, expected {}", Power(power), ExactNumber(actual), ExactNumber(expected))
+                write!(f, "{place}, {}: {}, expected {}", PowerText(power), ExactNumber(actual), ExactNumber(expected))
             }
             FindingDetail::Position { particle, expected, actual, .. } => {
                 write!(f, "particle {particle} {verb} at {}", VectorDifference { expected, actual })
@@ -88,7 +88,7 @@ impl Display for WithoutStep<'_> {
             }
             FindingDetail::ContactTime { expected: Impulse { pair, time, .. }, actual } => {
                 let times = [time, actual.time].map(ExactNumber);
-                write!(f, "{} collide at time {}, but the trace says {}", PairWords(pair), times[0], times[1])
+                write!(f, "{} collide at time {}, but the trace says {}", PairText(pair), times[0], times[1])
             }
             FindingDetail::RepeatedCollision { actual } => {
                 write!(f, "the collision of {} is logged more than once", LoggedPair(&actual))
@@ -97,26 +97,26 @@ impl Display for WithoutStep<'_> {
                 f,
                 "{place}: follows from wrong positions, not from those after the preceding response or failsafe"
             ),
-            FindingDetail::RecordsDiffer { part } => f.write_str(difference_of_records(part, is_first)),
+            FindingDetail::RecordsDiffer { part } => f.write_str(describe_record_difference(part, is_first)),
             FindingDetail::ImpossibleLog => f.write_str("a polynomial has more coefficients than any detection has"),
             FindingDetail::TrimmedDecision { place, collides } => {
                 let outcome = if collides { "collide" } else { "do not collide" };
-                let (pair, pass) = (PairWords(place.pair), PassWords(place.pass));
-                write!(f, "{pair} ({pass}) {outcome}; {MISSING_COEFFICIENTS}, and decide otherwise ({DROPPING})")
+                let (pair, pass) = (PairText(place.pair), PassText(place.pass));
+                write!(f, "{pair} ({pass}) {outcome}; {LOSS_TEXT}, and decide otherwise ({DROPPING_TEXT})")
             }
             FindingDetail::TrimmedTime { place, expected, actual } => write_trimmed_time(f, place, [expected, actual]),
             FindingDetail::BeyondReach { particle, position, velocity } => write!(
                 f,
                 "the step starts or ends with particle {particle} at {} with velocity {}: no run of the scene leads to \
                  such states",
-                VectorWords(position),
-                VectorWords(velocity)
+                VectorText(position),
+                VectorText(velocity)
             ),
-            FindingDetail::MixedForms { place } => write!(f, "{place}: {OTHER_FORM}"),
-            FindingDetail::PairForce { pair, is_doubled: false } => write!(f, "{} {LEFT_OUT}", PairWords(pair)),
-            FindingDetail::PairForce { pair, is_doubled: true } => write!(f, "{} {DOUBLED}", PairWords(pair)),
+            FindingDetail::MixedForms { place } => write!(f, "{place}: {OTHER_FORM_TEXT}"),
+            FindingDetail::PairForce { pair, is_doubled: false } => write!(f, "{} {OMITTED_PAIR_TEXT}", PairText(pair)),
+            FindingDetail::PairForce { pair, is_doubled: true } => write!(f, "{} {DOUBLED_PAIR_TEXT}", PairText(pair)),
             FindingDetail::NoResult { error } => {
-                write!(f, "no next state follows from the trace's own state, because {}", WithoutResult(error))
+                write!(f, "no next state follows from the trace's own state, because {}", MissingResult(error))
             }
         }
     }
@@ -125,12 +125,12 @@ impl Display for WithoutStep<'_> {
 /// Writes the sentence about a time of impact that is wrong because coefficients are missing. The expected time comes
 /// first.
 fn write_trimmed_time(f: &mut Formatter<'_>, place: PolynomialPlace, times: [f64; 2]) -> fmt::Result {
-    let (pair, pass, [expected, actual]) = (PairWords(place.pair), PassWords(place.pass), times.map(ExactNumber));
-    write!(f, "{pair} ({pass}) collide at time {expected}; {MISSING_COEFFICIENTS}, and have time {actual} ({DROPPING})")
+    let (pair, pass, [expected, actual]) = (PairText(place.pair), PassText(place.pass), times.map(ExactNumber));
+    write!(f, "{pair} ({pass}) collide at time {expected}; {LOSS_TEXT}, and have time {actual} ({DROPPING_TEXT})")
 }
 
 /// Returns the sentence about the part in which the two records of a step differ.
-const fn difference_of_records(part: RecordPart, is_first: bool) -> &'static str {
+const fn describe_record_difference(part: RecordPart, is_first: bool) -> &'static str {
     match part {
         RecordPart::Impulses if is_first => "the first record contains impulses, although nothing has moved yet",
         RecordPart::Polynomials if is_first => "the first record contains polynomials, although nothing has moved yet",
@@ -166,7 +166,7 @@ impl Display for VectorDifference {
             let size = vector.into_iter().fold(0.0_f64, |size, value| size.max(value.abs()));
             let least = power(size).map(|power| 5 - power);
             let places = power(distance).map(|power| 1 - power).max(least).unwrap_or(0);
-            VectorWords(vector.map(|value| cut_to_places(value, places, power(value))))
+            VectorText(vector.map(|value| truncate_to_places(value, places, power(value))))
         };
         write!(f, "{}, expected {}, distance ", short([ax, ay]), short([ex, ey]))?;
         let rounded = format!("{distance:.2e}").parse().unwrap_or(distance);
@@ -175,7 +175,7 @@ impl Display for VectorDifference {
 }
 
 /// Cuts a value after a number of decimal places. A negative number means places before the decimal point.
-fn cut_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
+fn truncate_to_places(value: f64, places: i32, power: Option<i32>) -> f64 {
     // Seventeen digits identify a double, so more are not needed.
     let digits = power.map_or(0, |power| (power + places).clamp(0, 16));
     let text = match (usize::try_from(digits), usize::try_from(places.max(0))) {
@@ -197,9 +197,9 @@ impl Display for ExactNumber {
 }
 
 /// Writes a point or a vector, such as `(0.5, 1)`.
-struct VectorWords([f64; 2]);
+struct VectorText([f64; 2]);
 
-impl Display for VectorWords {
+impl Display for VectorText {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         write!(f, "({}, {})", ExactNumber(self.0[0]), ExactNumber(self.0[1]))
     }
@@ -208,7 +208,7 @@ impl Display for VectorWords {
 /// Returns the number of whole detection passes by which two counts differ, and whether the trace has more; `None` if
 /// the number is not whole.
 #[must_use]
-pub fn passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize, bool)> {
+pub fn count_whole_passes(expected: usize, actual: usize, per_pass: usize) -> Option<(usize, bool)> {
     let difference = actual.abs_diff(expected);
     (per_pass > 0 && difference > 0 && difference.is_multiple_of(per_pass))
         .then(|| (difference / per_pass, actual > expected))
@@ -223,7 +223,7 @@ pub fn is_visible_ascii(text: &str) -> bool {
 
 impl Display for PolynomialPlace {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
-        write!(f, "{} polynomial of {} ({})", self.role, PairWords(self.pair), PassWords(self.pass))
+        write!(f, "{} polynomial of {} ({})", self.role, PairText(self.pair), PassText(self.pass))
     }
 }
 
@@ -241,15 +241,15 @@ impl Display for FindingKind {
 
 /// Writes the reason why a step has no result.
 #[derive(Debug, Clone, Copy)]
-pub struct WithoutResult(pub StepError);
+pub struct MissingResult(pub StepError);
 
-impl Display for WithoutResult {
+impl Display for MissingResult {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.0 {
             StepError::RootSearch { pair, .. } => write!(
                 f,
                 "the root search of {} would never end: a coefficient is not finite, or absurdly small",
-                PairWords(pair)
+                PairText(pair)
             ),
             StepError::Newton { .. } => f.write_str("Newton's method finds no solution of the implicit equation"),
             StepError::VortexHessian { .. } => {
@@ -264,9 +264,9 @@ impl Display for WithoutResult {
 
 /// Writes a pair, such as `particle 3 and edge 1`.
 #[derive(Debug, Clone, Copy)]
-pub struct PairWords(pub Pair);
+pub struct PairText(pub Pair);
 
-impl Display for PairWords {
+impl Display for PairText {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         let Pair { kind, first, second } = self.0;
         write_pair(f, kind, &first, &second)
@@ -295,9 +295,9 @@ impl Display for LoggedPair<'_> {
 
 /// Writes a detection pass, such as `impulse round 2`.
 #[derive(Debug, Clone, Copy)]
-pub struct PassWords(pub Pass);
+pub struct PassText(pub Pass);
 
-impl Display for PassWords {
+impl Display for PassText {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.0.stage {
             Stage::Simple | Stage::ContinuousTime => f.write_str("the step's only detection pass"),
@@ -310,9 +310,9 @@ impl Display for PassWords {
 
 /// Writes a power of t, as `t^3`, `t` or `constant term`.
 #[derive(Debug, Clone, Copy)]
-pub struct Power(pub usize);
+pub struct PowerText(pub usize);
 
-impl Display for Power {
+impl Display for PowerText {
     fn fmt(&self, f: &mut Formatter<'_>) -> fmt::Result {
         match self.0 {
             0 => f.write_str("constant term"),
@@ -390,7 +390,7 @@ mod tests {
     fn whole_passes_are_counted() {
         let words = |expected, actual, per_pass| {
             let detail = FindingDetail::PolynomialCount { expected, actual, per_pass };
-            Finding { step: 1, frame: 2, detail }.what().to_string()
+            Finding { step: 1, frame: 2, detail }.describe().to_string()
         };
         assert_eq!(words(40, 60, 20), "60 polynomials logged, expected 40: 1 detection pass too many");
         assert_eq!(words(60, 20, 20), "20 polynomials logged, expected 60: 2 detection passes too few");

@@ -1,16 +1,16 @@
 //! The subjects of explanations.
 use super::{
-    fault::{NotFinite, StageFault},
+    fault::{NonFiniteValue, StageFault},
     guess::Guess,
-    near::WrongPairs,
     subject::Subject,
+    wrong_pairs::WrongPairs,
 };
 use fosssim_model::sim::PairKind;
 use serde::{Deserialize, Serialize};
 
 /// The subject of an explanation, with the facts that a sentence can state.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub enum About {
+pub enum ExplanationTopic {
     /// A known mistake, whose id is the explanation's key.
     Mistake,
     /// Stages that are not written yet; their keys are in [`Explanation::same_as`](super::Explanation::same_as).
@@ -25,17 +25,17 @@ pub enum About {
         /// The polynomials that are wrong.
         subjects: Vec<Subject>,
         /// The facts that are known about these polynomials.
-        found: OfPolynomials,
+        found: PolynomialEvidence,
     },
     /// A stage of a step whose results are wrong, although the results of all earlier stages are right.
     Stage(StageFault),
     /// Nearby pairs that a contest's search misses or reports twice. This is an observation, not a guess.
     Pairs(WrongPairs),
     /// Values that are not finite numbers. This is an observation, and reports show it before all guesses.
-    NotFinite(NotFinite),
+    NotFinite(NonFiniteValue),
 }
 
-impl About {
+impl ExplanationTopic {
     /// Returns the kinds of pairs that the wrong polynomials belong to. Each kind is listed once.
     #[must_use]
     pub fn kinds(&self) -> Vec<PairKind> {
@@ -46,7 +46,7 @@ impl About {
 
 /// The facts that are known about wrong polynomials.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
-pub enum OfPolynomials {
+pub enum PolynomialEvidence {
     /// A guess, which reproduces all or some of the polynomials.
     Guess(Guess),
     /// The program does not pass the polynomials to the root finder.

@@ -1,7 +1,7 @@
 //! Handles scenes on which the grader failed. The verdict is a judge error, and the trace is saved for the developer
 //! who repairs the grader.
 use super::{
-    guard::Fault,
+    guard::CaughtPanic,
     result::{Activity, Failure, SavedTrace, SceneResult},
     task::SceneTask,
 };
@@ -12,8 +12,14 @@ use std::{
 };
 
 /// Returns the result of a scene on which the grader failed, with the beginning of its trace.
-pub(super) fn result(task: &SceneTask, folder: &Place, stage: Activity, fault: &Fault, trace: &[u8]) -> SceneResult {
-    let kept = match keep(folder, task, trace) {
+pub(super) fn fault_result(
+    task: &SceneTask,
+    folder: &Place,
+    stage: Activity,
+    fault: &CaughtPanic,
+    trace: &[u8],
+) -> SceneResult {
+    let kept = match save_trace(folder, task, trace) {
         Ok(path) => SavedTrace::In(path),
         Err(error) => SavedTrace::Lost { folder: folder.path(), error: error.to_string() },
     };
@@ -21,7 +27,7 @@ pub(super) fn result(task: &SceneTask, folder: &Place, stage: Activity, fault: &
 }
 
 /// Writes a trace into the folder. The file's name contains the scene's name and the trace's digest.
-fn keep(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
+fn save_trace(folder: &Place, task: &SceneTask, trace: &[u8]) -> io::Result<PathBuf> {
     let scene: String =
         task.name.chars().map(|c| if c.is_ascii_alphanumeric() || "-_.".contains(c) { c } else { '_' }).collect();
     let digest = blake3::hash(trace).to_hex();

@@ -16,7 +16,8 @@ pub struct SmallestScene {
     /// The number of steps that the scene has.
     pub steps: u32,
     /// The command that finds the same scene again.
-    pub again: String,
+    #[serde(rename = "again")]
+    pub command: String,
     /// The number of times that the program was run.
     pub runs: u32,
     /// Whether no single change makes the scene smaller; false if the search was stopped early.
@@ -24,13 +25,16 @@ pub struct SmallestScene {
     /// The way in which the program ended, if it did not end well.
     pub note: Option<String>,
     /// The first fault, if the hints show it.
-    pub first: Option<DisclosedFinding>,
+    #[serde(rename = "first")]
+    pub first_finding: Option<DisclosedFinding>,
     /// The likely mistakes. The first one is the cause for which the scene was made.
     pub explanations: Vec<Explanation>,
     /// The values that differ, as text; `None` without full hints.
-    pub differs: Option<String>,
+    #[serde(rename = "differs")]
+    pub difference: Option<String>,
     /// The reference's computation of the first wrong step, as text; `None` without full hints.
-    pub by_hand: Option<String>,
+    #[serde(rename = "by_hand")]
+    pub calculation: Option<String>,
     /// The name of the stored card that shows the scene; `None` without full hints.
     pub card: Option<String>,
 }
@@ -45,15 +49,16 @@ impl SmallestScene {
     /// Returns whether the scene has another content and another cause than all scenes in `found`.
     #[must_use]
     pub fn is_new(&self, found: &[Self]) -> bool {
-        let cause = |one: &Self| one.explanations.first().filter(|cause| cause.is_vote()).map(Explanation::statement);
+        let cause =
+            |one: &Self| one.explanations.first().filter(|cause| cause.is_about_program()).map(Explanation::statement);
         found.iter().all(|one| one.xml != self.xml && (cause(one).is_none() || cause(one) != cause(self)))
     }
 
     /// Removes everything that the hints do not allow, except for the explanations.
-    pub fn cut(&mut self, hints: Hints) {
+    pub fn limit_to_hints(&mut self, hints: Hints) {
         if hints < Hints::Full {
-            (self.differs, self.by_hand, self.card) = (None, None, None);
-            self.first = self.first.take().and_then(|first| hints.cut(first));
+            (self.difference, self.calculation, self.card) = (None, None, None);
+            self.first_finding = self.first_finding.take().and_then(|first| hints.limit_finding(first));
         }
     }
 }

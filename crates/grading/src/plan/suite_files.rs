@@ -1,5 +1,5 @@
 //! Reads suites and scenes from files.
-use super::{MatchingScenes, Plan, built_in, built_in_names, load_by, suggest};
+use super::{MatchingScenes, Plan, built_in_names, find_built_in_suite, load_with, suggest};
 use crate::config::SuiteError;
 use fosssim_files::{open_file, read_limited, read_text};
 use fosssim_model::scene;
@@ -15,17 +15,17 @@ pub const MAX_SCENE_BYTES: u64 = 256 << 20;
 
 /// The reason why a suite cannot be used. It does not exist, a file cannot be read, or the suite has errors.
 #[derive(Debug, thiserror::Error)]
-#[error("{words}")]
+#[error("{message}")]
 pub struct FindError {
-    words: String,
+    message: String,
     /// The reason why a file can't be read; `None` if something else is wrong.
     #[source]
-    why: Option<io::Error>,
+    cause: Option<io::Error>,
 }
 
 impl From<String> for FindError {
     fn from(words: String) -> Self {
-        Self { words, why: None }
+        Self { message: words, cause: None }
     }
 }
 
@@ -42,24 +42,24 @@ fn describe_errors(name: &str, SuiteError { problems }: &SuiteError) -> String {
 /// # Errors
 ///
 /// Fails if there is no such suite. If the suite is invalid, the error contains all problems.
-pub fn find(name: &str) -> Result<Plan, FindError> {
+pub fn find_suite(name: &str) -> Result<Plan, FindError> {
     let path = Path::new(name);
     let beside = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
-    let loaded = match built_in(name) {
-        Some(text) => load(text, Path::new(".")),
+    let loaded = match find_built_in_suite(name) {
+        Some(text) => load_suite(text, Path::new(".")),
         None => {
             let text = read_text(path, MAX_SUITE_BYTES).map_err(|why| match why.kind() {
                 io::ErrorKind::NotFound => {
                     let known = built_in_names().collect::<Vec<_>>().join(", ");
                     format!("no suite {name}: it is neither a file nor one of {known}{}", suggest(name)).into()
                 }
-                _ => FindError { words: format!("cannot read the suite {name}"), why: Some(why) },
+                _ => FindError { message: format!("cannot read the suite {name}"), cause: Some(why) },
             })?;
             if ["<?xml", "<scene"].iter().any(|start| text.starts_with(start)) {
                 let advice = "a group of a suite lists it in its `scenes`";
                 return Err(format!("{name} is a scene, not a suite: {advice}").into());
             }
-            load(&text, beside)
+            load_suite(&text, beside)
         }
     };
     loaded.map_err(|error| describe_errors(name, &error).into())
@@ -69,10 +69,10 @@ pub fn find(name: &str) -> Result<Plan, FindError> {
 ///
 /// # Errors
 ///
-/// Fails like [`load_by`].
-pub fn load(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
+/// Fails like [`load_with`].
+pub fn load_suite(text: &str, folder: &Path) -> Result<Plan, SuiteError> {
     let mut room = FileBudget { scenes: MAX_SCENES, bytes: MAX_SCENE_BYTES };
-    load_by(text, &mut |pattern| find_files(pattern, folder, &mut room))
+    load_with(text, &mut |pattern| find_files(pattern, folder, &mut room))
 }
 
 /// The numbers of files and bytes that the scenes of a suite may still have.

@@ -12,19 +12,19 @@ const MAX_MARKS: usize = 4;
 /// single ones between letters, and the backslash itself. Names with different bytes therefore look different, except
 /// for letters with marks that are written in two ways ([`exact`]).
 #[must_use]
-pub fn printable(name: &OsStr) -> String {
-    each_chunk(name, |valid| escape(&valid.nfc().collect::<String>(), |_| false))
+pub fn to_printable(name: &OsStr) -> String {
+    map_chunks(name, |valid| escape(&valid.nfc().collect::<String>(), |_| false))
 }
 
-/// Returns a file's name as [`printable`] does, but with escapes instead of combining marks. Different names then
+/// Returns a file's name as [`to_printable`] does, but with escapes instead of combining marks. Different names then
 /// always have different texts.
 #[must_use]
-pub fn exact(name: &OsStr) -> String {
+pub fn to_exact(name: &OsStr) -> String {
     // If normalization changes a letter, its length or its code point changes.
-    each_chunk(name, |valid| escape(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))
+    map_chunks(name, |valid| escape(valid, |c| is_mark(c) || is_part_of_a_syllable(c) || !c.nfc().eq([c])))
 }
 
-fn each_chunk(name: &OsStr, text: impl Fn(&str) -> String) -> String {
+fn map_chunks(name: &OsStr, text: impl Fn(&str) -> String) -> String {
     let mut shown = String::new();
     for chunk in name.as_bytes().utf8_chunks() {
         shown += &text(chunk.valid());
@@ -101,9 +101,9 @@ mod tests {
         for name in
             ["alice", "Zoë", "Nguyễn Văn A", "שלמה", "محمد", "कुमार", "山田太郎", "O'Brien-Łoś", "a,b", "=cmd", "ﾀﾛｳ"]
         {
-            assert_eq!(printable(OsStr::new(name)), name);
+            assert_eq!(to_printable(OsStr::new(name)), name);
         }
-        assert_eq!(printable(OsStr::new("Zoe\u{308}")), "Zo\u{eb}");
+        assert_eq!(to_printable(OsStr::new("Zoe\u{308}")), "Zo\u{eb}");
     }
 
     #[test]
@@ -156,20 +156,20 @@ mod tests {
         ];
         let mut seen = BTreeMap::new();
         for name in names {
-            let text = printable(OsStr::from_bytes(name));
+            let text = to_printable(OsStr::from_bytes(name));
             assert!(!text.chars().any(|c| is_hidden(c) || c.is_control()), "{text:?}");
             assert!(!text.starts_with(' ') && !text.ends_with(' ') && !text.contains("  "), "{text:?}");
             if let Some(other) = seen.insert(text.clone(), name) {
                 panic!("{name:?} and {other:?} are both {text}");
             }
         }
-        assert_eq!(printable(OsStr::new("alice\r")), "alice\\r");
-        assert_eq!(printable(OsStr::new("bob\u{200b}")), "bob\\u{200b}");
+        assert_eq!(to_printable(OsStr::new("alice\r")), "alice\\r");
+        assert_eq!(to_printable(OsStr::new("bob\u{200b}")), "bob\\u{200b}");
     }
 
     #[test]
     fn two_ways_to_write_a_letter_have_two_exact_names() {
-        let of = |text: &str| (printable(OsStr::new(text)), exact(OsStr::new(text)));
+        let of = |text: &str| (to_printable(OsStr::new(text)), to_exact(OsStr::new(text)));
         let (one, two, sign) = (of("\u{e5}"), of("a\u{30a}"), of("\u{212b}"));
         assert_eq!((&one.0, &two.0, sign.0.as_str()), (&"å".to_owned(), &"å".to_owned(), "Å"));
         assert_eq!((one.1.as_str(), two.1.as_str(), sign.1.as_str()), ("å", "a\\u{30a}", "\\u{212b}"));
@@ -177,7 +177,7 @@ mod tests {
 
     #[test]
     fn a_heap_of_marks_covers_nothing() {
-        let heap = printable(OsStr::new(&format!("a{}", "\u{316}".repeat(100))));
+        let heap = to_printable(OsStr::new(&format!("a{}", "\u{316}".repeat(100))));
         assert_eq!(heap.chars().filter(|c| is_mark(*c)).count(), MAX_MARKS);
     }
 }

@@ -19,7 +19,7 @@ use std::{
     time::Duration,
 };
 
-const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n\
+const SUITE_TEXT: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"full\"\n\
                      [[group]]\nname = \"first\"\npoints = 10\n\
                      scenes = [\"asset:SimpleTests/*\"]\n[[group]]\nname = \"second\"\npoints = 5\ncredit = \"all\"\n\
                      scenes = [\"asset:PenaltyTests/*\"]\n";
@@ -28,7 +28,7 @@ const SUITE: &str = "schema = 1\nname = \"test\"\nrules = \"both\"\nhints = \"fu
 pub(super) const SMALL_TRACE: usize = 1 << 20;
 
 pub(super) fn small_plan() -> Plan {
-    plan::load(SUITE, Path::new("nowhere")).expect("a sound suite")
+    plan::load_suite(SUITE_TEXT, Path::new("nowhere")).expect("a sound suite")
 }
 
 /// Returns the scene in a job's working folder.
@@ -54,9 +54,9 @@ pub(super) fn right_trace(job: &Job) -> Vec<u8> {
 }
 
 /// An observer that records whether the failsafe moves a zone.
-struct ZonesMoved(bool);
+struct ZoneObserver(bool);
 
-impl Observer for ZonesMoved {
+impl Observer for ZoneObserver {
     fn observe_failsafe(&mut self, _round: u32, _zone: &Zone<'_>) {
         self.0 = true;
     }
@@ -95,7 +95,7 @@ fn run_fake(job: &Job) -> FakeRun {
         Some("crashes-in-the-failsafe") => {
             let scene = scene(job);
             let mut simulation = Simulation::new(&scene, RootSearch::OnDemand);
-            let mut moved = ZonesMoved(false);
+            let mut moved = ZoneObserver(false);
             let step = (1..=scene.step_count()).find(|_| {
                 simulation.step(&mut moved).expect("a step");
                 moved.0
@@ -127,14 +127,14 @@ fn run_fake(job: &Job) -> FakeRun {
     }
 }
 
-pub(super) struct Stage {
+pub(super) struct TestGrading {
     pub(super) folder: tempfile::TempDir,
     backend: Backend,
     faults: Place,
     pub(super) starts: Arc<Mutex<Vec<String>>>,
 }
 
-impl Stage {
+impl TestGrading {
     pub(super) fn new() -> Self {
         let starts: Arc<Mutex<Vec<String>>> = Arc::default();
         let seen = starts.clone();
@@ -161,7 +161,7 @@ impl Stage {
     }
 
     pub(super) fn grader<'a>(&'a self, plan: &'a Plan) -> Grader<'a> {
-        let options = Options { jobs: 2, fail_fast: false, recorded: false };
+        let options = Options { jobs: 2, fail_fast: false, uses_recordings: false };
         let faults = &self.faults;
         let reference = None;
         Grader {
@@ -169,8 +169,8 @@ impl Stage {
             plan,
             backend: &self.backend,
             options,
-            faults,
-            traces: None,
+            fault_folder: faults,
+            trace_file: None,
             cards: None,
             smallest: None,
             finish: None,
@@ -179,12 +179,13 @@ impl Stage {
         }
     }
 
-    pub(super) fn grade_by(&self, plan: &Plan, names: &[&str]) -> Vec<Grade> {
-        batch::run(&self.grader(plan), &self.submissions(names), None, &Cancellation::default(), &mut |_| {}).grades
+    pub(super) fn grade_with(&self, plan: &Plan, names: &[&str]) -> Vec<Grade> {
+        batch::grade_all(&self.grader(plan), &self.submissions(names), None, &Cancellation::default(), &mut |_| {})
+            .grades
     }
 
     pub(super) fn grade(&self, names: &[&str]) -> Vec<Grade> {
-        self.grade_by(&small_plan(), names)
+        self.grade_with(&small_plan(), names)
     }
 
     pub(super) fn started_count(&self) -> usize {

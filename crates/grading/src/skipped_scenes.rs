@@ -5,7 +5,7 @@
 //! the end earlier. Therefore scenes that are skipped while others still run remain skipped, and the same scenes are
 //! skipped for any number of jobs.
 use super::{
-    config::Patience,
+    config::SkipLimits,
     result::{NotRunReason, Reason, SceneResult},
     task::SceneTask,
     verdict::Verdict,
@@ -14,19 +14,19 @@ use std::time::Duration;
 
 /// Returns the result of a skipped scene. If limits were exceeded, the scene counts like the scenes that exceeded them,
 /// because the submission is at fault.
-pub(super) fn left_out(task: &SceneTask, why: NotRunReason) -> SceneResult {
+pub(super) fn skipped_result(task: &SceneTask, why: NotRunReason) -> SceneResult {
     let verdict = match why {
         NotRunReason::Limits { verdict, .. } => verdict,
         NotRunReason::Total(_) => Verdict::TimeLimit,
         NotRunReason::FailFast => Verdict::NotRun,
     };
-    SceneResult::without_run(&task.name, task.scene.step_count(), verdict, Reason::LeftOut(why))
+    SceneResult::without_run(&task.name, task.scene.step_count(), verdict, Reason::Skipped(why))
 }
 
 /// Returns the first scene that is skipped, and the reason. `known` has the verdict and the duration of each finished
 /// scene.
-pub(super) fn find_end(
-    patience: &Patience,
+pub(super) fn find_first_skipped(
+    patience: &SkipLimits,
     fail_fast: bool,
     known: &[Option<(Verdict, Duration)>],
 ) -> Option<(usize, NotRunReason)> {
@@ -65,7 +65,7 @@ const fn is_limit(verdict: Verdict) -> bool {
 mod tests {
     use super::*;
 
-    const PATIENCE: Patience = Patience { time_outs: 3, total: Duration::from_secs(100) };
+    const PATIENCE: SkipLimits = SkipLimits { time_outs: 3, total: Duration::from_secs(100) };
     const LATE: Option<(Verdict, Duration)> = Some((Verdict::TimeLimit, Duration::from_secs(20)));
     const LARGE: Option<(Verdict, Duration)> = Some((Verdict::MemoryLimit, Duration::from_secs(1)));
     const LONG: Option<(Verdict, Duration)> = Some((Verdict::OutputLimit, Duration::from_secs(1)));
@@ -74,7 +74,7 @@ mod tests {
 
     #[test]
     fn scenes_in_a_row_that_run_into_a_limit_are_the_end() {
-        let end = |known: &[_]| find_end(&PATIENCE, false, known);
+        let end = |known: &[_]| find_first_skipped(&PATIENCE, false, known);
         let limits = |verdict| NotRunReason::Limits { scenes: 3, verdict };
         assert_eq!(end(&[LATE, LATE, LATE, None, FINE]), Some((3, limits(Verdict::TimeLimit))));
         assert_eq!(end(&[LARGE, LATE, LONG, FINE]), Some((3, limits(Verdict::TimeLimit))), "whichever they are");
@@ -88,23 +88,26 @@ mod tests {
         // A scene without a verdict yet is no link of the chain, and the end can only move forward.
         assert_eq!(end(&[None, LATE, LATE, LATE, None]), Some((4, limits(Verdict::TimeLimit))));
         assert_eq!(end(&[LATE, LATE, LATE, LATE, None]), Some((3, limits(Verdict::TimeLimit))));
-        assert_eq!(super::find_end(&Patience { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
+        assert_eq!(super::find_first_skipped(&SkipLimits { time_outs: 0, ..PATIENCE }, false, &[LATE; 4]), None);
     }
 
     #[test]
     fn the_time_of_all_scenes_together_is_limited() {
-        assert_eq!(find_end(&PATIENCE, false, &[FINE; 5]), None);
-        assert_eq!(find_end(&PATIENCE, false, &[FINE; 8]), Some((5, NotRunReason::Total(PATIENCE.total))));
+        assert_eq!(find_first_skipped(&PATIENCE, false, &[FINE; 5]), None);
+        assert_eq!(find_first_skipped(&PATIENCE, false, &[FINE; 8]), Some((5, NotRunReason::Total(PATIENCE.total))));
         assert_eq!(
-            find_end(&PATIENCE, false, &[FINE, None, FINE, FINE, FINE, FINE, None]),
+            find_first_skipped(&PATIENCE, false, &[FINE, None, FINE, FINE, FINE, FINE, None]),
             Some((6, NotRunReason::Total(PATIENCE.total)))
         );
     }
 
     #[test]
     fn the_first_scene_that_is_not_accepted_is_the_end_when_asked_for() {
-        assert_eq!(find_end(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]), Some((3, NotRunReason::FailFast)));
-        assert_eq!(find_end(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, NotRunReason::FailFast)));
-        assert_eq!(find_end(&PATIENCE, false, &[FINE, WRONG, WRONG]), None);
+        assert_eq!(
+            find_first_skipped(&PATIENCE, true, &[FINE, None, WRONG, WRONG, None]),
+            Some((3, NotRunReason::FailFast))
+        );
+        assert_eq!(find_first_skipped(&PATIENCE, true, &[FINE, WRONG, WRONG]), Some((2, NotRunReason::FailFast)));
+        assert_eq!(find_first_skipped(&PATIENCE, false, &[FINE, WRONG, WRONG]), None);
     }
 }

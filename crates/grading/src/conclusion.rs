@@ -40,7 +40,7 @@ pub struct ProgramRun {
 impl ProgramRun {
     /// Returns the values for a trace that no program wrote. They are the same as for a program that ended well.
     #[must_use]
-    pub fn not_run() -> Self {
+    pub fn without_program() -> Self {
         let measured = Measurements { memory: Some(0), ..Measurements::default() };
         Self { ended: RunEnd::Exited(0), measured, stdout: String::new(), stderr: String::new() }
     }
@@ -70,13 +70,13 @@ impl From<&fosssim_sandbox::RunOutcome> for ProgramRun {
 
 /// The facts about one run of a program.
 #[derive(Debug, Clone, Copy)]
-pub struct Run<'a> {
+pub struct JudgedRun<'a> {
     /// The scene that was run.
     pub task: &'a SceneTask,
     /// The way in which the program ended, its measurements, and its output.
     pub program: &'a ProgramRun,
     /// The outcome of judging the trace.
-    pub judged: &'a Outcome,
+    pub outcome: &'a Outcome,
     /// The number of bytes of the trace that were read.
     pub trace_bytes: u64,
     /// The rule books. The official one decides the verdict, the findings and the number of right steps.
@@ -125,10 +125,10 @@ impl SearchDepth {
 /// likely mistake. It is not called if no reader may see the mistake, if the fair rules find no fault, or if the way in
 /// which the program ended is the worse fault.
 #[must_use]
-pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanation>) -> SceneResult {
-    let Run { program, judged, rules, hints, .. } = *run;
-    let of_program = verdict_of_program(&program.ended, judged);
-    let (of_trace, trace_says) = verdict_of_trace(run);
+pub fn conclude(run: &JudgedRun<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanation>) -> SceneResult {
+    let JudgedRun { program, outcome: judged, rules, hints, .. } = *run;
+    let of_program = program_verdict(&program.ended, judged);
+    let (of_trace, trace_says) = trace_verdict(run);
     // If a program was stopped, its trace is incomplete. Reporting both would count the same fault twice.
     let trace_is_cut = matches!(of_trace, Verdict::BadTrace | Verdict::NoOutput);
     let blames_program = of_program > Verdict::Accepted && (trace_is_cut || of_program >= of_trace);
@@ -145,7 +145,7 @@ pub fn conclude(run: &Run<'_>, explain: impl FnOnce(SearchDepth) -> Vec<Explanat
         verdict,
         reason,
         ended: Some(program.ended.clone()),
-        differs,
+        difference_cause: differs,
         disclosure: Some(Disclosure::from_outcome(judged, rules)),
         explanations: if is_explained { explain(look) } else { Vec::new() },
         right_steps: judged.right_steps(rules.official()),
@@ -173,7 +173,7 @@ fn count_empty_trace_bytes(scene: &Scene) -> Option<u64> {
 
 /// Returns the verdict on how the program ended. If a program was stopped because it wrote bytes after the last record,
 /// it counts as ended well, because all records were judged.
-fn verdict_of_program(ended: &RunEnd, judged: &Outcome) -> Verdict {
+fn program_verdict(ended: &RunEnd, judged: &Outcome) -> Verdict {
     let had_all = judged.stop.is_none() && judged.trailing_bytes;
     match ended {
         RunEnd::Exited(0) => Verdict::Accepted,
@@ -200,8 +200,8 @@ fn find_progress(ended: &RunEnd, judged: &Outcome, limits: &RunLimits) -> Progra
 }
 
 /// Returns the verdict on the trace, and the reason for it. How the program ended does not matter here.
-fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
-    let Run { judged, rules, trace_bytes, .. } = *run;
+fn trace_verdict(run: &JudgedRun<'_>) -> (Verdict, Reason) {
+    let JudgedRun { outcome: judged, rules, trace_bytes, .. } = *run;
     // A step without collision handling may have no result, but the trace is still complete.
     let is_complete = !matches!(judged.stop, Some(Stop::Trace { .. }));
     let is_empty = is_complete && count_empty_trace_bytes(&run.task.scene) == Some(trace_bytes);
@@ -222,13 +222,13 @@ fn verdict_of_trace(run: &Run<'_>) -> (Verdict, Reason) {
         (_, Ruling::WrongAnswer | Ruling::Undecided) => {
             (Verdict::WrongAnswer, Reason::Wrong(find_fault(judged, rules)))
         }
-        (_, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(fair_refusal(judged))),
+        (_, Ruling::BadTrace) => (Verdict::BadTrace, Reason::Trace(fair_rejection_reason(judged))),
     }
 }
 
 fn find_fault(judged: &Outcome, rules: Rules) -> WrongTrace {
     let account = judged.findings_by(rules.official());
-    if let (Book::Parity, Some(error)) = (rules.official(), judged.parity.endless) {
+    if let (Book::Parity, Some(error)) = (rules.official(), judged.parity.endless_step) {
         return WrongTrace::NoResult(error);
     }
     match account.first_divergence {
@@ -242,7 +242,7 @@ fn find_fault(judged: &Outcome, rules: Rules) -> WrongTrace {
 }
 
 /// Returns the reason why the fair rules reject a trace as a whole, although the original reads it to its end.
-fn fair_refusal(judged: &Outcome) -> BadTrace {
+fn fair_rejection_reason(judged: &Outcome) -> BadTrace {
     match judged.fair.as_ref().and_then(|fair| fair.refusal) {
         Some(FairRefusal::TrailingBytes) => BadTrace::TrailingBytes,
         _ => BadTrace::Damaged,
@@ -275,7 +275,7 @@ mod tests {
         let options = replay::Options { uses_fair_rules: true, ..replay::Options::default() };
         let judged = replay::judge(&scene, &trace[..], &options, &mut ());
         let task = &SceneTask { name: "a/b".to_owned(), xml: Vec::new(), scene, recording: None };
-        let program = ProgramRun::not_run();
+        let program = ProgramRun::without_program();
         let limits = &RunLimits::default();
         for (hints, expected) in [
             (Hints::None, None),
@@ -284,7 +284,7 @@ mod tests {
             (Hints::Full, Some(SearchDepth::Mistakes)),
         ] {
             let (program, judged, trace_bytes, rules) = (&program, &judged, trace.len() as u64, Rules::Fair);
-            let run = Run { task, program, judged, trace_bytes, rules, hints, limits };
+            let run = JudgedRun { task, program, outcome: judged, trace_bytes, rules, hints, limits };
             let mut asked = None;
             let result = conclude(&run, |look| {
                 asked = Some(look);

@@ -1,8 +1,8 @@
 //! Finds the smallest scene for each cause of wrong results. The program is run in the sandbox on smaller and smaller
 //! scenes.
-use super::{config::RunLimits, execute::Runner, located::FailureKind, task::SceneTask};
+use super::{config::RunLimits, execute::Runner, failure_cause::FailureKind, task::SceneTask};
 use fosssim_evidence::{KeptPart, examine};
-pub use fosssim_findings::smallest::SmallestScene;
+pub use fosssim_findings::smallest_scene::SmallestScene;
 use fosssim_judge::{Stop, kept_trace::MAX_KEPT_BYTES, replay::Options};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
 use fosssim_model::{
@@ -60,9 +60,9 @@ pub struct ShrunkScene {
     /// The name of the scene from which it was made.
     pub origin: String,
     /// The reduced scene.
-    pub small: SmallScene,
+    pub scene: SmallScene,
     /// The program's behavior on the smallest scene.
-    pub seen: Observation,
+    pub observation: Observation,
     /// The number of times that the program was run.
     pub runs: u32,
 }
@@ -82,11 +82,12 @@ pub struct WrongScene<'a> {
 /// scenes an unknown cause.
 #[must_use]
 pub fn group_causes<'a>(likely: &[Explanation], wrong: &[WrongScene<'a>]) -> Vec<Cause<'a>> {
-    let likely =
-        likely.iter().filter(|one| one.is_vote() || one.is_not_finite()).map(|one| match one.is_not_finite() {
+    let likely = likely.iter().filter(|one| one.is_about_program() || one.is_not_finite()).map(|one| {
+        match one.is_not_finite() {
             true => WrongReason::NotFinite,
             false => WrongReason::Mistake(one.clone().into()),
-        });
+        }
+    });
     let (mut all, mut left): (Vec<Cause<'a>>, Vec<&WrongScene<'a>>) = (Vec::new(), wrong.iter().collect());
     for reason in likely.chain(wrong.iter().filter_map(|one| WrongReason::from_end(one.ended))) {
         let is_of = |one: &&WrongScene<'a>| match (&reason, WrongReason::from_end(one.ended)) {
@@ -136,7 +137,7 @@ impl Shrinker<'_> {
             let Some(reason) = reason.clone().or_else(|| WrongReason::first_reason(&task.scene, &seen)) else {
                 continue;
             };
-            let steps = self.limits.step.map_or_else(|| wrong_steps(&task.scene, &seen), |step| vec![step]);
+            let steps = self.limits.step.map_or_else(|| list_wrong_steps(&task.scene, &seen), |step| vec![step]);
             let (mut runs, mut fault, mut held) = (0, Ok(()), None);
             let mut holds = |scene: &Scene, is_alone: bool| {
                 if runs == self.limits.runs || is_over(spent) {
@@ -152,7 +153,13 @@ impl Shrinker<'_> {
             let small = reduce(&step_starts(&task.scene, &seen.trace, &steps), self.assignment, &mut holds);
             fault?;
             if let Some((small, seen)) = small.zip(held) {
-                return Ok(Some(ShrunkScene { reason, origin: task.name.clone(), small, seen, runs }));
+                return Ok(Some(ShrunkScene {
+                    reason,
+                    origin: task.name.clone(),
+                    scene: small,
+                    observation: seen,
+                    runs,
+                }));
             }
         }
         Ok(None)
@@ -162,14 +169,14 @@ impl Shrinker<'_> {
     fn observe(&self, scene: &Scene, spent: &mut Duration) -> Result<Observation, String> {
         let xml = scene::write(scene).into_bytes();
         let task = SceneTask { name: "smallest".to_owned(), xml, scene: scene.clone(), recording: None };
-        let (trace, outcome) = self.runner.collect(self.program, &task, MAX_KEPT_BYTES)?;
+        let (trace, outcome) = self.runner.collect_trace(self.program, &task, MAX_KEPT_BYTES)?;
         *spent += outcome.cpu;
         Ok(Observation { trace, ended: outcome.ended })
     }
 }
 
 /// Returns the wrong steps of a run. If the program did not end well, this is the step after its last record.
-fn wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
+fn list_wrong_steps(scene: &Scene, seen: &Observation) -> Vec<u32> {
     let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     let examined = examine(scene, &seen.trace[..], KeptPart::Nothing, &options, &mut ());
     let is_unreadable = matches!(examined.outcome.stop, Some(Stop::Trace { .. }));

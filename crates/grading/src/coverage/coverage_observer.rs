@@ -22,7 +22,7 @@ type WatchedContact = (Vec<usize>, [Event; 2]);
 /// A zone of the previous round, and whether it was moved.
 type EarlierZone = (Vec<usize>, bool);
 
-pub(super) struct Watch<'a> {
+pub(super) struct CoverageObserver<'a> {
     scene: &'a Scene,
     coverage: &'a mut Coverage,
     stage: Stage,
@@ -43,18 +43,18 @@ struct StepEvents {
     /// The zones that are moved in this round.
     zones: Vec<EarlierZone>,
     /// The zones of the previous round, and whether each was moved.
-    before: Vec<EarlierZone>,
+    previous_zones: Vec<EarlierZone>,
     rounds: u32,
 }
 
-impl<'a> Watch<'a> {
+impl<'a> CoverageObserver<'a> {
     pub(super) fn new(scene: &'a Scene, coverage: &'a mut Coverage) -> Self {
         Self { scene, coverage, stage: Stage::Simple, step: StepEvents::default() }
     }
 
-    fn contact(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: Company) -> Event {
+    fn contact_event(&self, detection: &Detection<'_>, bodies: &[usize], time: f64, company: Company) -> Event {
         let scene = self.scene;
-        let (found, when) = (events::place_of_stage(self.stage), events::time_range(time));
+        let (found, when) = (events::stage_value(self.stage), events::time_range(time));
         let (restitution, integrator) = (events::restitution(scene), events::integrator(scene));
         let masses = events::masses(scene, bodies);
         match detection.pair.kind {
@@ -68,7 +68,7 @@ impl<'a> Watch<'a> {
                     found,
                     when,
                     fixed: events::fixed_of_three(scene, bodies),
-                    place: events::place(detection, bodies, time),
+                    place: events::contact_place(detection, bodies, time),
                     ends: events::ends(edge),
                     motion: events::edge_motion(detection, bodies),
                     masses,
@@ -80,7 +80,7 @@ impl<'a> Watch<'a> {
                 contact.event()
             }
             PairKind::ParticleHalfPlane => {
-                let fixed = events::fixed_one(scene, bodies);
+                let fixed = events::fixed_single(scene, bodies);
                 let (side, normal) = (events::side(scene, detection), events::normal(scene, detection.pair));
                 HalfPlaneContact { found, when, fixed, side, normal, company, restitution, integrator }.event()
             }
@@ -93,14 +93,14 @@ impl<'a> Watch<'a> {
         for (index, (bodies, [alone, several])) in contacts.iter().enumerate() {
             let shares = |other: &WatchedContact| other.0.iter().any(|body| bodies.contains(body));
             let is_alone = contacts.iter().enumerate().all(|(other, contact)| other == index || !shares(contact));
-            self.coverage.note(if is_alone { alone } else { several });
+            self.coverage.note_event(if is_alone { alone } else { several });
         }
     }
 
-    fn zone(&self, particles: &[usize], half_plane: bool) -> Vec<MovedZone> {
+    fn zone_events(&self, particles: &[usize], half_plane: bool) -> Vec<MovedZone> {
         let scene = self.scene;
         let is_known = |zone: &&EarlierZone| zone.0.iter().any(|one| particles.contains(one));
-        let age = match self.step.before.iter().find(is_known) {
+        let age = match self.step.previous_zones.iter().find(is_known) {
             _ if self.step.rounds == 1 => Age::First,
             None => Age::New,
             Some((same, flag)) if same == particles && *flag == half_plane => Age::Same,
@@ -150,7 +150,7 @@ impl<'a> Watch<'a> {
         if with_edges.is_empty() { vec![zone] } else { with_edges }
     }
 
-    fn hybrid_step(&self, max_iterations: i32, stiffness: f64) -> HybridStep {
+    fn hybrid_step_value(&self, max_iterations: i32, stiffness: f64) -> HybridStep {
         let limit = usize::try_from(max_iterations).unwrap_or(0);
         let ends_empty = self.step.hits.last() == Some(&0);
         let end = match self.step.hits.len() {
@@ -175,18 +175,18 @@ impl<'a> Watch<'a> {
             },
             limit: events::limit(self.scene),
             restitution: events::restitution(self.scene),
-            forces: forces(&self.scene.forces),
+            forces: force_events(&self.scene.forces),
             penalty: if stiffness == 0.0 { Penalty::Off } else { Penalty::On },
             integrator: events::integrator(self.scene),
         }
     }
 }
 
-const fn forces(forces: &[Force]) -> Forces {
+const fn force_events(forces: &[Force]) -> Forces {
     if forces.is_empty() { Forces::None } else { Forces::Some }
 }
 
-impl Observer for Watch<'_> {
+impl Observer for CoverageObserver<'_> {
     fn begin_step(&mut self, _step: u32) {
         self.step = StepEvents::default();
     }
@@ -209,7 +209,7 @@ impl Observer for Watch<'_> {
                 if matches!(self.stage, Stage::Geometric { .. }) {
                     self.step.zone_contacts.insert(detection.pair);
                 }
-                let of = |company| self.contact(detection, &bodies, time, company);
+                let of = |company| self.contact_event(detection, &bodies, time, company);
                 let both = [Company::Alone, Company::Several].map(of);
                 self.step.contacts.push((bodies, both));
             }
@@ -217,10 +217,10 @@ impl Observer for Watch<'_> {
                 let no_contact = NoContact {
                     kind: events::kind(detection.pair.kind),
                     why: events::miss_reason(detection.pair.kind, detection.polynomials),
-                    found: events::place_of_stage(self.stage),
-                    fixed: events::some_fixed(self.scene, &bodies),
+                    found: events::stage_value(self.stage),
+                    fixed: events::any_fixed(self.scene, &bodies),
                 };
-                self.coverage.note(&no_contact.event());
+                self.coverage.note_event(&no_contact.event());
             }
         }
     }
@@ -234,22 +234,22 @@ impl Observer for Watch<'_> {
 
     fn observe_zones(&mut self, _round: u32, zones: &[Zone<'_>]) {
         let known = |zone: &Zone<'_>| (zone.particles.iter().map(|&one| one as usize).collect(), zone.half_plane);
-        self.step.before = std::mem::replace(&mut self.step.zones, zones.iter().map(known).collect());
+        self.step.previous_zones = std::mem::replace(&mut self.step.zones, zones.iter().map(known).collect());
     }
 
     fn observe_failsafe(&mut self, round: u32, zone: &Zone<'_>) {
         self.step.rounds = round;
         let particles: Vec<usize> = zone.particles.iter().map(|&one| one as usize).collect();
-        for zone in self.zone(&particles, zone.half_plane) {
-            self.coverage.note(&zone.event());
+        for zone in self.zone_events(&particles, zone.half_plane) {
+            self.coverage.note_event(&zone.event());
         }
     }
 
     fn end_step(&mut self, _step: u32, _state: &State) {
         match self.scene.collision {
             Collision::Hybrid { max_iterations, stiffness, .. } => {
-                let step = self.hybrid_step(max_iterations, stiffness);
-                self.coverage.note(&step.event());
+                let step = self.hybrid_step_value(max_iterations, stiffness);
+                self.coverage.note_event(&step.event());
             }
             Collision::ContinuousTime { .. } => {
                 let hits = match self.step.hits.first().copied().unwrap_or(0) {
@@ -258,8 +258,8 @@ impl Observer for Watch<'_> {
                     _ => Hits::Several,
                 };
                 let (restitution, integrator) = (events::restitution(self.scene), events::integrator(self.scene));
-                let step = ContinuousStep { hits, restitution, forces: forces(&self.scene.forces), integrator };
-                self.coverage.note(&step.event());
+                let step = ContinuousStep { hits, restitution, forces: force_events(&self.scene.forces), integrator };
+                self.coverage.note_event(&step.event());
             }
             Collision::None | Collision::Simple { .. } | Collision::Penalty { .. } => {}
         }

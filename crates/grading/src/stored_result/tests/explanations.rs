@@ -1,10 +1,11 @@
 //! Explanations with every sort of value, and the strangest numbers.
 use super::{Role, pair};
 use fosssim_mistakes::diagnose::{
-    About, Amount, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation, Guess,
-    ListGuess, LoopEnd, NanStage, NotFinite, OfPolynomials, PolynomialDetail, Quantity, QuantityGuess, Ratios,
-    StageDetail, StageFault, StepRecord, Substitute, Weight, WrongDecisions, WrongGeometric, WrongMotion, WrongNumber,
-    WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds, WrongZones,
+    Amount, ChangedQuantity, CoefficientGuess, Detail, Example, ExamplePlace, ExampleValue, Explanation,
+    ExplanationTopic, Guess, ListGuess, LoopEnd, NanStage, NonFiniteValue, PolynomialDetail, PolynomialEvidence,
+    Quantity, QuantityGuess, Ratios, StageDetail, StageFault, StepRecord, Substitute, Weight, WrongDecisions,
+    WrongGeometric, WrongMotion, WrongNumber, WrongPositions, WrongResponses, WrongVectors, WrongZoneRounds,
+    WrongZones,
 };
 use fosssim_model::sim::PairKind;
 use fosssim_student::{
@@ -21,31 +22,35 @@ pub(super) fn all() -> Vec<Explanation> {
         Guess::Quantity(QuantityGuess::Other),
         Guess::Coefficients { powers: vec![3, 0], wrong: CoefficientGuess::Several },
     ];
-    let found = guesses.map(OfPolynomials::Guess).into_iter();
-    let found = found.chain([OfPolynomials::Missing, OfPolynomials::NearlyRight, OfPolynomials::Nothing]);
+    let found = guesses.map(PolynomialEvidence::Guess).into_iter();
+    let found =
+        found.chain([PolynomialEvidence::Missing, PolynomialEvidence::NearlyRight, PolynomialEvidence::Nothing]);
     let subjects = vec![Subject::EdgeOverlap, Subject::HalfPlaneApproach];
-    let of_polynomials = found.map(|found| About::Polynomials { subjects: subjects.clone(), found });
-    let others = [About::Mistake, About::Unfinished, About::Scene { has_length: false }];
+    let of_polynomials = found.map(|found| ExplanationTopic::Polynomials { subjects: subjects.clone(), found });
+    let others =
+        [ExplanationTopic::Mistake, ExplanationTopic::Unfinished, ExplanationTopic::Scene { has_length: false }];
     let stages = [NanStage::Detection(Some(PairKind::ParticleEdge)), NanStage::FirstRecord, NanStage::Zones];
-    let ends = stages.map(|stage| About::NotFinite(NotFinite { step: Some(7), stage, is_nan: true, ends: false }));
-    let abouts = of_polynomials.chain(others).chain(ends).chain(faults().into_iter().map(About::Stage));
+    let ends = stages.map(|stage| {
+        ExplanationTopic::NotFinite(NonFiniteValue { step: Some(7), stage, is_nan: true, recovers: false })
+    });
+    let abouts = of_polynomials.chain(others).chain(ends).chain(faults().into_iter().map(ExplanationTopic::Stage));
     let mut all: Vec<Explanation> = abouts.map(|about| explanation(about, Vec::new(), None)).collect();
-    all.extend(examples().into_iter().map(|example| explanation(About::Mistake, Vec::new(), Some(example))));
-    all.push(explanation(About::Mistake, details(), None));
+    all.extend(examples().into_iter().map(|example| explanation(ExplanationTopic::Mistake, Vec::new(), Some(example))));
+    all.push(explanation(ExplanationTopic::Mistake, details(), None));
     all
 }
 
-fn explanation(about: About, details: Vec<Detail>, example: Option<Example>) -> Explanation {
+fn explanation(about: ExplanationTopic, details: Vec<Detail>, example: Option<Example>) -> Explanation {
     let (key, same_as) = ("pp-no-two".to_owned(), vec!["other".to_owned()]);
     Explanation {
         key,
-        about,
+        topic: about,
         details,
         reproduced: 4,
         samples: u64::MAX,
         example,
         same_as,
-        denies: vec!["failsafe-empty".to_owned()],
+        contradicted_keys: vec!["failsafe-empty".to_owned()],
         claims: vec!["EdgeOverlap/letter/0123456789abcdef".to_owned()],
     }
 }
@@ -121,23 +126,23 @@ fn details() -> Vec<Detail> {
         StageDetail::Impacts { right: true, count: 3, low: f64::INFINITY, high: f64::NEG_INFINITY },
         StageDetail::Vectors(Ratios::All(-0.0)),
         StageDetail::Times(Ratios::Between(f64::NEG_INFINITY, 0.3)),
-        StageDetail::VectorsOff(1e-300),
-        StageDetail::OfZones { count: 1, of: 3 },
-        StageDetail::TimesOff(-1e-300),
-        StageDetail::TimesUsed,
+        StageDetail::VectorError(1e-300),
+        StageDetail::ZoneCount { count: 1, of: 3 },
+        StageDetail::TimeError(-1e-300),
+        StageDetail::TimeUse,
         StageDetail::Passes { expected: 1, actual: 2, most: i32::MIN },
         change(Amount::Unwanted),
         change(Amount::Right),
         change(Amount::Ratio(Ratios::All(1.5))),
-        StageDetail::Stopped(Ratios::All(0.5)),
-        StageDetail::CenterMoves(Ratios::All(0.5)),
+        StageDetail::StoppedVelocities(Ratios::All(0.5)),
+        StageDetail::CenterMotion(Ratios::All(0.5)),
         StageDetail::CenterDirection,
-        StageDetail::Turns(Ratios::All(0.5)),
+        StageDetail::Rotations(Ratios::All(0.5)),
         StageDetail::Velocities(Ratios::All(0.5)),
     ];
     let known = [
         Detail::Term("pp-no-two".into()),
-        Detail::Look(Area::Failsafe),
+        Detail::SearchArea(Area::Failsafe),
         Detail::Letters(vec![PairKind::ParticleEdge, PairKind::ParticleParticle]),
     ];
     let polynomials = polynomials.map(Detail::Polynomial);

@@ -1,18 +1,18 @@
 //! The form in which results are stored.
 //!
 //! [`VERSION`] must be increased if the meaning of any part of a result changes, here or in `fosssim_findings`.
-use super::{key::Key, result::SceneResult};
+use super::{key::ResultKey, result::SceneResult};
 use serde::{Deserialize, Serialize};
 
 /// The version of the form in which results are stored.
-const VERSION: u32 = 6;
+const FORM_VERSION: u32 = 6;
 
 /// A stored result. The version of the form comes first in it, because everything else depends on the version.
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
-pub struct Entry {
+pub struct StoredResult {
     form: u32,
     /// The key under which the result is found.
-    pub key: Key,
+    pub key: ResultKey,
     /// The name of the submission. It is only for people who read the file.
     pub submission: String,
     /// The result.
@@ -22,17 +22,18 @@ pub struct Entry {
 /// Returns the line that stores a result under its key, with a line feed at its end. The submission's name is only for
 /// people who read the file.
 #[must_use]
-pub fn format_line(key: &Key, submission: &str, result: &SceneResult) -> Vec<u8> {
+pub fn format_line(key: &ResultKey, submission: &str, result: &SceneResult) -> Vec<u8> {
     let (key, submission, result) = (key.clone(), submission.to_owned(), result.clone());
-    let mut line = serde_json::to_vec(&Entry { form: VERSION, key, submission, result }).unwrap_or_default();
+    let mut line =
+        serde_json::to_vec(&StoredResult { form: FORM_VERSION, key, submission, result }).unwrap_or_default();
     line.push(b'\n');
     line
 }
 
 /// Reads the entry in a line; `None` if the line is damaged or has another version.
 #[must_use]
-pub fn read_line(line: &[u8]) -> Option<Entry> {
-    serde_json::from_slice(line).ok().filter(|entry: &Entry| entry.form == VERSION)
+pub fn read_line(line: &[u8]) -> Option<StoredResult> {
+    serde_json::from_slice(line).ok().filter(|entry: &StoredResult| entry.form == FORM_VERSION)
 }
 
 #[cfg(test)]

@@ -15,10 +15,10 @@ pub fn suggest<'c>(word: &str, candidates: impl Iterator<Item = &'c str>) -> Str
 /// Returns the names that are most similar to a typed word, the most similar first, and at most `most`. Both the whole
 /// name and its last part are compared, because the group may be mistyped or missing.
 #[must_use]
-pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {
-    let last = |name: &str| to_plain(name.rsplit('/').next().unwrap_or_default());
-    let (typed, typed_last) = (to_plain(word), last(word));
-    let likeness = |name: &str| jaro_winkler(&typed, &to_plain(name)).max(jaro_winkler(&typed_last, &last(name)));
+pub fn find_nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize) -> Vec<&'c str> {
+    let last = |name: &str| normalize_word(name.rsplit('/').next().unwrap_or_default());
+    let (typed, typed_last) = (normalize_word(word), last(word));
+    let likeness = |name: &str| jaro_winkler(&typed, &normalize_word(name)).max(jaro_winkler(&typed_last, &last(name)));
     let mut near: Vec<(f64, &str)> = names.map(|name| (likeness(name), name)).collect();
     // The sort is stable, so names that are equally similar keep their order.
     near.sort_by(|(one, _), (other, _)| other.total_cmp(one));
@@ -26,7 +26,7 @@ pub fn nearest<'c>(word: &str, names: impl Iterator<Item = &'c str>, most: usize
 }
 
 /// Returns the letters and digits of a text, in lower case.
-fn to_plain(text: &str) -> String {
+fn normalize_word(text: &str) -> String {
     text.chars().filter(|c| c.is_alphanumeric()).flat_map(char::to_lowercase).take(MAX_COMPARED_LETTERS).collect()
 }
 
@@ -54,8 +54,8 @@ mod tests {
             ("ball-bewteen", "GeometricTests/ball-between-walls"),
             ("ContinousTimeTests/barley", "ContinuousTimeTests/barely-closing"),
         ] {
-            assert_eq!(nearest(typed, NAMES.into_iter(), 1), [meant], "{typed}");
+            assert_eq!(find_nearest(typed, NAMES.into_iter(), 1), [meant], "{typed}");
         }
-        assert_eq!(nearest("ImpulsesTests/bal", NAMES.into_iter(), 2).len(), 2);
+        assert_eq!(find_nearest("ImpulsesTests/bal", NAMES.into_iter(), 2).len(), 2);
     }
 }

@@ -2,7 +2,7 @@ mod explanations;
 
 use super::*;
 use crate::{
-    Key, Verdict,
+    ResultKey, Verdict,
     disclosure::{DisclosedBook, DisclosedFinding, Disclosure},
     result::{
         Activity, BadTrace, Failure, FolderContents, Limit, Measurements, NotRunReason, ProgramProgress, Reason,
@@ -22,8 +22,8 @@ use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use fosssim_sandbox::{RunEnd, StartProblem};
 use std::{path::PathBuf, time::Duration};
 
-fn key() -> Key {
-    Key::from_program(&blake3::hash(b"program"), b"scene", &[])
+fn key() -> ResultKey {
+    ResultKey::from_program(&blake3::hash(b"program"), b"scene", &[])
 }
 
 /// A result that was written and read again.
@@ -125,7 +125,7 @@ fn wrong() -> SceneResult {
     let why = Reason::Wrong(WrongTrace::Steps { wrong: 3, first: 7, kind: FindingKind::Coefficient });
     SceneResult {
         ended: Some(RunEnd::Exited(0)),
-        differs: Some(Cause::ContactTime),
+        difference_cause: Some(Cause::ContactTime),
         disclosure: Some(Disclosure {
             official: Book::Fair,
             parity: account,
@@ -191,7 +191,7 @@ fn every_reason_and_every_end_reads_back() {
         Reason::DoesNotBuild,
     ];
     let wrong = [
-        WrongTrace::Untold,
+        WrongTrace::Undisclosed,
         WrongTrace::Nothing,
         WrongTrace::FirstRecord(FindingKind::Position),
         WrongTrace::Damaged,
@@ -205,7 +205,7 @@ fn every_reason_and_every_end_reads_back() {
     let total = NotRunReason::Total(Duration::from_secs(600));
     reasons.extend(
         [NotRunReason::Limits { scenes: 3, verdict: Verdict::MemoryLimit }, total, NotRunReason::FailFast]
-            .map(Reason::LeftOut),
+            .map(Reason::Skipped),
     );
     let missing = StartProblem::MissingInterpreter { interpreter: "/bin/x".to_owned(), hint: "; install it".into() };
     for found in [FolderContents::Unreadable("no".to_owned()), FolderContents::Nothing, others] {
@@ -251,8 +251,12 @@ fn another_version_and_damage_are_not_read() {
     assert!(read_line(written.as_bytes()).is_some());
     assert_eq!(written.find('\n'), Some(written.len() - 1), "one line");
     assert!(
-        read_line(written.replacen(&format!("\"form\":{VERSION}"), &format!("\"form\":{}", VERSION + 1), 1).as_bytes())
-            .is_none()
+        read_line(
+            written
+                .replacen(&format!("\"form\":{FORM_VERSION}"), &format!("\"form\":{}", FORM_VERSION + 1), 1)
+                .as_bytes()
+        )
+        .is_none()
     );
     assert!(read_line(written.replacen("\"coefficient\"", "\"coeficient\"", 1).as_bytes()).is_none());
     let seven = "[1,2,3,4,5,6,7]";

@@ -1,7 +1,7 @@
 //! The shape of a suite file: its keys, and the type of each value.
 //!
 //! All errors are reported together. Wrong parts are removed, so that the rest can still be checked.
-use super::near::find_closest;
+use super::suggestions::find_closest;
 use fosssim_findings::{Hints, Visibility};
 use fosssim_judge::Rules;
 use fosssim_model::assignments::Assignment;
@@ -41,12 +41,12 @@ enum ValueKind {
     Flag,
     /// One of several words.
     Choice(&'static [&'static str]),
-    Table(&'static [Key]),
-    Tables(&'static [Key]),
+    Table(&'static [TableKey]),
+    Tables(&'static [TableKey]),
 }
 
 /// A key: its name, the type of its value, and whether the key is required.
-struct Key(&'static str, ValueKind, bool);
+struct TableKey(&'static str, ValueKind, bool);
 
 const HINT_NAMES: &[&str] = &["none", "where", "what", "full"];
 
@@ -69,7 +69,7 @@ macro_rules! tables {
             #[derive(Deserialize, Default)]
             pub(super) struct $raw { $(pub(super) $key: Option<$value>,)+ }
 
-            const $keys: &[Key] = &[$(Key(stringify!($key), $kind, $is_required)),+];
+            const $keys: &[TableKey] = &[$(TableKey(stringify!($key), $kind, $is_required)),+];
         )+
     };
 }
@@ -134,7 +134,7 @@ tables! {
 }
 
 /// The tables to which a key in a wrong table may belong.
-const TABLE_KEYS: [(&str, &[Key]); 6] = [
+const TABLE_KEYS: [(&str, &[TableKey]); 6] = [
     ("[limits]", LIMITS),
     ("[build]", BUILD),
     ("a [[group]]", GROUP),
@@ -159,19 +159,26 @@ pub(super) fn check_shape(text: &str) -> (Spanned<DeTable<'_>>, Vec<Problem>, bo
 }
 
 /// Removes unknown keys and values of wrong types from a table, and reports them.
-fn remove_unknown(table: &mut DeTable<'_>, keys: &[Key], place: &str, at: Range<usize>, problems: &mut Vec<Problem>) {
-    for Key(name, _, required) in keys {
+fn remove_unknown(
+    table: &mut DeTable<'_>,
+    keys: &[TableKey],
+    place: &str,
+    at: Range<usize>,
+    problems: &mut Vec<Problem>,
+) {
+    for TableKey(name, _, required) in keys {
         // A missing key may be a misspelled one, which has already been reported.
         let meant = |key: &Spanned<Cow<'_, str>>| {
-            key.get_ref() == name || find_closest(key.get_ref(), keys.iter().map(|Key(name, ..)| *name)) == Some(name)
+            key.get_ref() == name
+                || find_closest(key.get_ref(), keys.iter().map(|TableKey(name, ..)| *name)) == Some(name)
         };
         if *required && !table.keys().any(meant) {
             problems.push((at.clone(), format!("{place} has no `{name}`")));
         }
     }
     let entries = std::mem::take(table).into_iter().filter_map(|(key, mut value)| {
-        let fits = match keys.iter().find(|Key(name, ..)| key.get_ref() == name) {
-            Some(Key(name, kind, _)) => has_type(name, kind, &mut value, problems),
+        let fits = match keys.iter().find(|TableKey(name, ..)| key.get_ref() == name) {
+            Some(TableKey(name, kind, _)) => has_type(name, kind, &mut value, problems),
             None => {
                 problems.push((key.span(), describe_unknown(key.get_ref(), keys, place)));
                 false
@@ -273,9 +280,9 @@ fn list_words(words: &[&str], last: &str) -> String {
 }
 
 /// Returns the message about an unknown key in a table.
-fn describe_unknown(key: &str, keys: &[Key], place: &str) -> String {
-    let names = |keys: &'static [Key]| keys.iter().map(|Key(name, ..)| *name);
-    let here = keys.iter().map(|Key(name, ..)| *name);
+fn describe_unknown(key: &str, keys: &[TableKey], place: &str) -> String {
+    let names = |keys: &'static [TableKey]| keys.iter().map(|TableKey(name, ..)| *name);
+    let here = keys.iter().map(|TableKey(name, ..)| *name);
     let hint = match find_closest(key, here.clone()) {
         Some(name) => format!("did you mean `{name}`?"),
         None => match TABLE_KEYS.iter().find(|(_, other)| names(other).any(|name| name == key)) {

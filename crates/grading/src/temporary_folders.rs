@@ -22,14 +22,14 @@ const LOCK_FILE: &str = "lock";
 pub(super) struct TemporaryFolder {
     path: PathBuf,
     // The grader's folder is kept until all folders in it are removed.
-    _grader: Arc<Grader>,
+    _grader: Arc<GraderFolder>,
 }
 
 impl TemporaryFolder {
     /// Creates a folder whose name begins with `purpose`.
-    pub(super) fn make(purpose: &str) -> io::Result<Self> {
-        let grader = Grader::current()?;
-        let made = make_closed(&format!("{purpose}-"), &grader.path)?;
+    pub(super) fn create(purpose: &str) -> io::Result<Self> {
+        let grader = GraderFolder::current()?;
+        let made = create_private(&format!("{purpose}-"), &grader.path)?;
         let path = made.keep();
         if purpose == "build" && is_root() {
             // Build tools use whole paths and run as another user, so the folder must be accessible. The entries in it
@@ -58,42 +58,42 @@ pub struct Folders(Mutex<Vec<TemporaryFolder>>);
 
 impl Folders {
     /// Returns a [kept](Self::keep) folder, which contains only files of the grader, or a new one.
-    pub(super) fn take(&self) -> io::Result<TemporaryFolder> {
+    pub(super) fn take_folder(&self) -> io::Result<TemporaryFolder> {
         let kept = self.0.lock().unwrap_or_else(PoisonError::into_inner).pop();
-        kept.map_or_else(|| TemporaryFolder::make("run"), Ok)
+        kept.map_or_else(|| TemporaryFolder::create("run"), Ok)
     }
 
     /// Keeps a folder that only the grader has changed, for further runs.
-    pub(super) fn keep(&self, folder: TemporaryFolder) {
+    pub(super) fn keep_folder(&self, folder: TemporaryFolder) {
         self.0.lock().unwrap_or_else(PoisonError::into_inner).push(folder);
     }
 }
 
 /// The folder that contains all temporary folders of this process. It exists as long as there is one.
 #[derive(Debug)]
-struct Grader {
+struct GraderFolder {
     path: PathBuf,
     _lock: File,
 }
 
-impl Grader {
+impl GraderFolder {
     /// Returns the folder of this process. It is created if it does not exist.
     fn current() -> io::Result<Arc<Self>> {
-        static CURRENT_GRADER: Mutex<Weak<Grader>> = Mutex::new(Weak::new());
+        static CURRENT_GRADER: Mutex<Weak<GraderFolder>> = Mutex::new(Weak::new());
         let mut this = CURRENT_GRADER.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some(grader) = this.upgrade().filter(|grader| grader.path.is_dir()) {
             return Ok(grader);
         }
-        let grader = Arc::new(Self::make(&std::env::temp_dir())?);
+        let grader = Arc::new(Self::create(&std::env::temp_dir())?);
         *this = Arc::downgrade(&grader);
         Ok(grader)
     }
 
-    fn make(place: &Path) -> io::Result<Self> {
+    fn create(place: &Path) -> io::Result<Self> {
         const MAX_TRIES: u32 = 10;
         let mut problem = io::Error::other("another process removes every new folder there");
         for _ in 0..MAX_TRIES {
-            let path = make_closed(FOLDER_PREFIX, place)?.keep();
+            let path = create_private(FOLDER_PREFIX, place)?.keep();
             let lock = path.join(LOCK_FILE);
             let made = File::options().write(true).create_new(true).mode(0o600).open(&lock).and_then(|file| {
                 file.try_lock().map_err(io::Error::from)?;
@@ -122,14 +122,14 @@ impl Grader {
     }
 }
 
-impl Drop for Grader {
+impl Drop for GraderFolder {
     fn drop(&mut self) {
         drop(collect::remove_folder(&self.path));
     }
 }
 
 /// Creates a new folder that only its owner can enter.
-fn make_closed(prefix: &str, place: &Path) -> io::Result<tempfile::TempDir> {
+fn create_private(prefix: &str, place: &Path) -> io::Result<tempfile::TempDir> {
     tempfile::Builder::new().prefix(prefix).permissions(Permissions::from_mode(0o700)).tempdir_in(place)
 }
 
@@ -138,11 +138,11 @@ fn is_root() -> bool {
 }
 
 /// Removes the temporary folders of killed graders. A grader that is alive holds its lock, even in another container.
-pub fn sweep() {
-    sweep_in(&std::env::temp_dir());
+pub fn remove_abandoned() {
+    remove_abandoned_in(&std::env::temp_dir());
 }
 
-fn sweep_in(place: &Path) {
+fn remove_abandoned_in(place: &Path) {
     let Ok(own) = fs::metadata("/proc/self") else { return };
     for entry in fs::read_dir(place).into_iter().flatten().flatten() {
         let path = entry.path();
@@ -183,13 +183,13 @@ mod tests {
     #[test]
     fn only_what_nobody_holds_is_swept_away() {
         let place = tempfile::tempdir().unwrap();
-        let living = Grader::make(place.path()).unwrap();
-        let killed = Grader::make(place.path()).unwrap();
+        let living = GraderFolder::create(place.path()).unwrap();
+        let killed = GraderFolder::create(place.path()).unwrap();
         let left = killed.path.clone();
         fs::create_dir_all(left.join("run-1").join("d/".repeat(1500))).unwrap();
         fs::write(living.path.join("program"), "x").unwrap();
         // As after a kill: the lock is released, the folder stays.
-        let Grader { path: _, _lock: ref lock } = killed;
+        let GraderFolder { path: _, _lock: ref lock } = killed;
         lock.unlock().unwrap();
         std::mem::forget(killed);
         let at = |name: &str| place.path().join(name);
@@ -197,7 +197,7 @@ mod tests {
         fs::create_dir_all(at("fosssim-grader-strange/kept")).unwrap();
         fs::create_dir(at("other")).unwrap();
         std::os::unix::fs::symlink(at("other"), at("fosssim-grader-link")).unwrap();
-        sweep_in(place.path());
+        remove_abandoned_in(place.path());
         assert!(!left.exists(), "removed at any depth");
         assert!(living.path.join("program").exists(), "in use");
         assert!(!at("fosssim-grader-begun").exists(), "killed before it had a lock");
@@ -213,11 +213,11 @@ mod tests {
         std::thread::scope(|scope| {
             scope.spawn(|| {
                 while !done.load(std::sync::atomic::Ordering::Relaxed) {
-                    sweep_in(place.path());
+                    remove_abandoned_in(place.path());
                 }
             });
             for _ in 0..ROUNDS {
-                let grader = Grader::make(place.path()).unwrap();
+                let grader = GraderFolder::create(place.path()).unwrap();
                 assert!(grader.path.join(LOCK_FILE).exists());
             }
             done.store(true, std::sync::atomic::Ordering::Relaxed);
@@ -227,21 +227,21 @@ mod tests {
     #[test]
     fn a_folder_that_was_kept_is_taken_again_and_goes_with_the_others() {
         let folders = Folders::default();
-        let first = folders.take().unwrap();
+        let first = folders.take_folder().unwrap();
         let path = first.path().to_path_buf();
-        let second = folders.take().unwrap();
+        let second = folders.take_folder().unwrap();
         assert_ne!(second.path(), path);
-        folders.keep(first);
-        assert_eq!(folders.take().unwrap().path(), path);
-        folders.keep(second);
+        folders.keep_folder(first);
+        assert_eq!(folders.take_folder().unwrap().path(), path);
+        folders.keep_folder(second);
         drop(folders);
         assert!(!path.exists());
     }
 
     #[test]
     fn folders_are_closed_to_others_and_go_away_with_their_last_user() {
-        let first = TemporaryFolder::make("program").unwrap();
-        let second = TemporaryFolder::make("run").unwrap();
+        let first = TemporaryFolder::create("program").unwrap();
+        let second = TemporaryFolder::create("run").unwrap();
         let grader = first.path().parent().unwrap().to_path_buf();
         assert_eq!(second.path().parent(), Some(&*grader));
         for path in [first.path(), second.path()] {

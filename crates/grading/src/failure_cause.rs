@@ -6,7 +6,7 @@
 //! contains it; no other value is better by Ochiai's measure; and by Fisher's exact test, corrected for the number of
 //! values, this is unlikely to be chance. Values that the scenes can't distinguish are reported together.
 use super::coverage::{Coverage, FAMILIES};
-pub use fosssim_findings::located::{Content, FailureKind, LocatedFailure};
+pub use fosssim_findings::located_failure::{Content, FailureKind, LocatedFailure};
 use fosssim_model::scene::Scene;
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -28,7 +28,7 @@ pub struct TriedScene<'a> {
     /// The scene's name.
     pub scene: &'a str,
     /// The way in which the program failed on the scene; `None` if it did not fail.
-    pub failing: Option<FailureKind>,
+    pub failure: Option<FailureKind>,
     /// The number of steps whose records are complete.
     pub steps: u32,
     /// The contents of the reference's run of the scene.
@@ -36,7 +36,7 @@ pub struct TriedScene<'a> {
 }
 
 /// The largest probability of chance, over all values that were tried, at which a result is still reported.
-const MAX_CHANCE: f64 = 0.01;
+const MAX_CHANCE_PROBABILITY: f64 = 0.01;
 
 impl ContentIndex {
     /// Returns everything that a scene contains; empty if it can't be simulated to its end.
@@ -73,8 +73,8 @@ impl ContentIndex {
 
 /// Returns the contents that all failing scenes have in common; `None` if the evidence for them is weak.
 #[must_use]
-pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
-    let failed: Vec<&TriedScene<'_>> = tried.iter().filter(|one| one.failing.is_some()).collect();
+pub fn locate_failure(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
+    let failed: Vec<&TriedScene<'_>> = tried.iter().filter(|one| one.failure.is_some()).collect();
     let first = failed.first()?;
     let mut shared = first.contents.clone();
     failed.iter().for_each(|one| shared.retain(|content| one.contents.contains(content)));
@@ -95,7 +95,7 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
         .collect();
     #[expect(clippy::cast_precision_loss, reason = "numbers of scenes are small")]
     let by_chance = chance_probability(failed.len(), with, tried.len()) * looked_at.len() as f64;
-    if by_chance >= MAX_CHANCE || 2 * failed.len() < with {
+    if by_chance >= MAX_CHANCE_PROBABILITY || 2 * failed.len() < with {
         return None;
     }
     contents.sort_by_key(|content| content.rank());
@@ -103,16 +103,16 @@ pub fn locate(tried: &[TriedScene<'_>]) -> Option<LocatedFailure> {
     let kinds: Vec<usize> =
         contents.iter().filter(|content| content.value.is_none()).map(|content| content.family).collect();
     contents.retain(|content| content.value.is_none() || !kinds.contains(&content.family));
-    let failing = failed.iter().filter_map(|one| one.failing).reduce(|one, other| match one == other {
+    let failing = failed.iter().filter_map(|one| one.failure).reduce(|one, other| match one == other {
         true => one,
         false => FailureKind::Several,
     })?;
     Some(LocatedFailure {
-        failing,
+        failure: failing,
         contents: contents.into_iter().map(ContentIndex::to_content).collect(),
         failed: failed.len(),
-        with,
-        without: tried.len() - with,
+        scenes_with_contents: with,
+        scenes_without_contents: tried.len() - with,
         first: first.scene.to_owned(),
         step: first.steps,
     })
@@ -150,26 +150,32 @@ mod tests {
     }
 
     fn located(contents: &[Contents], fails: impl Fn(usize) -> Option<FailureKind>) -> Option<LocatedFailure> {
-        let tried = |(number, contents)| TriedScene { scene: "a/b", failing: fails(number), steps: 7, contents };
-        locate(&contents.iter().enumerate().map(tried).collect::<Vec<_>>())
+        let tried = |(number, contents)| TriedScene { scene: "a/b", failure: fails(number), steps: 7, contents };
+        locate_failure(&contents.iter().enumerate().map(tried).collect::<Vec<_>>())
     }
 
     #[test]
     fn what_all_that_fail_and_no_others_contain_is_told_with_its_counts() {
         let contents = scenes(24, 9, 85);
         let found = located(&contents, |number| (number < 24).then_some(FailureKind::Crash)).expect("a place");
-        assert_eq!((found.failed, found.with, found.without, found.step), (24, 24, 61, 7));
+        assert_eq!(
+            (found.failed, found.scenes_with_contents, found.scenes_without_contents, found.step),
+            (24, 24, 61, 7)
+        );
         // The kind of event, and a property of the step that the same scenes have; the zones' own values are no other
         // place.
         assert_eq!(found.contents, [content(4, None), content(6, Some((1, 1)))].map(ContentIndex::to_content));
         let narrower = located(&contents, |number| (number < 9).then_some(FailureKind::Time)).expect("a place");
-        assert_eq!((narrower.contents, narrower.with), (vec![content(4, Some((1, 1))).to_content()], 9));
+        assert_eq!(
+            (narrower.contents, narrower.scenes_with_contents),
+            (vec![content(4, Some((1, 1))).to_content()], 9)
+        );
         let most =
             located(&contents, |number| (number < 24 && number != 5).then_some(FailureKind::Crash)).expect("a place");
-        assert_eq!((most.failed, most.with, most.without), (23, 24, 61));
+        assert_eq!((most.failed, most.scenes_with_contents, most.scenes_without_contents), (23, 24, 61));
         let mixed = |number: usize| if number.is_multiple_of(2) { FailureKind::Time } else { FailureKind::Memory };
         let found = located(&contents, |number| (number < 24).then_some(mixed(number))).expect("a place");
-        assert_eq!(found.failing, FailureKind::Several);
+        assert_eq!(found.failure, FailureKind::Several);
     }
 
     #[test]

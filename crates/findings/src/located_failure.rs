@@ -36,16 +36,19 @@ fosssim_num::closed_set! {
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize)]
 pub struct LocatedFailure {
     /// The way in which the program fails in these scenes.
-    pub failing: FailureKind,
+    #[serde(rename = "failing")]
+    pub failure: FailureKind,
     /// The contents that all failing scenes have in common, the most general first. The scenes do not show which of
     /// them is the cause.
     pub contents: Vec<Content>,
     /// The number of scenes in which the program fails. All of them have these contents.
     pub failed: usize,
     /// The number of scenes that have these contents.
-    pub with: usize,
+    #[serde(rename = "with")]
+    pub scenes_with_contents: usize,
     /// The number of scenes that were run and do not have these contents. The program does not fail in any of them.
-    pub without: usize,
+    #[serde(rename = "without")]
+    pub scenes_without_contents: usize,
     /// The first scene in which the program fails.
     pub first: String,
     /// The step of the last complete record in that scene; 0 for the first record.
