@@ -1,11 +1,10 @@
 //! The statistics of a class: points, the hardest scenes, and the most frequent mistakes.
-use super::{find_likely_mistakes, format_points, phrases::list_some, shorten_name};
+use super::{describe_likely, find_likely_mistakes, format_points, phrases::list_some, shorten_name};
 use crate::foreign::one_line;
 use crate::{
     number::format_count,
     style::{Look, Style},
     table::{Align, Table},
-    words,
 };
 use fosssim_findings::{Grade, Verdict};
 use fosssim_mistakes::diagnose::Explanation;
@@ -48,7 +47,7 @@ pub fn render_class(grades: &[Grade], most: usize, style: Style) -> String {
         let _ = writeln!(text, "{}", style.paint(Look::Strong, "Most frequent mistakes"));
         let mut table = Table::new([Align::Right, Align::Left]);
         for SharedMistake { mistake, members } in mistakes.iter().take(most) {
-            let what = words::explanation::what_or(mistake);
+            let what = describe_likely(&grades[members[0]], mistake);
             table.row([format_count(members.len() as u64, "submission").into(), one_line(&what).into()]);
         }
         text += &table.render(style);

@@ -1,5 +1,5 @@
 //! CSV tables for spreadsheets. A cell that a spreadsheet would read as a formula gets an apostrophe at its beginning.
-use super::{find_likely_mistakes, format_points, no_points, phrases::NOT_GRADED};
+use super::{describe_likely, find_likely_mistakes, format_points, no_points, phrases::NOT_GRADED};
 use crate::foreign::one_line;
 use crate::{view::to_key, words};
 use fosssim_findings::{Grade, SkippedEntry, speed::SpeedSource};
@@ -55,8 +55,7 @@ pub fn render_submissions(grades: &[Grade], passed_over: &[SkippedEntry]) -> Str
         head.extend(timed.map(|group| escape_formula(&format!("{}: times the reference", group.name))));
     }
     let rows = grades.iter().map(|grade| {
-        let mistakes =
-            find_likely_mistakes(grade).into_iter().map(|(mistake, _)| words::explanation::what_or(&mistake));
+        let mistakes = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| describe_likely(grade, &mistake));
         let mistakes: Vec<String> = grade.located_failure.iter().map(words::describe_located).chain(mistakes).collect();
         let mut row = vec![
             escape_formula(&grade.submission),

@@ -1,5 +1,5 @@
 //! JSON in this program's own form (`schemas/grade.schema.json`). It contains everything in a grade.
-use super::{super::explain::ExplanationView, describe_speed, phrases::NOT_GRADED};
+use super::{super::explain::ExplanationView, describe_likely, describe_speed, phrases::NOT_GRADED};
 use crate::foreign::{clean_output, strip_control_characters};
 use crate::{
     check::CauseView,
@@ -14,12 +14,20 @@ use fosssim_findings::{
     located_failure::LocatedFailure,
     speed::{SpeedGrade, SpeedRatio, SpeedSource},
 };
+use fosssim_mistakes::diagnose::Explanation;
 use fosssim_mistakes::together::{find_likely_mistake, find_likely_mistakes, mistake_points};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
 /// The version of the schema. It increases if a program that reads the old version could misread the new one.
 const SCHEMA: u32 = 4;
+
+/// Returns a likely mistake in the words of the other reports.
+fn view_likely(grade: &Grade, mistake: &Explanation) -> ExplanationView {
+    let view = ExplanationView::from(mistake);
+    let text = if mistake.is_unexplained() { describe_likely(grade, mistake) } else { view.text };
+    ExplanationView { text, ..view }
+}
 
 /// The document that `grade --format json` writes. The version in `schema` increases if a program that reads the old
 /// version could misread the new one.
@@ -84,7 +92,7 @@ view! {
         /// Up to three mistakes that together explain the wrong scenes, the most frequent first.
         #[schemars(length(max = 3))]
         likely_mistakes: Vec<ExplanationView> =
-            find_likely_mistakes(grade).iter().map(|(mistake, _)| ExplanationView::from(mistake)).collect(),
+            find_likely_mistakes(grade).iter().map(|(mistake, _)| view_likely(grade, mistake)).collect(),
         /// For each of the likely mistakes, the points of the scenes that are wrong only because of it.
         #[schemars(length(max = 3))]
         worth: Vec<f64> =

@@ -36,7 +36,7 @@ pub(crate) use json::GradeDocument;
 pub use json::lines as json_lines;
 pub use passed_over::{add_warnings, not_graded};
 use phrases::see_above;
-pub(crate) use phrases::{count_wrong, describe_worth};
+pub(crate) use phrases::{count_wrong, describe_likely, describe_worth, detail_likely, head_likely};
 pub use phrases::{
     describe_difference, find_likely_mistakes, format_optional_points, format_points, format_score, head_lines,
     no_points,

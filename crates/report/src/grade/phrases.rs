@@ -1,6 +1,7 @@
 //! Sentences about a grade that appear in several formats.
+use super::clearest_scene;
 use crate::{foreign::one_line, number::format_count, words};
-use fosssim_findings::{Grade, SceneGrade, Verdict};
+use fosssim_findings::{FindingKind, Grade, SceneGrade, Verdict, disclosure::DisclosedFinding};
 pub use fosssim_mistakes::together::find_likely_mistakes;
 use fosssim_mistakes::{diagnose::Explanation, together};
 
@@ -17,8 +18,8 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     let wrong = count_wrong(grade);
     let mut rank = "most likely mistake";
     let line = |(mistake, explained): (Explanation, usize)| {
-        let what = words::explanation::what_or(&mistake) + &describe_note(grade, &mistake);
-        if mistake.is_not_finite() {
+        let what = describe_likely(grade, &mistake) + &describe_note(grade, &mistake);
+        if mistake.is_not_finite() || mistake.is_unexplained() {
             return format!("{what} (in {explained} of {wrong})");
         }
         let worth = describe_worth(grade, &mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
@@ -26,6 +27,46 @@ pub fn head_lines(grade: &Grade) -> Vec<String> {
     };
     let located = grade.located_failure.as_ref().map(words::describe_located);
     located.into_iter().chain(find_likely_mistakes(grade).into_iter().map(line)).collect()
+}
+
+/// Returns the heading above likely mistakes. If none of them is known, it only promises what differs.
+pub(crate) fn head_likely(likely: &[(Explanation, usize)]) -> &'static str {
+    match likely {
+        _ if likely.iter().all(|(mistake, _)| mistake.is_unexplained()) => "What differs",
+        [_] => "Likely mistake",
+        _ => "Likely mistakes",
+    }
+}
+
+/// Describes a likely mistake of a submission. Polynomials that no known mistake explains may follow from a state that
+/// was wrong before them; the text then names the state, and where to look.
+pub(crate) fn describe_likely(grade: &Grade, mistake: &Explanation) -> String {
+    match find_wrong_state(grade, mistake) {
+        Some(first) => format!(
+            "The first difference is a {}, which no known mistake explains. Look at the integrator, the forces, or the \
+             response.",
+            first.kind()
+        ),
+        None => words::explanation::what_or(mistake),
+    }
+}
+
+/// Returns lines about the exact form of a likely mistake, or about the state that is wrong first.
+pub(crate) fn detail_likely(grade: &Grade, mistake: &Explanation) -> Vec<String> {
+    match find_wrong_state(grade, mistake) {
+        Some(first) => {
+            let line = words::describe_first(first);
+            vec![words::explanation::capitalize(line.trim_start_matches("first difference: "))]
+        }
+        None => words::explanation::exact_forms(mistake),
+    }
+}
+
+/// Returns the wrong position or velocity that comes first where nothing explains the polynomials.
+fn find_wrong_state<'a>(grade: &'a Grade, mistake: &Explanation) -> Option<&'a DisclosedFinding> {
+    let scene = mistake.is_unexplained().then(|| clearest_scene(grade, mistake))??;
+    let first = scene.disclosure.as_ref()?.official().first_divergence.as_ref()?;
+    matches!(first.kind(), FindingKind::Position | FindingKind::Velocity).then_some(first)
 }
 
 /// Describes the points that fixing a mistake would give, such as `worth 21.4 of 100 points`; `None` if no scene is

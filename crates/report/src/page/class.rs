@@ -9,11 +9,11 @@ use super::{
 use crate::foreign::one_line;
 use crate::{
     grade::{
-        ClassFigures, SharedMistake, clearest_scene, find_frequent, find_hardest, find_likely_mistakes,
-        format_optional_points, format_points, never_ran, same_programs,
+        ClassFigures, SharedMistake, clearest_scene, describe_likely, find_frequent, find_hardest,
+        find_likely_mistakes, format_optional_points, format_points, never_ran, same_programs,
     },
     smallest::title,
-    words::{self, explanation::what_or},
+    words,
 };
 use askama::Template;
 use fosssim_findings::{
@@ -125,7 +125,7 @@ impl ClassContent<'_> {
             let scene = clearest_scene(first, mistake);
             let smallest = members.iter().flat_map(|&number| &grades[number].smallest);
             Cluster {
-                heading: one_line(&what_or(mistake)),
+                heading: one_line(&describe_likely(first, mistake)),
                 members: members.clone(),
                 scene: scene.map(|scene| (one_line(&scene.scene), self.address(first, &scene.scene))),
                 note: first.course_note(mistake),
@@ -193,7 +193,7 @@ fn accepted_of(grade: &Grade) -> usize {
 
 /// Returns the first likely mistake of a submission, or the reason why it is not accepted.
 fn describe_reason(grade: &Grade) -> String {
-    let likely = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| what_or(&mistake));
+    let likely = find_likely_mistakes(grade).into_iter().map(|(mistake, _)| describe_likely(grade, &mistake));
     let likely: Vec<String> = grade.located_failure.iter().map(words::describe_located).chain(likely).collect();
     match likely.as_slice() {
         [] => words::describe_reason(grade).unwrap_or_default(),

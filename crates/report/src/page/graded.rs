@@ -10,11 +10,12 @@ use super::{
 use crate::foreign::{one_line, without_codes};
 use crate::{
     grade::{
-        by_cause, change_lines, clearest_scene, count_wrong, describe_difference, describe_speed, describe_worth,
-        extra, find_likely_mistakes, format_optional_points, format_points, format_score, is_listed, no_points,
+        by_cause, change_lines, clearest_scene, count_wrong, describe_difference, describe_likely, describe_speed,
+        describe_worth, detail_likely, extra, find_likely_mistakes, format_optional_points, format_points,
+        format_score, head_likely, is_listed, no_points,
     },
     number::format_count,
-    words,
+    words::{self, explanation::capitalize},
 };
 use askama::Template;
 use fosssim_findings::{
@@ -64,14 +65,16 @@ impl GradePage<'_> {
         let told: Vec<_> = causes.iter().flatten().map(|&scene| (scene, (self.card)(scene.card.as_deref()))).collect();
         let tells_who =
             self.reader == Audience::Staff && grade.groups.iter().any(|group| group.visibility != Visibility::Visible);
+        let is_accepted = told.iter().all(|(scene, _)| scene.verdict.is_accepted());
         let content = GradeContent {
             page: self,
             grade,
             rooms: room::distribute(told.iter().map(|(_, card)| card.as_ref())),
             has_scenes: grade.submission_fault().is_none(),
-            is_accepted: told.iter().all(|(scene, _)| scene.verdict.is_accepted()),
+            has_groups: grade.submission_fault().is_none() || grade.points > Some(0.0),
+            is_accepted,
             tells_who,
-            columns: if tells_who { 6 } else { 5 },
+            columns: 4 + usize::from(tells_who) + usize::from(!is_accepted),
             alike: causes.iter().map(Vec::len).collect(),
             told,
         };
@@ -94,6 +97,8 @@ struct GradeContent<'a> {
     /// The number of scenes with each cause, in the same order.
     alike: Vec<usize>,
     has_scenes: bool,
+    /// Whether the table of groups holds more than zeros.
+    has_groups: bool,
     /// Whether nothing is wrong. Scenes are then listed only because the rule books differ on them.
     is_accepted: bool,
     /// Whether the table of groups has a column that says who sees each group.
@@ -117,6 +122,12 @@ impl GradeContent<'_> {
     /// submission explains everything.
     fn likely(&self) -> Vec<(Explanation, usize)> {
         if self.has_scenes { find_likely_mistakes(self.grade) } else { Vec::new() }
+    }
+
+    /// Returns the scene that shows the first cause, and the number of scenes with it, if no mistake or place is named.
+    fn common_cause(&self) -> Option<(&SceneGrade, usize)> {
+        let (first, _) = self.told.first().filter(|_| self.has_scenes && self.grade.located_failure.is_none())?;
+        (!self.is_accepted).then_some((*first, self.alike[0]))
     }
 
     /// Returns the first scene of a group that the page lists.
@@ -150,6 +161,11 @@ impl GradeContent<'_> {
         let rest: Vec<&SceneGrade> = self.grade.scenes().filter(|scene| !is_listed(scene)).collect();
         (rest.iter().filter(|scene| scene.verdict.is_accepted()).count(), rest)
     }
+}
+
+/// Renders a scene's name, which may be broken after a slash.
+fn break_at_slashes(name: &str) -> String {
+    text(&one_line(name)).replace('/', "/<wbr>")
 }
 
 /// Describes as HTML what the scenes in which a program fails have in common.

@@ -386,8 +386,28 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     // Both the mistake and its group lead there, and a terminal names the same scene.
     let text = crate::formats::Format::Text.render(&[grade.clone()]);
     assert!(text.contains(&format!("Scene to look at first\n  WA {small}: ")), "{text}");
-    let place = format!("<a href=\"#scene-{}\">{small}</a>", graded::scene_key(small));
+    let place = format!("<a href=\"#scene-{}\">{}</a>", graded::scene_key(small), small.replace('/', "/<wbr>"));
     assert!(html.matches(&place).count() == 2 && html.contains(&format!("id=\"scene-{}\"", graded::scene_key(small))));
+}
+
+/// A wrong position that no known mistake explains is named before the polynomials that follow from it, in all formats.
+#[test]
+fn a_wrong_position_is_named_before_the_polynomials_that_follow_from_it() {
+    let (_, result) = drawn(&asset("ImpulsesTests/plastic-impacts.xml"), "gravity-missing", Hints::Full);
+    let mut grade = Grade {
+        groups: vec![with_results(marking(Hints::Full), vec![result])],
+        verdict: Verdict::WrongAnswer,
+        ..crate::grade::samples::accepted_grade()
+    };
+    fosssim_mistakes::together::reconcile_explanations(&mut grade);
+    let html = GradePage { grade: &grade, card: &|_| None, class: None, reader: Audience::Staff }.html();
+    assert!(html.contains("<h2>What differs</h2>") && !html.contains("<h2>Likely mistake"), "{html}");
+    let words = "The first difference is a wrong position, which no known mistake explains.";
+    for report in
+        [html, crate::grade::json(std::slice::from_ref(&grade)), crate::formats::Format::Text.render(&[grade])]
+    {
+        assert!(report.contains(words), "{report}");
+    }
 }
 
 fn with_results(marking: Marking, results: Vec<SceneResult>) -> fosssim_grading::GroupGrade {

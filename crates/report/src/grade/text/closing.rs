@@ -4,8 +4,8 @@ use super::{Text, verdict_style};
 use crate::foreign::{one_line, strip_control_characters};
 use crate::{
     grade::{
-        by_cause, change_lines, count_wrong, describe_speed, describe_worth, find_likely_mistakes,
-        format_optional_points, format_points,
+        by_cause, change_lines, count_wrong, describe_likely, describe_speed, describe_worth, detail_likely,
+        find_likely_mistakes, format_optional_points, format_points, head_likely,
     },
     number::format_count,
     style::Look,
@@ -42,17 +42,16 @@ pub(super) fn render(options: &Text<'_>, grade: &Grade, alone: bool) -> String {
     let wrong = count_wrong(grade);
     for (number, (mistake, explained)) in mistakes.iter().enumerate() {
         if number == 0 {
-            let heading = if mistakes.len() == 1 { "Likely mistake" } else { "Likely mistakes" };
-            let _ = writeln!(text, "{}", style.paint(Look::Strong, heading));
+            let _ = writeln!(text, "{}", style.paint(Look::Strong, head_likely(&mistakes)));
         }
         let verb = if mistake.is_not_finite() || mistake.is_unexplained() { "in" } else { "explains" };
-        let what = strip_control_characters(&words::explanation::what_or(mistake));
+        let what = strip_control_characters(&describe_likely(grade, mistake));
         let worth = describe_worth(grade, mistake).map(|worth| format!("; fixing it is {worth}")).unwrap_or_default();
         let _ = writeln!(text, "  - {what} ({verb} {explained} of {wrong}{worth})");
         if let Some(note) = grade.course_note(mistake) {
             let _ = writeln!(text, "    The course: {}", one_line(&note.to_string()));
         }
-        for form in words::explanation::exact_forms(mistake) {
+        for form in detail_likely(grade, mistake) {
             let _ = writeln!(text, "    {}", strip_control_characters(&form));
         }
     }

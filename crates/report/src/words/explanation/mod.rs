@@ -156,7 +156,7 @@ fn look_at_step(key: &str) -> &'static str {
 }
 
 /// Returns the text with its first letter in upper case.
-fn capitalize(text: &str) -> String {
+pub(crate) fn capitalize(text: &str) -> String {
     let mut letters = text.chars();
     let first: String = letters.next().into_iter().flat_map(char::to_uppercase).collect();
     first + letters.as_str()
