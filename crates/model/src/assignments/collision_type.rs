@@ -4,15 +4,15 @@ fosssim_num::closed_set! {
     /// A collision type, without its numbers.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash)]
     pub enum CollisionType {
-        /// No collision handling.
+        /// Collisions are not handled.
         None = "none",
-        /// Impulses on overlap at the end of the step.
+        /// Impulses act on bodies that overlap at the end of the step.
         Simple = "simple",
-        /// A repulsive force between bodies that are close to each other.
+        /// A repulsive force acts between bodies that are close to each other.
         Penalty = "penalty",
-        /// Continuous-time detection, one pass.
+        /// One detection pass in continuous time responds to each impact.
         ContinuousTime = "continuous-time",
-        /// Impulses, impact zones, rigid failsafe, and the penalty force.
+        /// Impulses, impact zones, the rigid failsafe and the penalty force handle collisions together.
         Hybrid = "hybrid",
     }
 }

@@ -10,9 +10,9 @@ fosssim_num::closed_set! {
         ForwardBackwardEuler = "forward-backward-euler",
         /// Another name for [`Integrator::ForwardBackwardEuler`], whose name is printed for both.
         SymplecticEuler = "symplectic-euler",
-        /// Newton's method in every step.
+        /// Every step uses Newton's method until it converges.
         ImplicitEuler = "implicit-euler",
-        /// One iteration of Newton's method in every step.
+        /// Every step uses one iteration of Newton's method.
         LinearizedImplicitEuler = "linearized-implicit-euler",
     }
 }

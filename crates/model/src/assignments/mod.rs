@@ -36,7 +36,8 @@ fosssim_num::closed_set! {
         T1M3,
         /// Theme 2, Milestone 1: collisions at the end of a step, and the penalty force.
         T2M1,
-        /// Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe.
+        /// Theme 2, Milestone 2: continuous-time detection, impulses, impact zones and the rigid failsafe of colliding
+        /// bodies.
         T2M2,
         /// Theme 2, Milestone 3: the contest, a penalty force between many bodies.
         T2M3,
@@ -132,7 +133,7 @@ const COMMON: Definition = Definition {
 };
 
 impl Definition {
-    /// Returns the assignment's handling of a collision type; `None` if another assignment adds the type.
+    /// Returns the assignment's handling of a collision type, or `None` if another assignment adds the type.
     #[must_use]
     pub fn handling(&self, collision: CollisionType) -> Option<&Handling> {
         self.handlings.iter().find(|handling| handling.collision == collision)
@@ -199,7 +200,7 @@ pub enum ImpulseList {
     Absent,
     /// Records always have an empty list.
     Empty,
-    /// The responses of the step.
+    /// Records list the step's responses.
     Responses,
 }
 

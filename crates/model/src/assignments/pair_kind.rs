@@ -2,23 +2,23 @@
 use serde::{Deserialize, Serialize};
 
 fosssim_num::closed_set! {
-    /// The kind of a pair; the numbers are those of the trace format.
+    /// The kind of a pair. The numbers are those of the trace format.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize, schemars::JsonSchema)]
     #[serde(rename_all = "kebab-case")]
     pub enum PairKind {
-        /// Two particles (0).
+        /// A pair of two particles (number 0).
         ParticleParticle = "particle-particle", "pp";
-        /// A particle and an edge (1).
+        /// A pair of a particle and an edge (number 1).
         ParticleEdge = "particle-edge", "pe";
-        /// A particle and a half-plane (2).
+        /// A pair of a particle and a half-plane (number 2).
         ParticleHalfPlane = "particle-half-plane", "ph";
     }
-    /// Returns the kind's name on command lines and in keys: `pe`.
+    /// Returns the kind's short name, which command lines and keys use, such as `pe`.
     short
 }
 
 impl PairKind {
-    /// Returns the number of polynomials that a detection call of this kind logs: 2, 4, 2.
+    /// Returns the number of polynomials that a detection call of this kind logs: 2, 4 or 2 in the order of the kinds.
     #[must_use]
     pub const fn polynomial_count(self) -> usize {
         match self {
@@ -27,7 +27,7 @@ impl PairKind {
         }
     }
 
-    /// Returns the number of coefficients of each polynomial before small leading ones are dropped; 0 for a missing
+    /// Returns the number of coefficients of each polynomial before small leading ones are dropped, or 0 for a missing
     /// polynomial.
     #[must_use]
     pub const fn coefficient_counts(self) -> [usize; Self::MAX_POLYNOMIALS] {
@@ -53,13 +53,13 @@ impl PairKind {
         self as usize
     }
 
-    /// Returns the kind with number `code` in a trace; `None` for the numbers of a damaged trace.
+    /// Returns the kind with number `code` in a trace, or `None` for the numbers of a damaged trace.
     #[must_use]
     pub fn from_code(code: i32) -> Option<Self> {
         Self::ALL.into_iter().find(|kind| kind.code() == code)
     }
 
-    /// Returns the kind of the second object: `edge`.
+    /// Returns the name of the second object's kind, such as `edge`.
     #[must_use]
     pub const fn second_name(self) -> &'static str {
         match self {

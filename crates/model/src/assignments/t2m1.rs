@@ -1,7 +1,8 @@
 //! Theme 2, Milestone 1: collisions at the end of a step, and the penalty force (collisions.md 6, simulation.md 3).
 use super::{COMMON, CollisionType, Definition, Handling, ImpulseList, LIBRARY, Library, PairKind, Part, RecordLists};
 
-/// No detection logs polynomials; the course's root finder comes with the next milestone.
+/// The rules of the assignment. No detection logs polynomials, because the course's root finder comes with the next
+/// milestone.
 pub(super) const DEFINITION: Definition = Definition {
     key: "t2m1",
     title: "Theme 2, Milestone 1",

@@ -1,7 +1,8 @@
 //! Theme 2, Milestone 3: the contest, a penalty force between many bodies that finds its pairs fast (simulation.md 3).
 use super::{COMMON, CollisionType, Definition, Integrator, LIBRARY, Library, Part};
 
-/// The milestone adds no collision type: its scenes are `penalty` scenes with the contest's detection.
+/// The rules of the assignment. It adds no collision type: its scenes are `penalty` scenes with the contest's
+/// detection.
 pub(super) const DEFINITION: Definition = Definition {
     key: "t2m3",
     title: "Theme 2, Milestone 3",

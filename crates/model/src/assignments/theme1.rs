@@ -69,7 +69,7 @@ pub(super) const MILESTONE_3: Definition = Definition {
         Part::Jacobians(ForceKind::Gravitation),
         Part::Jacobians(ForceKind::Drag),
         Part::Integrator(Integrator::LinearizedImplicitEuler),
-        // For extra credit.
+        // The course gives extra credit for this part.
         Part::Integrator(Integrator::ImplicitEuler),
     ],
     ..COMMON

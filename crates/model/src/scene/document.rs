@@ -14,7 +14,7 @@ use super::{grammar, rule::Rule};
 /// The elements of the text.
 #[derive(Debug, Default)]
 pub(super) struct Document<'t> {
-    /// The bytes of `<scene`, if there is a scene.
+    /// The place of `<scene` in the text, in bytes, if there is a scene.
     pub(super) scene: Option<Range<usize>>,
     /// The known children of the scene in document order.
     pub(super) tags: Vec<Tag<'t>>,
@@ -43,11 +43,11 @@ pub(super) fn read<'t>(text: &'t str, report: &mut Report) -> Document<'t> {
     reading.read_all()
 }
 
-/// An element that has not been closed.
+/// An element whose closing tag has not been read.
 struct OpenElement<'t> {
     name: &'t str,
     span: Range<usize>,
-    /// Whether an element inside has been reported.
+    /// Whether a problem inside the element has been reported.
     is_reported: bool,
 }
 

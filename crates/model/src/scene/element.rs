@@ -1,4 +1,4 @@
-//! Elements as written in a file.
+//! Writes elements in the form that they have in a file.
 use super::model::Color;
 use fosssim_num::vector::Vec2;
 use std::fmt;

@@ -12,13 +12,14 @@ use super::problem::{Problem, Report, Severity, quote};
 use super::tag::{Attribute, Tag, join_names};
 use fosssim_num::vector::Vec2;
 
-/// The number of objects of a kind, for indices that point to them.
+/// The number of objects of a kind. Indices that point to such objects must be below it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct ObjectCount {
-    /// The name of one such object, such as `particle`.
+    /// The name of such an object in messages, such as `particle`.
     pub(super) noun: &'static str,
     pub(super) count: usize,
-    /// Whether the number is certain. After broken XML or a misspelt element it is not, and indices are not checked.
+    /// Whether the number is certain. After broken XML or a misspelt element it is uncertain, and indices are not
+    /// checked.
     pub(super) is_certain: bool,
 }
 
@@ -98,7 +99,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         if self.has_attribute(name) { self.text(name, "").map(Some) } else { Some(None) }
     }
 
-    /// Returns the choice named by the attribute.
+    /// Returns the value that the attribute names.
     pub(super) fn choice<T: Copy>(&mut self, name: &str, choices: &[(&str, T)]) -> Option<T> {
         let names: Vec<&str> = choices.iter().map(|(name, _)| *name).collect();
         let attribute = self.require(name, &join_names(&names))?;
@@ -245,7 +246,7 @@ impl<'d, 't, 'r> TagFields<'d, 't, 'r> {
         }
     }
 
-    /// Returns the text of a number, which must be on one line.
+    /// Returns the text of a number. The text must be on one line.
     fn single_line_text(&mut self, attribute: &'d Attribute<'t>) -> Option<Cow<'d, str>> {
         let text = self.decode(attribute)?;
         if attribute.value.trim_ascii().contains('\n') {
@@ -284,7 +285,7 @@ fn describe_tag(tag: &Tag<'_>, number: Option<usize>) -> String {
     }
 }
 
-/// Returns the message about a bad number: its error, and the remedy.
+/// Returns the message about a bad number, which names the error and the remedy.
 fn describe_error(text: &str, error: &NumberError) -> (String, String) {
     use NumberError::{Comma, Empty, NoNumber, NotFinite, NotWhole, Overflow, TooLarge, Trailing};
     let text = quote(text.trim_ascii());

@@ -62,7 +62,7 @@ impl fmt::Display for UnknownFeature {
 }
 
 impl Scene {
-    /// Returns everything in the scene that programs of `assignment` do not support, each kind once.
+    /// Returns all parts of the scene that programs of `assignment` do not support, each kind of part once.
     pub fn unknown_features(&self, assignment: Assignment) -> impl Iterator<Item = UnknownFeature> {
         let library = &assignment.definition().library;
         let integrator = Some(self.integrator).filter(|integrator| !library.integrators.contains(integrator));

@@ -1,4 +1,4 @@
-//! The scene for the simulator: plain values. Every index is valid if the strict reader read the scene.
+//! The scene for the simulator, as plain values. Every index is valid if the strict reader read the scene.
 use crate::assignments::{Assignment, CollisionType, Handling, Integrator};
 use fosssim_num::vector::Vec2;
 
@@ -50,30 +50,30 @@ impl Scene {
 pub enum Collision {
     /// Collisions are not handled, and records contain only positions and velocities.
     None,
-    /// Impulses on overlap at the end of the step.
+    /// Impulses act on bodies that overlap at the end of the step.
     Simple {
         /// The coefficient of restitution (`COR`).
         restitution: f64,
     },
-    /// A repelling force.
+    /// A repulsive force acts between bodies that are close to each other.
     Penalty {
-        /// The stiffness `k`, force per length.
+        /// The stiffness `k`, in units of force per length.
         stiffness: f64,
         /// The thickness of the layer (`thickness`), a length.
         thickness: f64,
         /// The way to find the pairs that repel each other.
         detection: CollisionDetection,
     },
-    /// Continuous-time detection, one pass.
+    /// One detection pass in continuous time responds to each impact.
     ContinuousTime {
         /// The coefficient of restitution (`COR`).
         restitution: f64,
     },
-    /// Impulses, impact zones, rigid failsafe, and the penalty force.
+    /// Impulses, impact zones, the rigid failsafe and the penalty force handle collisions together.
     Hybrid {
         /// The coefficient of restitution (`COR`).
         restitution: f64,
-        /// The maximum number of impulse rounds (`maxiters`); zero or negative means that the impulse stage detects
+        /// The maximum number of impulse rounds (`maxiters`). If it is zero or negative, the impulse stage detects
         /// nothing.
         max_iterations: i32,
         /// The stiffness `k` of the penalty force.
@@ -96,7 +96,7 @@ impl Collision {
         }
     }
 
-    /// Returns the coefficient of restitution; 1 if no collision has a response.
+    /// Returns the coefficient of restitution, or 1 if no collision has a response.
     #[must_use]
     pub const fn restitution(&self) -> f64 {
         match *self {
@@ -122,10 +122,10 @@ impl Collision {
 /// (simulation.md 3). Other collision handling always checks all pairs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum CollisionDetection {
-    /// All pairs in the order of a detection pass (`all-pairs`, the default).
+    /// All pairs are summed in the order of a detection pass (`all-pairs`, the default).
     #[default]
     AllPairs,
-    /// Near pairs in the order of a sweep along x (`contest`, Theme 2, Milestone 3).
+    /// Nearby pairs are summed in the order of a sweep along x (`contest`, Theme 2, Milestone 3).
     Contest,
 }
 
@@ -138,7 +138,8 @@ pub struct Particle {
     pub velocity: Vec2,
     /// The particle's mass.
     pub mass: f64,
-    /// Whether forces and responses do not affect the particle; its own velocity still moves it.
+    /// Whether the particle is fixed. Forces and responses do not affect a fixed particle, but its own velocity still
+    /// moves it.
     pub fixed: bool,
     /// The radius of the disc.
     pub radius: f64,
@@ -243,7 +244,7 @@ pub struct Display {
 pub struct Viewport {
     /// The viewport's center.
     pub center: Vec2,
-    /// Half of the viewport's extent; zero or negative means "fit".
+    /// Half of the viewport's extent. Zero or a negative number means that the view fits the scene.
     pub size: f64,
 }
 

@@ -10,9 +10,9 @@ pub(super) enum NumberError {
     Empty,
     /// The text does not start with digits.
     NoNumber,
-    /// Other characters follow the number. Holds the number that the original would read.
+    /// Other characters follow the number. The value is the number that the original would read.
     Trailing(String),
-    /// The number has a decimal comma. Holds the text with a point.
+    /// The number has a decimal comma. The value is the text with a point instead.
     Comma(String),
     /// The text is `inf` or `nan`.
     NotFinite,
@@ -71,7 +71,7 @@ fn classify_error(text: &str, length: usize) -> NumberError {
     }
 }
 
-/// Returns the number of leading bytes that have the form of a number; 0 without digits.
+/// Returns the number of leading bytes that have the form of a number, or 0 if there are no digits.
 fn number_length(text: &str) -> usize {
     let bytes = text.as_bytes();
     let Some(end) = mantissa_end(bytes) else { return 0 };
@@ -85,7 +85,7 @@ fn number_length(text: &str) -> usize {
     end
 }
 
-/// Returns the offsets at which a number's sign, digits and fraction end; `None` without digits.
+/// Returns the offsets at which a number's sign, digits and fraction end, or `None` if there are no digits.
 pub(super) fn mantissa_end(text: &[u8]) -> Option<usize> {
     let sign = usize::from(matches!(text.first(), Some(b'+' | b'-')));
     let whole = count_digits(text, sign);

@@ -1,7 +1,7 @@
-//! The problems of a scene: the fault, its place, and a correction.
+//! Describes the problems of a scene: each has a fault, a place and a correction.
 use std::{fmt, ops::Range};
 
-/// The maximum number of errors, and of warnings, that are kept for one scene; further ones are only counted.
+/// The maximum number of errors, and of warnings, that are kept for one scene. Further ones are only counted.
 pub const MAX_PROBLEMS: usize = 200;
 
 /// The severity of a problem.
@@ -9,7 +9,7 @@ pub const MAX_PROBLEMS: usize = 200;
 pub enum Severity {
     /// The scene is rejected.
     Error,
-    /// The scene loads, but probably differs from its author's intention.
+    /// The scene loads, but its meaning probably differs from the author's intention.
     Warning,
 }
 
@@ -22,13 +22,13 @@ pub struct Problem {
     pub line: usize,
     /// The column of the problem in characters, from 1.
     pub column: usize,
-    /// The bytes of the file that the problem is about; may be empty.
+    /// The bytes of the file that the problem is about. The range may be empty.
     pub span: Range<usize>,
     /// The element that the problem is about.
     pub element: Option<String>,
     /// The attribute that the problem is about.
     pub attribute: Option<String>,
-    /// The fault, as a lowercase phrase.
+    /// The description of the fault, as a phrase in lower case.
     pub message: String,
     /// The allowed values, or the remedy.
     pub help: Option<String>,

@@ -1,4 +1,4 @@
-//! The grammar's rules for an element.
+//! Defines the rules of the grammar for one element.
 
 /// The rules for one element.
 #[derive(Debug)]

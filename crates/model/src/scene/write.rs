@@ -66,7 +66,7 @@ fn build_integrator(scene: &Scene) -> Element {
     Element::new("integrator").with_attribute("type", scene.integrator.name()).number("dt", scene.time_step)
 }
 
-/// Returns the element of a collision handling; `None` without one.
+/// Returns the element of a collision handling, or `None` without one.
 fn build_collision(collision: Collision) -> Option<Element> {
     let element = Element::new("collision").with_attribute("type", collision.kind().name());
     Some(match collision {

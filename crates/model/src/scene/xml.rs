@@ -31,7 +31,7 @@ pub(super) struct ParsedElement<'d, 't, T> {
     pub(super) value: Option<T>,
 }
 
-/// Returns all values; `None` if one is missing.
+/// Returns all values, or `None` if one is missing.
 fn values<T>(parts: Vec<ParsedElement<'_, '_, T>>) -> Option<Vec<T>> {
     parts.into_iter().map(|part| part.value).collect()
 }
@@ -42,7 +42,7 @@ impl SceneParts<'_, '_> {
         Some(self.particles.get(particle)?.value.as_ref()?.position)
     }
 
-    /// Returns the scene; `None` if a part is missing.
+    /// Returns the scene, or `None` if a part is missing.
     pub(super) fn into_scene(self) -> Option<Scene> {
         let (integrator, time_step) = self.integrator?.value?;
         Some(Scene {
@@ -128,7 +128,7 @@ impl<'d, 't> SceneBuilder<'d, 't, '_> {
         Some(ParsedElement { tag, value: read(&mut TagFields::new(tag, None, self.report)) })
     }
 
-    /// Returns a single optional element; the outer `None` means unreadable.
+    /// Returns the value of a single optional element. The outer `None` means that the element could not be read.
     fn read_optional<T>(
         &mut self,
         name: &str,

@@ -1,4 +1,5 @@
-//! Observers receive every detection call, pass, impulse and zone during a simulation, and may steer a step.
+//! Observers receive every detection call, pass, impulse and zone during a simulation, and may change the values with
+//! which a step continues.
 use super::{pair::Pair, polynomial_bytes::PolynomialBytes, state::State};
 use fosssim_num::{polynomial::Polynomial, vector::Vec2};
 use serde::{Deserialize, Serialize};
@@ -21,12 +22,13 @@ pub trait Observer {
     /// Observes the start and end positions of particles (2N each) for the pass, right after `begin_pass`.
     fn observe_positions(&mut self, _q_start: &[f64], _q_end: &[f64]) {}
     /// Returns the pairs whose detections this observer needs; called at least once in each pass. Unless the answer is
-    /// [`WantedPairs::Calls`], `detection` is not called, calls are not steered, and pairs are computed many at a time.
+    /// [`WantedPairs::Calls`], `detection` is not called, the controller does not receive single calls, and pairs are
+    /// computed many at a time.
     #[inline]
     fn wanted_pairs(&mut self) -> WantedPairs<'_> {
         WantedPairs::Calls
     }
-    /// Returns the steering part of this observer, if it has one.
+    /// Returns the controller of the step, if this observer has one.
     #[inline]
     fn as_controller(&mut self) -> Option<&mut dyn StepController> {
         None
@@ -49,7 +51,7 @@ pub trait Observer {
     fn end_step(&mut self, _step: u32, _state: &State) {}
 }
 
-/// Steers a step, which continues with the values that it sets. By default the methods change nothing.
+/// Changes values during a step, which continues with the changed values. By default the methods change nothing.
 pub trait StepController {
     /// Receives the trimmed polynomials of a pair before the search for a time of impact. They may be replaced; search,
     /// decision and [`Observer::observe_detection`] then use the replacements. Not called by `simple`, which has no
@@ -69,7 +71,7 @@ pub trait StepController {
     }
 }
 
-/// An observer that only steers.
+/// An observer that only changes values of a step.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct SteeringObserver<S>(pub S);
 
@@ -79,7 +81,7 @@ impl<S: StepController> Observer for SteeringObserver<S> {
     }
 }
 
-/// Passes the state of the synchronization point to an observer, and lets it steer.
+/// Passes the state of the synchronization point to an observer, and lets it change the state.
 pub(super) fn pass_on_synchronization<O: Observer>(observer: &mut O, state: &mut State) -> ResumeState {
     observer.observe_synchronization(state);
     observer.as_controller().map_or(ResumeState::Own, |steer| steer.choose_resume_state(state))
@@ -104,7 +106,7 @@ impl Observer for () {
     }
 }
 
-/// Forwards every event to the given observers, one after the other.
+/// Forwards every event to the given observers in their order.
 macro_rules! forward_all {
     ($self:ident => $($to:expr),+) => {
         fn begin_step(&mut $self, step: u32) { $($to.begin_step(step);)+ }
@@ -121,7 +123,7 @@ macro_rules! forward_all {
     };
 }
 
-/// A borrowed observer receives the same events.
+/// A borrowed observer receives every event of the observer that it borrows.
 impl<O: Observer + ?Sized> Observer for &mut O {
     forward_all!(self => (**self));
     #[inline]
@@ -279,7 +281,7 @@ pub enum Decision {
     /// The objects collide at `time` (fraction of the step) with contact normal `normal`, from the first object to the
     /// second.
     Hit {
-        /// The time of impact in [0, 1]; 0 for `simple`.
+        /// The time of impact in [0, 1], or 0 for `simple`.
         time: f64,
         /// The contact normal, not normalized.
         normal: Vec2,
@@ -298,7 +300,7 @@ impl Decision {
         matches!(self, Self::Hit { .. })
     }
 
-    /// Returns the time of impact; infinite if there is none, or none was searched.
+    /// Returns the time of impact. It is infinite if there is none or if none was searched.
     #[must_use]
     pub const fn time(self) -> f64 {
         match self {
@@ -315,7 +317,7 @@ pub enum ImpactTime {
     Excluded,
     /// The search found this time (greater than 1 or infinite, or at most 1 with a zero normal).
     Found(f64),
-    /// The handling `simple` has no times.
+    /// No times exist, because the handling is `simple`.
     None,
 }
 

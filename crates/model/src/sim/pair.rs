@@ -14,7 +14,7 @@ pub struct Pair {
     pub second: u32,
 }
 
-/// Creates a pair.
+/// Creates a pair of the given kind.
 #[inline]
 #[expect(clippy::cast_possible_truncation, reason = "a scene with 2^32 objects does not fit into memory")]
 pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
@@ -26,7 +26,7 @@ pub(super) fn pair(kind: PairKind, first: usize, second: usize) -> Pair {
 pub struct PairKindMap<T>([T; PairKind::ALL.len()]);
 
 impl<T> PairKindMap<T> {
-    /// Creates the values with a function.
+    /// Creates the values by calling a function for each kind.
     #[must_use]
     pub fn from_fn(value: impl FnMut(PairKind) -> T) -> Self {
         Self(PairKind::ALL.map(value))
@@ -47,7 +47,7 @@ impl<T> PairKindMap<T> {
         self.0.iter_mut()
     }
 
-    /// Returns the values by value.
+    /// Returns the values and consumes the map.
     pub fn into_values(self) -> impl Iterator<Item = T> {
         self.0.into_iter()
     }

@@ -25,7 +25,7 @@ pub(super) struct PassCursor {
     pub first: usize,
     /// The kind of the second object.
     pub kind: PairKind,
-    /// The number of the second object; after the last one the next kind follows.
+    /// The number of the second object. After the last number, the next kind follows.
     pub second: usize,
 }
 
@@ -70,7 +70,7 @@ impl ObjectCounts {
     }
 }
 
-/// Returns whether a particle is an end of an edge; the two are then not a pair.
+/// Returns whether a particle is an end of an edge. In this case the two are not a pair.
 #[inline]
 pub(super) fn is_end(ends: [usize; 2], particle: usize) -> bool {
     ends.contains(&particle)

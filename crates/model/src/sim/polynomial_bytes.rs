@@ -69,7 +69,8 @@ impl PolynomialBytes {
         })
     }
 
-    /// Returns an upper bound of all moduli of coefficients, ignoring NaN. It may come from a pair that is not logged.
+    /// Returns an upper bound of the absolute values of all coefficients, ignoring NaN. The bound may come from a pair
+    /// that is not logged.
     #[must_use]
     pub fn max_modulus(&self) -> f64 {
         self.max_modulus
@@ -83,7 +84,8 @@ impl PolynomialBytes {
     pub fn push(&mut self, coefficients: &[f64]) {
         assert!(coefficients.len() <= MAX_COEFFICIENTS, "detection polynomials are of degree five at most");
         let mut largest = self.max_modulus;
-        // A copy of constant length, of which a part counts, is several times faster than a copy of variable length.
+        // A copy of constant length, of which only a part counts, is several times faster than a copy of variable
+        // length.
         let mut polynomial = [0; MAX_BYTES];
         #[expect(clippy::cast_possible_truncation, reason = "at most six")]
         let size = coefficients.len() as u32;
@@ -113,7 +115,7 @@ impl PolynomialBytes {
         self.count += polynomials;
     }
 
-    /// Raises the bound of moduli to `largest`.
+    /// Raises the bound of absolute values to `largest`.
     #[inline]
     pub(super) fn raise_max_modulus(&mut self, largest: f64) {
         self.max_modulus = self.max_modulus.max(largest);

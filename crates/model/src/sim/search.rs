@@ -4,12 +4,12 @@ use serde::Serialize;
 /// The use of certificates instead of root searches.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum RootSearch {
-    /// Search only if no certificate excludes an impact. The traces are the same.
+    /// A search runs only if no certificate excludes an impact. The traces are the same.
     #[default]
     OnDemand,
-    /// Search for every pair.
+    /// A search runs for every pair.
     Always,
-    /// Search for every pair, compute the certificate as well, and count disagreements.
+    /// A search runs for every pair. The certificate is computed as well, and disagreements are counted.
     Audit,
 }
 
@@ -39,7 +39,7 @@ impl SearchCounts {
         self.calls + SEARCH_WORK * self.searched + self.steps + self.subnormal
     }
 
-    /// Combines the counts of two objects with `made`.
+    /// Combines the counts of two objects with the function `made`.
     fn combine(self, other: Self, made: fn(u64, u64) -> u64) -> Self {
         Self {
             calls: made(self.calls, other.calls),
@@ -73,7 +73,7 @@ const SEARCH_WORK: u64 = 16;
 /// 150 cycles for an operation of 4; measured by `audit cost`).
 pub(crate) const SUBNORMAL_WORK: u64 = 32;
 
-/// The minimum modulus for which powers up to the fifth, and powers of differences with it, stay normal.
+/// The minimum absolute value for which powers up to the fifth, and powers of differences with it, are normal numbers.
 const MIN_NORMAL_BASE: f64 = 1e-40;
 
 /// Returns whether products of `numbers` may be subnormal.

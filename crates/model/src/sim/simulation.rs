@@ -95,7 +95,7 @@ impl Simulation {
         Ok(())
     }
 
-    /// Counts of root searches, over all steps so far.
+    /// Returns the counts of root searches over all steps so far.
     #[must_use]
     pub fn search_counts(&self) -> SearchCounts {
         self.handler.counts()

@@ -29,7 +29,7 @@ impl State {
     }
 }
 
-/// Copying into an existing state reuses its memory.
+/// Copies a state, and reuses the memory of an existing one.
 impl Clone for State {
     fn clone(&self) -> Self {
         Self { positions: self.positions.clone(), velocities: self.velocities.clone() }

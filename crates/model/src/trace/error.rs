@@ -10,9 +10,9 @@ use std::{borrow::Cow, fmt};
 #[derive(Debug, Clone, PartialEq, Serialize, Deserialize, thiserror::Error)]
 #[error("byte {offset}, {}: {what}", record_name(*.frame, *.step))]
 pub struct TraceError {
-    /// The record, from 0 (the initial record).
+    /// The number of the record, from 0 for the initial record.
     pub frame: u64,
-    /// The step of the record, from 1; 0 for the initial record.
+    /// The number of the record's step, from 1; 0 for the initial record.
     pub step: u32,
     /// The byte offset from the beginning of the trace at which the wrong or missing value begins.
     pub offset: u64,
@@ -44,7 +44,7 @@ pub enum RecordList {
 }
 
 impl RecordList {
-    /// Returns the minimum number of bytes of an entry: 36 for an impulse, 4 for an empty polynomial.
+    /// Returns the minimum number of bytes of an entry: 36 for an impulse, or 4 for an empty polynomial.
     #[must_use]
     pub const fn entry_bytes(self) -> u64 {
         match self {
@@ -102,7 +102,7 @@ pub enum Malformation {
     NegativeCount {
         /// The list concerned.
         list: RecordList,
-        /// The count.
+        /// The number of entries that the trace declares.
         count: i32,
     },
     /// A count is too large for the rest of the trace.
@@ -113,7 +113,7 @@ pub enum Malformation {
     CountBeyondEnd {
         /// The list concerned.
         list: RecordList,
-        /// The count.
+        /// The number of entries that the trace declares.
         count: i32,
         /// The minimum number of bytes of `count` entries.
         needs: u64,
@@ -137,7 +137,7 @@ pub enum Malformation {
     SizeBeyondEnd {
         /// The number of the polynomial in the list, from 0.
         polynomial: u64,
-        /// The claimed size.
+        /// The size that the trace declares.
         size: i32,
         /// The number of bytes after the size.
         left: u64,
@@ -147,7 +147,7 @@ pub enum Malformation {
     NegativeSize {
         /// The number of the polynomial in the list, from 0.
         polynomial: u64,
-        /// The claimed size.
+        /// The size that the trace declares.
         size: i32,
     },
     /// A polynomial has more coefficients than any detection polynomial (six).
@@ -155,7 +155,7 @@ pub enum Malformation {
     OversizedPolynomial {
         /// The number of the polynomial in the list, from 0.
         polynomial: u64,
-        /// The claimed size.
+        /// The size that the trace declares.
         size: i32,
     },
     /// An impulse has a kind other than 0, 1 or 2.
@@ -163,7 +163,7 @@ pub enum Malformation {
     UnknownKind {
         /// The number of the impulse in the list, from 0.
         impulse: u64,
-        /// The claimed kind.
+        /// The kind that the trace declares.
         kind: i32,
     },
     /// An impulse names an object that the scene does not have.

@@ -32,8 +32,8 @@ impl Frame {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize, schemars::JsonSchema)]
 #[serde(try_from = "ImpulseForm", into = "ImpulseForm")]
 pub struct LoggedImpulse {
-    /// The kind of pair: 0 particle-particle, 1 particle-edge, 2 particle-half-plane; any other number in a damaged
-    /// trace.
+    /// The number of the pair's kind: 0 for particle-particle, 1 for particle-edge, 2 for particle-half-plane. In a
+    /// damaged trace it may be any other number.
     pub kind: i32,
     /// The index of the particle.
     pub first: i32,
@@ -48,7 +48,7 @@ pub struct LoggedImpulse {
 /// The objects that a logged impulse names.
 #[derive(Debug, Clone, PartialEq, Eq, Serialize, Deserialize, schemars::JsonSchema)]
 pub struct ImpulsePair {
-    /// The name of the kind; `unknown` in a damaged trace.
+    /// The name of the kind, or `unknown` in a damaged trace.
     kind: Cow<'static, str>,
     /// The number of an unknown kind.
     #[serde(default, skip_serializing_if = "Option::is_none")]
@@ -106,13 +106,13 @@ impl TryFrom<ImpulseForm> for LoggedImpulse {
 }
 
 impl LoggedImpulse {
-    /// Returns the kind of the impulse's pair; `None` in a damaged trace.
+    /// Returns the kind of the impulse's pair, or `None` in a damaged trace.
     #[must_use]
     pub fn kind(&self) -> Option<PairKind> {
         PairKind::from_code(self.kind)
     }
 
-    /// Returns the impulse's pair; `None` if the pair is impossible.
+    /// Returns the impulse's pair, or `None` if such a pair is impossible.
     #[must_use]
     pub fn pair(&self) -> Option<Pair> {
         let (first, second) = (u32::try_from(self.first).ok()?, u32::try_from(self.second).ok()?);

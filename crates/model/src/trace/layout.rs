@@ -54,7 +54,7 @@ impl Layout {
         more && self.particles > 0 && bytes == (1 + u64::from(self.steps)) * self.state_bytes() as u64
     }
 
-    /// Returns the step of record `record`, from 1; 0 for the initial record.
+    /// Returns the step of record `record`, from 1, or 0 for the initial record.
     #[must_use]
     pub fn step_of_record(&self, record: u64) -> u32 {
         u32::try_from(record.div_ceil(u64::from(self.records_per_step()))).unwrap_or(u32::MAX)

@@ -62,8 +62,9 @@ fn max_passes(scene: &Scene) -> usize {
     }
 }
 
-/// The maximum number of impulses that the original can store. It allocates the claimed count before it reads the
-/// stream, and a larger count exceeds the corpus's 6 GiB of address space (48 bytes each, in an array that doubles).
+/// The maximum number of impulses that the original can store. It allocates memory for the declared count before it
+/// reads the stream, and a larger count exceeds the corpus's 6 GiB of address space (48 bytes each, in an array that
+/// doubles).
 const STORABLE_IMPULSES: usize = 1 << 26;
 
 /// The maximum number of polynomials that the original can store (24 bytes each without their coefficients, in an array
@@ -151,11 +152,11 @@ pub struct LenientReader<R> {
     layout: Layout,
     record: u64,
     record_start: u64,
-    /// Whether a read has found too few bytes; later reads then find none.
+    /// Whether a read has found too few bytes. Every later read then finds none.
     has_failed: bool,
     notes: Vec<TraceError>,
     limit: usize,
-    /// Whether damage stops the reading, and all coefficients are kept, as in [`Reader`](super::Reader).
+    /// Whether damage stops the reading and all coefficients are kept, as in [`Reader`](super::Reader).
     is_strict: bool,
 }
 
@@ -401,7 +402,8 @@ impl<R: Read> LenientReader<R> {
         Ok(())
     }
 
-    /// Reads one polynomial without the fast path: of any size, and the stream may end anywhere.
+    /// Reads one polynomial without the fast path. The polynomial may have any size, and the stream may end at any
+    /// byte.
     fn read_polynomial(&mut self, frame: &mut LenientFrame, number: u64, count: i32) -> Result<(), ReadStop> {
         let offset = self.source.offset();
         let written = self.read_integer();
@@ -436,7 +438,7 @@ impl<R: Read> LenientReader<R> {
             let coefficient = f64::from_le_bytes(value);
             is_leading &= coefficient.abs() < MIN_LEADING_COEFFICIENT;
             frame.is_unchanged &= !is_leading;
-            // Once the stream has failed, all other coefficients repeat this one.
+            // After the stream has failed, all other coefficients are equal to this one.
             let times = if self.has_failed { size - read } else { 1 };
             if !is_leading {
                 let log = &mut frame.polynomials;

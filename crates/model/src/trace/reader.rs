@@ -13,7 +13,7 @@ use std::{io::Read, mem::swap};
 /// The maximum number of bytes that are read after the last record, 64 MiB, because a stream may be endless.
 pub const TRAILING_LIMIT: u64 = 64 * 1024 * 1024;
 
-/// Reads frame by frame (trace-format.md 1, 2).
+/// Reads a trace frame by frame (trace-format.md 1, 2).
 ///
 /// ```
 /// use fosssim_model::trace::{Frame, Layout, Reader};
@@ -70,7 +70,7 @@ impl<R: Read> Reader<R> {
         }
     }
 
-    /// Lets the reader note impulses that name edges or half-planes missing in the scene.
+    /// Lets the reader note impulses whose edges or half-planes do not exist in the scene.
     #[must_use]
     pub fn with_scene(mut self, scene: &Scene) -> Self {
         self.objects = Some((scene.edges.len(), scene.half_planes.len()));

@@ -54,7 +54,7 @@ impl<W: Write> Recorder<W> {
 
 impl<W: Write> Observer for Recorder<W> {
     fn begin_step(&mut self, _step: u32) {
-        // Between steps, because the records of one step borrow the same list.
+        // The writer is emptied between steps, because the records of one step borrow the same list.
         if self.writer.is_full() {
             self.writer.write_collected(self.log.polynomials.all_bytes());
         }

@@ -43,7 +43,8 @@ impl<R: Read> Source<R> {
         self.captured_bytes = Some(buffer);
     }
 
-    /// Stops keeping bytes, and returns those consumed since the start; empty without a start.
+    /// Stops keeping bytes, and returns those that were consumed since the start. The list is empty if nothing was
+    /// started.
     pub(crate) fn stop_capture(&mut self) -> Vec<u8> {
         self.captured_bytes.take().unwrap_or_default()
     }
@@ -88,8 +89,8 @@ impl<R: Read> Source<R> {
         self.offset += count as u64;
     }
 
-    /// Consumes everything up to the end, but at most `limit` bytes, without keeping it. Returns the number of bytes;
-    /// `None` if more follow.
+    /// Consumes everything up to the end, but at most `limit` bytes, without keeping it. Returns the number of bytes,
+    /// or `None` if more follow.
     pub(crate) fn drain(&mut self, limit: u64) -> Option<u64> {
         let mut drained = 0;
         loop {

@@ -57,7 +57,7 @@ impl<W: Write> Writer<W> {
         }
     }
 
-    /// Writes one frame; lists that the layout does not have are left out.
+    /// Writes one frame. Lists that the layout does not have are left out.
     pub fn write_frame(&mut self, frame: &Frame) {
         encode::append_state(&mut self.buffer, &frame.state);
         if self.layout.has_impulses {
@@ -111,7 +111,7 @@ impl<W: Write> Writer<W> {
         }
     }
 
-    /// Returns whether writing has failed; later bytes are then dropped.
+    /// Returns whether writing has failed. Later bytes are then dropped.
     #[must_use]
     pub fn has_failed(&self) -> bool {
         self.error.is_some()
@@ -155,7 +155,7 @@ impl<W: Write> Writer<W> {
 
 /// Writes all parts. (`Write::write_all_vectored` is not stable.)
 fn write_all(stream: &mut impl Write, mut parts: &mut [IoSlice<'_>]) -> io::Result<()> {
-    // Skip empty parts.
+    // Parts without bytes are skipped.
     IoSlice::advance_slices(&mut parts, 0);
     while !parts.is_empty() {
         match stream.write_vectored(parts) {

@@ -46,12 +46,12 @@ impl<'e> Item<'e> {
         self.require(name, "value of ", "integer", values::parse_integer)
     }
 
-    /// Returns a scalar; only the message about a bad value contains `value of`.
+    /// Reads a scalar. Only the message about a bad value contains `value of`.
     pub(super) fn read_numeric(&self, name: &str) -> Result<f64, Rejection> {
         self.require(name, "", "numeric", values::parse_scalar)
     }
 
-    /// Returns two scalars, read like [`Item::read_numeric`].
+    /// Reads two scalars, each like [`Item::read_numeric`].
     pub(super) fn read_numerics(&self, x: &str, y: &str) -> Result<Vec2, Rejection> {
         Ok(Vec2::new(self.read_numeric(x)?, self.read_numeric(y)?))
     }
@@ -67,7 +67,7 @@ impl<'e> Item<'e> {
         self.require(name, "", "boolean", values::parse_boolean)
     }
 
-    /// Returns an optional scalar whose message lacks `value of`.
+    /// Reads an optional scalar, whose message lacks `value of`.
     pub(super) fn read_radius(&self, default: f64) -> Result<f64, Rejection> {
         self.read_optional("radius", default, "", "scalar")
     }
@@ -77,7 +77,7 @@ impl<'e> Item<'e> {
         values::parse_scalar(text).ok_or_else(|| self.rejection(of, name, &format!("Value must be {what}. Exiting.")))
     }
 
-    /// Returns the color in `r`, `g`, `b`, each checked before the next is read.
+    /// Reads the color in `r`, `g`, `b`, and checks each component before the next is read.
     pub(super) fn read_color(&self) -> Result<Color, Rejection> {
         let component = |name: &str| {
             let value = self.require(name, "value of ", "scalar", values::parse_scalar)?;
@@ -90,7 +90,7 @@ impl<'e> Item<'e> {
         Ok(Color { red: component("r")?, green: component("g")?, blue: component("b")? })
     }
 
-    /// Returns `Failed to parse [value of ]NAME attribute for WHO. END`
+    /// Returns the message `Failed to parse [value of ]NAME attribute for WHO. END`.
     pub(super) fn rejection(&self, of: &str, name: &str, end: &str) -> Rejection {
         let text = format!("Failed to parse {of}{name} attribute for {}. {end}", self.describe());
         Rejection::from_message(text.as_bytes(), self.exit_code)

@@ -83,13 +83,13 @@ struct Cursor<'t> {
 }
 
 impl<'t> Cursor<'t> {
-    /// Returns the byte at distance `ahead` from the current position; 0 after the end (the text itself contains no
-    /// NUL).
+    /// Returns the byte at distance `ahead` from the current position, or 0 after the end. The text itself contains no
+    /// NUL.
     fn peek(&self, ahead: usize) -> u8 {
         self.text.get(self.offset + ahead).copied().unwrap_or(0)
     }
 
-    /// Returns the rest of the text, never past the end.
+    /// Returns the rest of the text, and never reads past the end.
     fn rest(&self) -> &'t [u8] {
         self.text.get(self.offset..).unwrap_or_default()
     }

@@ -43,7 +43,7 @@ pub struct Rejection {
     /// The bytes on standard error, including escape sequences and the final newline. For [`RejectionKind::Undefined`]
     /// the message is this program's.
     pub stderr: Vec<u8>,
-    /// The exit code as a shell shows it: 1, 0 for half-planes, 134 for broken XML.
+    /// The exit code as a shell shows it: 1 for most messages, 0 for messages about half-planes, 134 for broken XML.
     pub exit_code: u8,
     /// The message without escape sequences.
     pub explanation: String,
@@ -61,8 +61,8 @@ pub enum RejectionKind {
 }
 
 impl Rejection {
-    /// Returns the original's message about a scene file that cannot be opened (scene-format.md 1). The name may hold
-    /// any bytes.
+    /// Returns the original's message about a scene file that cannot be opened (scene-format.md 1). The name may
+    /// contain any bytes.
     #[must_use]
     pub fn from_unreadable_file(name: &[u8]) -> Self {
         let stderr =
@@ -72,7 +72,7 @@ impl Rejection {
         Self { kind: RejectionKind::Message, stderr, exit_code: 1, explanation }
     }
 
-    /// Returns a message of the scene parser. `text` may hold bytes of the scene that are not UTF-8.
+    /// Returns a message of the scene parser. `text` may contain bytes of the scene that are not UTF-8.
     fn from_message(text: &[u8], exit_code: u8) -> Self {
         let mut stderr = b"\x1b[31;1mERROR IN XMLSCENEPARSER:\x1b[m ".to_vec();
         stderr.extend_from_slice(text);

@@ -1,8 +1,8 @@
 //! Reads numbers like a C++ stream: the longest prefix counts, the rest is ignored (scene-format.md 2).
 use crate::scene::numbers::{count_digits, mantissa_end};
 
-/// Returns a 64-bit float, correctly rounded. Fails without digits, with an exponent without digits, and on overflow;
-/// underflow gives zero.
+/// Returns a 64-bit float, correctly rounded. Returns `None` for texts without digits, for exponents without digits,
+/// and on overflow. Underflow gives zero.
 pub(super) fn parse_scalar(text: &[u8]) -> Option<f64> {
     let text = trim_start(text);
     let mut end = mantissa_end(text)?;
@@ -34,7 +34,7 @@ pub(super) fn parse_boolean(text: &[u8]) -> Option<bool> {
     }
 }
 
-/// Returns a scalar converted to a 32-bit integer: rounded toward zero, and the smallest integer if it does not fit.
+/// Converts a scalar to a 32-bit integer by rounding toward zero. A value that does not fit gives the smallest integer.
 pub(super) fn truncate(value: f64) -> i32 {
     let whole = value.trunc();
     if whole >= f64::from(i32::MIN) && whole <= f64::from(i32::MAX) {

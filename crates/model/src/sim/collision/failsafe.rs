@@ -14,7 +14,7 @@ pub(super) fn apply(bodies: &Bodies, dt: f64, zone: Zone<'_>, q_start: &[f64], q
     if zone.half_plane || members().any(|particle| bodies.fixed[particle]) {
         for particle in members() {
             set_vector(q, particle, vector_at(q_start, particle));
-            // A product instead of a zero: it keeps the sign, and makes NaN of infinity.
+            // The velocity is multiplied by zero, which keeps its sign and turns an infinity into NaN.
             set_vector(v, particle, vector_at(v, particle) * 0.0);
         }
         return;

@@ -7,7 +7,7 @@ use super::super::{
 };
 use fosssim_num::{certificate::excludes_unit_interval, first_time::first_time_with_steps, polynomial::Polynomial};
 
-/// Returns the time of impact; it is not computed if it is not needed.
+/// Returns the time of impact. It is computed only if it is needed.
 ///
 /// # Errors
 /// Fails with [`StepError::RootSearch`] if a root search would never end.

@@ -118,7 +118,7 @@ impl Handler {
         self.detector.disable_lanes();
     }
 
-    /// Counts of root searches so far.
+    /// Returns the counts of root searches so far.
     pub fn counts(&self) -> SearchCounts {
         self.detector.counts()
     }

@@ -43,14 +43,14 @@ impl PointMotion {
 /// The objects of a pair and their motion within a step.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum PairMotion {
-    /// Two discs.
+    /// The pair consists of two discs.
     Particles {
         /// The particles' centers.
         centers: [PointMotion; 2],
         /// The particles' radii.
         radii: [f64; 2],
     },
-    /// A disc and an edge.
+    /// The pair consists of a disc and an edge.
     Edge {
         /// The motion of the disc's center.
         center: PointMotion,
@@ -59,7 +59,7 @@ pub enum PairMotion {
         /// The radii of the disc and of the edge.
         radii: [f64; 2],
     },
-    /// A disc and a half-plane.
+    /// The pair consists of a disc and a half-plane.
     HalfPlane {
         /// The motion of the disc's center.
         center: PointMotion,

@@ -55,7 +55,7 @@ pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, half_plan
     (length(n) < bodies.radii[i] && vector_at(v, i).dot(&n) > 0.0).then_some(n)
 }
 
-/// Returns the simple response along normal `n`, from the velocities `v`; positions stay.
+/// Returns the simple response along normal `n`, from the velocities `v`. Positions do not change.
 pub(super) fn simple_response(factor: f64, v: &[f64], i: usize, n: Vec2) -> Response {
     let u = unit(n);
     let velocity = ((2.0 * factor) * vector_at(v, i).dot(&u)) * u;

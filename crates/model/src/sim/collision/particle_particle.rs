@@ -44,7 +44,7 @@ pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, j: usize)
     (length(n) < bodies.radii[i] + bodies.radii[j] && (vector_at(v, i) - vector_at(v, j)).dot(&n) > 0.0).then_some(n)
 }
 
-/// Returns the simple response along normal `n`, from the velocities `v`; positions stay.
+/// Returns the simple response along normal `n`, from the velocities `v`. Positions do not change.
 pub(super) fn simple_response(bodies: &Bodies, factor: f64, v: &[f64], i: usize, j: usize, n: Vec2) -> Response {
     exchange(bodies, factor, 0.0, i, j, vector_at(v, j) - vector_at(v, i), unit(n))
 }

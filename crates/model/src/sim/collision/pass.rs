@@ -26,7 +26,7 @@ crate::drops_leading!();
 /// The reaction of a pass to a hit, before it checks the next pair.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum Reaction {
-    /// The end positions have not changed.
+    /// The end positions are the same as before.
     Kept,
     /// The pair's particles have moved.
     Moved,
@@ -57,7 +57,7 @@ impl Detector {
             step: 0,
             pass_count: 0,
             displacements: Vec::new(),
-            // Other root search modes serve to check the results of lanes.
+            // The other root search modes exist to check the results of lanes.
             has_lanes: search == RootSearch::OnDemand,
             blocks: Blocks::new(steps),
         }
@@ -84,7 +84,7 @@ impl Detector {
         self.max_work = most;
     }
 
-    /// Counts of root searches, over all steps.
+    /// Returns the counts of root searches, over all steps.
     pub fn counts(&self) -> SearchCounts {
         self.counts
     }

@@ -9,7 +9,7 @@ pub(super) struct ResponseConstants {
     pub time_step: f64,
     /// The factor `1/dt` that turns displacements into mean velocities.
     pub rate: f64,
-    /// The factor `f = (1 + COR)/2`: 1 conserves the energy, 1/2 loses all of the approach.
+    /// The factor `f = (1 + COR)/2`. The value 1 conserves the energy; the value 1/2 removes all velocity of approach.
     pub factor: f64,
 }
 

@@ -4,7 +4,8 @@ use crate::sim::matrix::couple;
 use fosssim_num::vector::{divide, length, vector_at};
 use nalgebra::{DMatrix, Matrix2};
 
-/// Adds `G m m' / r^2` along the line from the first to the second particle (NaN if they coincide).
+/// Adds the force `G m m' / r^2` along the line from the first to the second particle. The result is NaN if they
+/// coincide.
 pub(super) fn add_gradient(masses: &[f64], [a, b]: [usize; 2], constant: f64, x: &[f64], gradient: &mut [f64]) {
     let d = vector_at(x, b) - vector_at(x, a);
     let r = length(d);

@@ -4,7 +4,8 @@ use crate::sim::matrix::{couple, decouple};
 use fosssim_num::vector::{Vec2, divide, length, vector_at};
 use nalgebra::{DMatrix, Matrix2};
 
-/// Returns the spring's length and its direction from the first to the second endpoint (NaN if they coincide).
+/// Returns the spring's length and its direction from the first to the second endpoint. The direction is NaN if they
+/// coincide.
 fn direction([a, b]: [usize; 2], x: &[f64]) -> (f64, Vec2) {
     let d = vector_at(x, b) - vector_at(x, a);
     let l = length(d);

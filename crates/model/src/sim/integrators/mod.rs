@@ -28,7 +28,7 @@ pub(super) struct Stepper {
 }
 
 /// The work of Newton's method over all steps, in the unit of
-/// [`SearchCounts::work`](super::search::SearchCounts::work). Methods with constant work per step are not counted.
+/// [`SearchCounts::work`](super::search::SearchCounts::work). Methods whose work per step is constant are not counted.
 #[derive(Debug, Clone, Copy)]
 struct NewtonWork {
     performed: u64,

@@ -19,7 +19,7 @@ const MAX_RADIUS_RATIO: f64 = 4.0;
 /// list.
 const MAX_PAIRS_PER_OBJECT: usize = 32;
 
-/// The minimum number of pairs for a search; with fewer, a check of all pairs is cheaper.
+/// The minimum number of pairs for which a search is worthwhile. With fewer pairs, a check of all pairs is cheaper.
 const MIN_PAIRS: usize = 1 << 10;
 
 /// The pairs that may be near each other, with the memory for the next search.
@@ -38,14 +38,14 @@ pub(super) struct NearbyPairs {
     tested_count: u64,
 }
 
-/// Two 32-bit numbers in one, with the first in the high bits, so that lists sort by the first.
+/// Two 32-bit numbers in one number. The first is in the high bits, so that lists are sorted by the first.
 type IndexPair = u64;
 
 const fn pack_indices(first: u32, second: u32) -> IndexPair {
     (first as u64) << 32 | second as u64
 }
 
-/// Returns both numbers.
+/// Returns the two numbers.
 fn unpack_indices(numbers: IndexPair) -> [usize; 2] {
     [(numbers >> 32) as usize, (numbers & u64::from(u32::MAX)) as usize]
 }
@@ -158,7 +158,7 @@ impl NearbyPairs {
         Some(NearRows { particles, edges: edge_pairs })
     }
 
-    /// Returns the number of tested pairs so far, which is the work of all searches.
+    /// Returns the number of pairs tested so far, which is the work of all searches.
     #[cfg(test)]
     pub fn tested(&self) -> u64 {
         self.tested_count
@@ -189,7 +189,7 @@ fn widen(reach: f64, places: [Vec2; 2]) -> f64 {
 /// The minimum reach whose square does not underflow.
 const MIN_REACH: f64 = 1e-150;
 
-/// Returns the rectangle of all points that are at most `reach` from the line between two points; `None` if it is
+/// Returns the rectangle of all points that are at most `reach` from the line between two points, or `None` if it is
 /// empty.
 fn enclosing_rectangle(places: [Vec2; 2], reach: f64) -> Option<Rectangle> {
     if !(reach > 0.0) {
@@ -232,7 +232,7 @@ fn add_particles_near_edge(
     size.visit_rectangle(rectangle, narrow, |entry| {
         let (particle, x1) = (entry.particle, entry.position);
         if edge.first != particle as usize && edge.second != particle as usize {
-            // Computed like the forces do; NaN is kept.
+            // The parameter is computed as in the forces, so a NaN is kept.
             let alpha = ((x1 - x2).dot(&x32) / squared).clamp(0.0, 1.0);
             if !is_beyond((x2 + alpha * x32) - x1, (radii[particle as usize] + edge.radius) + margin) {
                 found.push(pack_indices(particle, index as u32));

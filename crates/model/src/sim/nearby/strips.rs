@@ -11,10 +11,10 @@ use fosssim_num::vector::{Vec2, vector_at};
 /// reach more than one row apart.
 const HEIGHT_FACTOR: f64 = 1.0 + 1e-6;
 
-/// The row from which the rounding of a position may be a relevant part of a row.
+/// The first row at which the rounding error of a position may be a noticeable part of the height of a row.
 const ROUNDED_ROW: i64 = 1 << 30;
 
-/// The first row, which has all lower particles; the last row has all higher ones.
+/// The first row, which contains all lower particles. The last row contains all higher ones.
 const FIRST_ROW: i64 = -LAST_ROW;
 const LAST_ROW: i64 = i64::MAX - 8;
 
@@ -44,7 +44,7 @@ pub(super) struct Strips {
     radius: f64,
     /// The maximum reach of any two particles.
     reach: f64,
-    /// The width whose square is too small to be compared.
+    /// The width whose square is too small for a comparison.
     width: f64,
     /// The number of rows per length.
     density: f64,
@@ -194,7 +194,7 @@ impl Strips {
     }
 }
 
-/// Returns the row of height `y`. It never decreases as the height increases.
+/// Returns the row at height `y`. A greater height never gives a lower row.
 fn row_of(y: f64, density: f64) -> i64 {
     #[expect(clippy::cast_possible_truncation, reason = "what is too large is in the last row, which has room")]
     let row = (y * density) as i64;

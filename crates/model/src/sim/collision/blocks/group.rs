@@ -1,5 +1,5 @@
-//! The pairs of several consecutive particles, one per lane, with every edge and every half-plane, and of one particle
-//! with several others or several edges: coefficients, and the results of the certificate's closed forms.
+//! Computes the pairs of several consecutive particles, one per lane, with every edge and every half-plane, and of one
+//! particle with several others or several edges: coefficients, and the results of the certificate's closed forms.
 use super::{
     super::{
         particle_edge::{self, EdgePolynomials},
@@ -34,13 +34,13 @@ pub(super) const FACTS_INDEX: usize = 3;
 /// The index at which the line begins.
 pub(super) const LINE_INDEX: usize = 4;
 
-/// The numbers after a row that may be read, regardless of their values: the number of coefficients of a polynomial,
-/// plus two.
+/// The number of entries after a row that may be read, whatever their values are: the number of coefficients of a
+/// polynomial, plus two.
 pub(super) const ROW_PADDING: usize = 8;
 
-/// The facts about a pair, in the bits of a number. The lowest bit is set if the certificate must decide whether there
-/// is an impact. The next bits mark coefficients that are small enough to be dropped when they lead; the highest bits
-/// are unused.
+/// The bit that marks an open pair in the number of facts. It is the lowest bit, and is set if the certificate must
+/// decide whether there is an impact. The next bits mark coefficients that are small enough to be dropped when they
+/// lead. The highest bits are unused.
 pub(super) const OPEN_BIT: u64 = 1;
 
 /// 2^52: after small powers of two are added, their sum is in the lowest bits of the mantissa.
@@ -56,11 +56,11 @@ pub(super) struct PairGroup {
     pub edges: Vec<f64>,
     /// The pairs with half-planes, in the same order.
     pub half_planes: Vec<f64>,
-    /// The largest modulus of a coefficient.
+    /// The largest absolute value of a coefficient.
     pub largest_modulus: f64,
     /// A bit mask of the particles that a response has moved since their pairs were computed.
     moved_particles: u32,
-    /// Whether a response has moved an edge in this pass; a second response would invalidate the results of other
+    /// Whether a response has moved an edge in this pass. A second response would then invalidate the results of other
     /// particles.
     has_moved_edges: bool,
 }
@@ -113,7 +113,7 @@ impl PairGroup {
         self.largest_modulus = self.compute_half_planes(simd, lists, bodies, largest).largest();
     }
 
-    /// Computes the pairs of all particles with one edge. Returns the largest moduli so far.
+    /// Computes the pairs of all particles with one edge. Returns the largest absolute values so far.
     #[inline(always)]
     fn compute_edge<S: Simd>(
         &mut self,
@@ -175,13 +175,13 @@ impl PairGroup {
     }
 }
 
-/// Returns a vector in all lanes.
+/// Returns the vector with its components copied to all lanes.
 #[inline(always)]
 fn splat_plane<S: Simd>(simd: S, vector: Vec2) -> Plane<Lanes<S>> {
     Plane { x: Lanes::splat(simd, vector.x), y: Lanes::splat(simd, vector.y) }
 }
 
-/// Computes the pairs of a particle with the particles from `second` on. Returns the largest moduli so far.
+/// Computes the pairs of a particle with the particles from `second` on. Returns the largest absolute values so far.
 #[inline(always)]
 pub(super) fn compute_particles<S: Simd>(
     simd: S,
@@ -197,7 +197,7 @@ pub(super) fn compute_particles<S: Simd>(
 }
 
 /// Applies the certificate to pairs with edges, and stores the rows, which are `stride` apart for two lanes. Returns
-/// the largest moduli so far.
+/// the largest absolute values so far.
 #[inline(always)]
 fn store_edges<S: Simd>(
     simd: S,

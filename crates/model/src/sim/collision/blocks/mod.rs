@@ -1,8 +1,8 @@
 //! A detection pass whose polynomials are only logged: several pairs of one kind at a time, in lanes.
 //!
-//! Every formula is the pair's own, evaluated in the same order, and every lane rounds like a single number;
-//! Polynomials, decisions and counts are therefore identical to those of [`super::pass`], whatever the grouping. If
-//! inputs are NaN, or so large that a NaN could result, no blocks are used.
+//! Every formula is the pair's own, evaluated in the same order, and every lane rounds like a single number.
+//! Polynomials, decisions and counts are therefore identical to those of [`super::pass`], regardless of the grouping.
+//! If inputs are NaN, or so large that a NaN could result, no blocks are used.
 //!
 //! `lists` holds the numbers from which lanes are loaded, `group` computes blocks of pairs, `rows` visits them in the
 //! order of the trace, and `settle` decides single pairs and writes their polynomials.
@@ -36,7 +36,7 @@ pub(super) struct PassInput<'a> {
 /// Processes the pairs of passes, and reuses its memory.
 #[derive(Debug, Clone, Default)]
 pub(super) struct Blocks {
-    /// The instructions for the scene, once they are chosen.
+    /// The processor instructions for the scene, `None` until they are chosen.
     instructions: Option<Instructions>,
     /// The number of steps of the scene.
     steps: u32,

@@ -27,11 +27,12 @@ pub(super) struct LoggedRows<'a> {
     pub used_bytes: usize,
     /// The number of polynomials written.
     pub polynomial_count: usize,
-    /// The number of pairs for which the certificate's closed forms have excluded an impact.
+    /// The number of pairs for which the certificate's closed forms have excluded an impact within the step.
     pub excluded: u64,
-    /// The largest modulus of a coefficient.
+    /// The largest absolute value of a coefficient.
     pub largest: f64,
-    /// The hit that was found, or the reason why the search has no end. It is stored here because it is rare and large.
+    /// The hit that was found, or the reason why the search would never end. It is stored here because it is rare and
+    /// large.
     pub result: Result<Option<Impulse>, StepError>,
 }
 
@@ -103,8 +104,8 @@ impl<'a> LoggedRows<'a> {
     }
 }
 
-/// Writes a polynomial whose coefficients are at the front. The maximum number is always written, of which fewer may
-/// count.
+/// Writes a polynomial whose coefficients are at the front. The maximum number of coefficients is always written, but
+/// only the bytes of the remaining ones count.
 #[inline(always)]
 fn write_polynomial<const LENGTH: usize>(room: &mut [u8], used: &mut usize, row: &[f64], small: u64) {
     // The number of consecutive small coefficients, at most all of them.

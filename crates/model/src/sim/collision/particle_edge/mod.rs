@@ -55,7 +55,7 @@ pub(super) fn overlap(bodies: &Bodies, x: &[f64], v: &[f64], i: usize, edge: usi
     None
 }
 
-/// Returns the simple response along normal `n`, from the velocities `v`; positions stay.
+/// Returns the simple response along normal `n`, from the velocities `v`. Positions do not change.
 pub(super) fn simple_response(
     bodies: &Bodies,
     factor: f64,
@@ -71,7 +71,7 @@ pub(super) fn simple_response(
     exchange(bodies, factor, 0.0, [i, first, second], alpha, on_edge - v1, unit(n))
 }
 
-/// Returns the parameter in [0, 1] of the point of the edge from `y2` to `y3` that is nearest to `y1`; 0 for NaN.
+/// Returns the parameter in [0, 1] of the edge's point from `y2` to `y3` that is nearest to `y1`, or 0 if it is NaN.
 #[inline]
 fn nearest_parameter(y1: Vec2, y2: Vec2, y3: Vec2) -> f64 {
     let edge = y3 - y2;

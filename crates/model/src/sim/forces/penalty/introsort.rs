@@ -98,7 +98,7 @@ fn sift<T: Copy>(heap: &mut [T], top: usize, value: T, is_less: impl Fn(&T, &T) 
 fn insert_all<T: Copy>(list: &mut [T], is_less: impl Fn(&T, &T) -> bool) {
     for end in 1..list.len() {
         let value = list[end];
-        // Only in this case does the search pass NaN keys.
+        // The search passes NaN keys only in this case.
         let is_least = end < MAX_INSERTION_LENGTH && is_less(&value, &list[0]);
         let mut hole = end;
         while hole > 0 && (is_least || is_less(&value, &list[hole - 1])) {

@@ -105,7 +105,7 @@ impl PenaltyParameters {
         let [first, second] = bodies.edges[edge];
         let (x1, x2, x3) = (vector_at(x, i), vector_at(x, first), vector_at(x, second));
         let x32 = x3 - x2;
-        // Unlike the comparisons of the responses, these keep a NaN.
+        // The clamp keeps a NaN, unlike the comparisons of the responses.
         let alpha = ((x1 - x2).dot(&x32) / x32.dot(&x32)).clamp(0.0, 1.0);
         let n = (x2 + alpha * x32) - x1;
         let (r1, r2) = (bodies.radii[i], bodies.edge_radii[edge]);

@@ -64,7 +64,7 @@ impl Sweep {
         }
     }
 
-    /// Returns the order of the last search; empty before the first one.
+    /// Copies the order of the last search, which is empty before the first search.
     pub fn copy_order(&self, order: &mut SweepOrder) {
         for (list, boxes) in [(&mut order.particles, &self.particle_boxes), (&mut order.edges, &self.edge_boxes)] {
             list.clear();
@@ -189,7 +189,7 @@ fn sort(
     std::mem::swap(boxes, sorted);
 }
 
-/// Returns an integer that increases with `number`, the same for both zeros.
+/// Returns an integer that increases with `number`. Both zeros give the same integer.
 const fn sort_key(number: f64) -> u64 {
     // Adding zero turns -0 into 0.
     let bits = (number + 0.0).to_bits();
@@ -201,7 +201,7 @@ impl BodyExtent {
     fn from_points(body: u32, [one, other]: [Vec2; 2], radius: f64, has_four_axes: bool) -> Self {
         let mut own = Self { body, ..Self::default() };
         let mut extend = |axis: usize, one: f64, other: f64, radius: f64| {
-            // Like the processor's instructions: if two numbers cannot be compared, the second counts.
+            // If two numbers cannot be compared, the second counts, as in the processor's instructions.
             own.low[axis] = if one < other { one } else { other } - radius;
             own.high[axis] = if one > other { one } else { other } + radius;
         };

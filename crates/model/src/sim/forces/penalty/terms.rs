@@ -18,7 +18,7 @@ pub struct PenaltyTerms {
 }
 
 impl PenaltyTerms {
-    /// Returns the terms of a scene with `penalty` handling; `None` for other scenes.
+    /// Returns the terms of a scene with `penalty` handling, or `None` for other scenes.
     #[must_use]
     pub fn for_scene(scene: &Scene) -> Option<Self> {
         let Collision::Penalty { stiffness, thickness, detection } = scene.collision else { return None };
