@@ -14,10 +14,11 @@ use fosssim_model::{
 /// The work that is allowed for every trace, even if its scene is simple. It takes about a tenth of a second.
 pub(crate) const MIN_WORK: u64 = 1_000_000;
 
-/// The multiple of the scene's own run that is allowed for the original's rules, in addition to the floor.
+/// The multiple of the work of the scene's own run that the original's rules may use, in addition to the work that is
+/// allowed for every trace.
 const PARITY_WORK_FACTOR: u64 = 10;
-/// The multiple that is allowed for the fair rules, which may repeat steps. They repeat a step at most 26 times; the
-/// trace of a wrong program needs 11.
+/// The multiple that the fair rules may use. They repeat a step at most 26 times; the trace of a wrong program needs 11
+/// repetitions.
 const FAIR_WORK_FACTOR: u64 = 40;
 
 /// The work that is left for one trace.

@@ -15,7 +15,7 @@ pub struct KeptTrace {
 }
 
 impl KeptTrace {
-    /// Creates a store for at most `most` bytes; a small number suits a trace that is not needed again.
+    /// Creates a store for at most `most` bytes. A small number suits a trace that is not needed again.
     #[must_use]
     pub const fn new(most: usize) -> Self {
         Self { bytes: Vec::new(), max_bytes: most, has_ended: false, is_cut: false }

@@ -2,10 +2,11 @@
 use super::rules::Book;
 use fosssim_model::sim::RootSearch;
 
-/// The options for judging.
+/// The options with which a trace is judged.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Options {
-    /// The number of threads that judge steps; the results do not depend on it. 0 means one per core, at most eight.
+    /// The number of threads that judge steps. The results do not depend on it. The value 0 means one thread per core,
+    /// but at most eight.
     pub threads: usize,
     /// Whether certificates may replace root searches.
     pub root_search: RootSearch,

@@ -30,7 +30,7 @@ pub struct OverlapStudy {
 }
 
 impl OverlapStudy {
-    /// Examines a pair in a step that starts from `before`; `None` if the scene never checks the pair.
+    /// Examines a pair in a step that starts from `before`, or returns `None` if the scene never checks the pair.
     ///
     /// # Errors
     /// Fails with a [`StepError`] if the step has no result.
@@ -57,7 +57,8 @@ impl OverlapStudy {
         length(self.normal)
     }
 
-    /// Returns the approach speed of the objects times their distance; positive if they approach.
+    /// Returns the approach speed of the objects times their distance. The product is positive if they approach each
+    /// other.
     #[must_use]
     pub fn approach(&self) -> f64 {
         (self.velocities[0] - self.velocities[1]).dot(&self.normal)

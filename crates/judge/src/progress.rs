@@ -14,7 +14,7 @@ pub trait Progress {
     fn observe_step_begin(&mut self, _step: u32) {}
     /// Observes that a step has been judged.
     fn observe_step_end(&mut self, _step: u32, _remarks: &[Remark]) {}
-    /// Observes a step with a fault; not called for the rest of damaged records.
+    /// Observes a step with a fault. It is not called for the rest of damaged records.
     fn observe_wrong_step(&mut self, _wrong: &WrongStep<'_>) {}
 }
 
@@ -25,8 +25,8 @@ pub struct WrongStep<'a> {
     pub step: u32,
     /// The findings by the original's rules.
     pub parity: StepFindings<'a>,
-    /// The findings by the fair rules; empty if they were not requested. Findings that only the whole trace shows, such
-    /// as mixed forms, are not included.
+    /// The findings by the fair rules, empty if these rules were not requested. Findings that only the whole trace
+    /// shows, such as mixed forms, are not included.
     pub fair: StepFindings<'a>,
 }
 

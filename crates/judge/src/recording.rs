@@ -21,7 +21,7 @@ use std::io::Read;
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 #[error("the recording is damaged: frame {frame}, byte {offset}: {message}; record it again")]
 pub struct RecordingError {
-    /// The frame, from 0.
+    /// The number of the frame, from 0.
     pub frame: u64,
     /// The byte offset of the damage.
     pub offset: u64,
@@ -43,7 +43,7 @@ pub fn judge<T: Read, R: Read>(
     compare(scene, &mut trace, &mut recording, progress)
 }
 
-/// Compares the frames for [`judge`]; compiled once for all readers.
+/// Compares the frames for [`judge`]. The function is compiled only once for all readers.
 fn compare(
     scene: &Scene,
     trace: &mut dyn Read,

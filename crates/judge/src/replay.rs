@@ -46,7 +46,7 @@ struct StepSlot {
     before: State,
     /// The order of bodies with which the reference begins the step, in a contest.
     order: SweepOrder,
-    /// The mid record; without its lists, unless the fair rules need them.
+    /// The mid record. Its lists are left out unless the fair rules need them.
     mid: LenientFrame,
     end: LenientFrame,
     damage: Option<Damage>,
@@ -126,10 +126,10 @@ struct Replay<'a, R> {
     /// The end state of the last step that was read.
     state: State,
     steps_read: u32,
-    /// The check for states without continuation by the fair rules, if they judge.
+    /// The check for states that have no meaningful continuation, if the fair rules judge.
     reach: Option<Reach<'a>>,
-    /// The remaining work of each rule book. The original's always judges. The work of one does not count for the
-    /// other.
+    /// The remaining work of each rule book. The original's always judges. The work of one rule book does not count for
+    /// the other.
     budgets: [Budget<'a>; 2],
     order: ContestOrder,
     /// The damage of the last record, if the record could not be read.
@@ -197,7 +197,8 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         self.conclude()
     }
 
-    /// Tries a step with unreadable records. The original computes the step before it reads them, and may never finish.
+    /// Computes a step with unreadable records. The original computes the step before it reads them, and may never
+    /// finish.
     fn try_step(&mut self, step: u32) {
         let mut simulation = Simulation::new(self.scene, RootSearch::OnDemand);
         simulation.state_mut().clone_from(&self.state);
@@ -254,7 +255,7 @@ impl<'a, R: Read + Send> Replay<'a, R> {
         Ok(())
     }
 
-    /// Reads one record; the first damage of a slot is kept.
+    /// Reads one record, and keeps the first damage of a step.
     fn read_frame(&mut self, frame: &mut LenientFrame, damage: &mut Option<Damage>) -> Result<(), Stop> {
         match self.reader.next(frame) {
             Ok(()) => {

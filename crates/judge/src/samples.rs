@@ -28,7 +28,7 @@ pub(crate) fn scene(text: &str) -> Scene {
     original::read(text.as_bytes()).expect("a scene").scene
 }
 
-/// Returns the frames of a run that `steer` may change as it goes.
+/// Returns the frames of a run that `steer` may change during the run.
 pub(crate) fn simulate(scene: &Scene, mut steer: impl Observer) -> Vec<Frame> {
     let layout = Layout::for_scene(scene);
     let mut simulation = Simulation::new(scene, RootSearch::OnDemand);

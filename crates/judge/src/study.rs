@@ -31,7 +31,7 @@ pub struct Curve {
     pub logged: Polynomial,
     /// The zeros in the order of the reference's root finder, as real and imaginary part.
     pub zeros: Vec<(f64, f64)>,
-    /// The intervals in which the polynomial is positive, over all times; sorted and disjoint.
+    /// The intervals in which the polynomial is positive, over all times. They are sorted and disjoint.
     pub positive_intervals: Vec<Interval>,
 }
 
@@ -71,8 +71,8 @@ pub struct EndlessSearch {
 /// The decision that follows from a list of polynomials.
 #[derive(Debug, Clone, PartialEq)]
 pub struct Answer {
-    /// The intervals in which all polynomials are positive, over all times; sorted and disjoint. An interval may be a
-    /// single time.
+    /// The intervals in which all polynomials are positive, over all times. They are sorted and disjoint, and an
+    /// interval may be a single time.
     pub positive_intervals: Vec<Interval>,
     /// The decision.
     pub decision: Decision,
@@ -106,7 +106,7 @@ const MAX_SETS: usize = 32;
 /// The mathematically right approach polynomial of a particle and an edge, and the decision that follows from it.
 #[derive(Debug, Clone, PartialEq)]
 pub struct RightApproach {
-    /// The polynomial; it differs from the course's in t^3 only.
+    /// The polynomial, which differs from the course's only in the coefficient of t^3.
     pub curve: Curve,
     /// The decision that follows from this polynomial and the other three.
     pub answer: Answer,
@@ -121,8 +121,8 @@ pub struct Study {
     pub curves: Vec<Curve>,
     /// The reference's decision.
     pub answer: Answer,
-    /// Whether the pair certainly collides, or certainly does not, in every correct program; `None` if round-off may
-    /// change the decision.
+    /// Whether the pair certainly collides, or certainly does not, in every correct program. `None` means that
+    /// round-off may change the decision.
     pub certain_decision: Option<bool>,
     /// The right approach polynomial, if it differs from the course's.
     pub right_approach: Option<RightApproach>,

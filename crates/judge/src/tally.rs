@@ -27,13 +27,13 @@ use fosssim_num::{
     vector::{has_same_bits, length, vector_at},
 };
 
-/// Below this sum of moduli, identical coefficients always pass the original's comparison, because `(O*s)/s` differs
-/// from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of
+/// Below this sum of absolute values, identical coefficients always pass the original's comparison, because `(O*s)/s`
+/// differs from `O` by at most two roundings, 2 * 2^-53 * 1e5, which is less than a quarter of
 /// [`PARITY_COEFFICIENT_DIFFERENCE`]. Above it the original may reject even its own output (oracle-behavior.md 8.10),
 /// so the comparison is made as it is written.
 const SAFE_SUM: f64 = 1e5;
 
-/// The result of judging one step; reused from step to step.
+/// The result of judging one step. Its memory is reused from step to step.
 #[derive(Debug, Default)]
 pub(super) struct StepResult {
     /// The original's lines about this step, in its order.
@@ -42,7 +42,7 @@ pub(super) struct StepResult {
     pub(super) counts: FindingCounts,
     /// The first finding of each kind, in the order in which they were found.
     pub(super) first_findings: Vec<Finding>,
-    /// The residuals of each particle: position, velocity. The caller adds them up in the order of the steps.
+    /// The residuals of each particle's position and velocity. The caller adds them up in the order of the steps.
     pub(super) residuals: Vec<(f64, f64)>,
     /// Whether the step's states, impulses and polynomials are identical to the reference's, after small leading
     /// coefficients are dropped.
@@ -77,7 +77,7 @@ impl StepResult {
     }
 }
 
-/// Buffers of a tally, kept from step to step.
+/// The buffers of a tally, which are kept from step to step.
 #[derive(Debug, Default)]
 pub(super) struct TallyBuffers {
     /// The pairs that a pass checks.
@@ -99,11 +99,11 @@ impl TallyBuffers {
 pub(super) struct Tally<'a> {
     step: u32,
     frame_number: u64,
-    /// The end record of this step, small leading coefficients dropped.
+    /// The end record of this step without its small leading coefficients.
     frame: &'a LenientFrame,
     /// The mid record, if the layout has one.
     mid: Option<&'a LenientFrame>,
-    /// Whether the reference's impulses are logged; in `hybrid` they are not.
+    /// Whether the reference's impulses are logged. In `hybrid` they are not.
     logs_impulses: bool,
     buffers: &'a mut TallyBuffers,
     result: &'a mut StepResult,
@@ -167,7 +167,7 @@ impl<'a> Tally<'a> {
         self.frame.is_cut() && self.frame.logged_polynomials == self.polynomials
     }
 
-    /// Ends the step: compares impulses, the number of polynomials, and the states, in the original's order.
+    /// Ends the step, and compares impulses, the number of polynomials and the states, in the original's order.
     pub(super) fn finish(mut self, reference: &State, has_impulses: bool, has_polynomials: bool) {
         if has_impulses {
             self.compare_impulses();
@@ -221,7 +221,8 @@ impl<'a> Tally<'a> {
         self.buffers.impulses = own;
     }
 
-    /// Settles the findings about polynomials: a wrong number of them is the only finding (oracle-behavior.md 6.2).
+    /// Settles the findings about polynomials. If the number of polynomials is wrong, that is the only finding
+    /// (oracle-behavior.md 6.2).
     fn finish_polynomials(&mut self) {
         let actual = self.frame.logged_polynomials;
         if actual != self.polynomials {
@@ -242,7 +243,7 @@ impl<'a> Tally<'a> {
             let (expected, actual) =
                 (vector_at(&reference.positions, particle), vector_at(&theirs.positions, particle));
             let position = length(expected - actual);
-            // The comparison is negated so that NaN is a finding: it fails the accumulated residual.
+            // The comparison is negated so that a NaN is a finding, because it fails the accumulated residual.
             if !(position < PARITY_MAX_RESIDUAL) {
                 let (expected, actual) = (expected.into(), actual.into());
                 let detail = FindingDetail::Position { particle, expected, actual, residual: position };
@@ -368,8 +369,8 @@ fn is_same_state(own: &State, other: &State) -> bool {
     has_same_bits(&own.positions, &other.positions) && has_same_bits(&own.velocities, &other.velocities)
 }
 
-/// Returns whether the original accepts a polynomial (oracle-behavior.md 6.2): right up to a factor, zero, or with a
-/// NaN.
+/// Returns whether the original accepts a polynomial (oracle-behavior.md 6.2), because it is right up to a factor, is
+/// zero, or contains a NaN.
 fn is_accepted(own: &[f64], actual: &[f64]) -> bool {
     let (sum_actual, sum_own) = (sum_of_moduli(actual), sum_of_moduli(own));
     if own.len() != actual.len() {
@@ -421,7 +422,7 @@ fn measure_likeness<const LENGTH: usize>(own: &[u8], actual: &[f64]) -> Likeness
     if all { Likeness::Factor } else { Likeness::Open }
 }
 
-/// Returns the sum of moduli, left to right from zero.
+/// Returns the sum of absolute values, left to right from zero.
 fn sum_of_moduli(coefficients: &[f64]) -> f64 {
     coefficients.iter().fold(0.0, |sum, c| sum + c.abs())
 }

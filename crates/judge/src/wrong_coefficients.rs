@@ -1,13 +1,14 @@
 //! Finds the coefficients of a wrong polynomial that a person would call wrong.
 //!
 //! Any positive factor is right, so the coefficients are first divided by the factor on which most of them agree; 1 is
-//! preferred. The original rescales by sums of moduli instead (oracle-behavior.md 6.2), where one wrong coefficient
-//! moves all the others. That comparison is kept in [`RescaledCoefficient`](super::finding::RescaledCoefficient).
+//! preferred. The original rescales by sums of absolute values instead (oracle-behavior.md 6.2), where one wrong
+//! coefficient moves all the others. That comparison is kept in
+//! [`RescaledCoefficient`](super::finding::RescaledCoefficient).
 
 /// The relative difference below which coefficients agree.
 const RATIO_TOLERANCE: f64 = 1e-9;
 
-/// The share of the sum of moduli to which a value is known if its terms cancel.
+/// The share of the sum of absolute values to which a value is known if its terms cancel.
 const CANCELLATION_FLOOR: f64 = 1e-13;
 
 /// Returns the positive factor of the trace's polynomial on which most coefficients agree, or 1 if no factor is better.

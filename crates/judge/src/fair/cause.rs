@@ -8,7 +8,8 @@ use fosssim_findings::{
 };
 use fosssim_model::{assignments::CollisionType, sim::PairKind};
 
-/// Returns the reason why the two rule books differ about a trace; `None` if they agree, or one of them has no verdict.
+/// Returns the reason why the two rule books differ about a trace, or `None` if they agree or one of them has no
+/// verdict.
 #[must_use]
 pub fn find_cause(outcome: &Outcome) -> Option<Cause> {
     let fair = outcome.fair.as_deref()?;
@@ -40,7 +41,7 @@ fn explain_strictness(outcome: &Outcome, fair: &Judgement) -> Cause {
         FindingDetail::WrongNormal { .. } => Cause::AbsoluteNormals,
         _ if is_borderline => Cause::BorderlineDecision,
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => Cause::AbsoluteStates,
-        // A certain decision that differs nevertheless is caused by the right form of the approach polynomial.
+        // If a certain decision differs nevertheless, the cause is the right form of the approach polynomial.
         _ if fair.form == Form::Right => Cause::ApproachForm,
         _ => Cause::BorderlineDecision,
     }

@@ -11,10 +11,10 @@ fosssim_model::drops_leading!();
 /// The result of comparing a right polynomial.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Match {
-    /// The positive factor of the logged polynomial; `None` if there is only round-off.
+    /// The positive factor of the logged polynomial, or `None` if there is only round-off.
     pub scale: Option<f64>,
-    /// The largest share of its tolerance that a coefficient uses, 0 to 1. For a polynomial that is accepted early this
-    /// is an upper bound of at most a quarter.
+    /// The largest share of its tolerance that a coefficient uses, from 0 to 1. For a polynomial that is accepted
+    /// early, this is an upper bound of at most a quarter.
     pub tolerance_share: f64,
 }
 
@@ -53,14 +53,14 @@ pub fn compare(expected: &[BoundedValue], actual: &[f64], hints: &[f64]) -> Resu
 
 /// The comparison of two coefficient lists of equal length, without bounds.
 ///
-/// The factor is that of the sums of moduli. Bounds are at least as large as the values, so a deviation below
+/// The factor is that of the sums of absolute values. Bounds are at least as large as the values, so a deviation below
 /// [`FAIR_NORM_UNITS`] of the sum of moduli is right. Nearly all right coefficients deviate much less, and are called
 /// clearly right.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Similarity {
-    /// The sum of the expected coefficients' moduli.
+    /// The sum of the expected coefficients' absolute values.
     pub sum: f64,
-    /// The sum of the logged coefficients' moduli.
+    /// The sum of the logged coefficients' absolute values.
     pub logged_sum: f64,
     /// The factor of the logged coefficients.
     pub scale: f64,
@@ -74,7 +74,7 @@ const MIN_SAFE_SUM: f64 = 1e-100;
 pub(super) const MAX_SAFE_SUM: f64 = 1e100;
 
 impl Similarity {
-    /// The value for polynomials that are not compared.
+    /// The value that stands for polynomials that are not compared.
     pub const NOT_COMPARED: Self = Self { sum: 0.0, logged_sum: 0.0, scale: 0.0, worst_deviation: 0.0 };
 
     /// Compares the expected coefficients `own` with `logged`, which has the same length.
@@ -207,7 +207,7 @@ fn match_if_right(expected: &[BoundedValue], actual: &[f64]) -> Option<Match> {
         if !(residual <= tolerance) {
             return None;
         }
-        // Compare by a multiplication first, which shows whether the share can be larger.
+        // The multiplication is tried first, because it shows whether the share can be larger.
         if residual > (1.0 - 1e-12) * (share * tolerance) {
             share = share.max(residual / tolerance);
         }
@@ -301,7 +301,7 @@ pub fn is_round_off(expected: &[BoundedValue]) -> bool {
     sum_of_moduli(expected) <= FAIR_UNITS * UNIT_ROUNDOFF * bound_sum(expected) || !expected.iter().any(is_significant)
 }
 
-/// Returns the sum of all values' moduli.
+/// Returns the sum of all values' absolute values.
 fn sum_of_moduli(expected: &[BoundedValue]) -> f64 {
     expected.iter().map(|r| r.value.abs()).sum()
 }
@@ -419,14 +419,14 @@ pub fn round_off_factor(expected: &[BoundedValue], actual: &[f64]) -> Option<f64
     (least > 1.0 && !is_one(largest) && !is_one(squares)).then_some(least)
 }
 
-/// Returns the number of coefficients that are wrong with `scale` as the factor.
+/// Returns the number of coefficients that are wrong if the factor is `scale`.
 fn count_wrong(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> usize {
     let norm = bound_sum(right);
     let all = right.iter().zip(logged).enumerate();
     all.filter(|&(k, (r, &s))| check_coefficient(r, s, norm, k < missing, scale).is_err()).count()
 }
 
-/// Returns the largest used share of the tolerance with `scale` as the factor, or the first wrong coefficient.
+/// Returns the largest used share of the tolerance if the factor is `scale`, or the first wrong coefficient.
 fn judge_with_scale(right: &[BoundedValue], logged: &[f64], missing: usize, scale: f64) -> Result<f64, Mismatch> {
     let norm = bound_sum(right);
     let mut share = 0.0_f64;

@@ -36,8 +36,8 @@ fn evaluate(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     (value, FAIR_ROOT_UNITS * UNIT_ROUNDOFF * bound)
 }
 
-/// Returns the value like [`evaluate`], but leading coefficients that the course's library drops with a factor near 1
-/// may be missing.
+/// Returns the value like [`evaluate`], but accepts that leading coefficients are missing that the course's library
+/// drops with a factor near 1.
 fn evaluate_without_losses(polynomial: &[BoundedValue], t: f64) -> (f64, f64) {
     let moduli = polynomial.iter().map(|c| c.value.abs());
     let missing: f64 = moduli.take_while(|c| *c < FAIR_LOSS_FACTOR * MIN_LEADING_COEFFICIENT).sum();
@@ -61,7 +61,7 @@ fn is_possible(expected: &ExpectedPolynomials, t: f64, value: EvaluateFn) -> boo
 /// Returns whether a pair may first be in contact at time `t`: contact is possible then, and the polynomials were not
 /// all positive between `t` and the reference's time.
 fn time_fits(expected: &ExpectedPolynomials, own: f64, t: f64, value: EvaluateFn) -> bool {
-    // If a collision is certain between the two times, neither time is the first.
+    // If a collision is certain between the two times, neither of them is the first.
     let undecided = || {
         [0.25, 0.5, 0.75].into_iter().all(|part| {
             let between = own + part * (t - own);
@@ -188,12 +188,12 @@ impl<'a> Tolerances<'a> {
         Self { position: roundings * size, velocity: roundings * (speed + from_positions), sensitivity }
     }
 
-    /// Returns the tolerance of a particle's position.
+    /// Returns the tolerance of a particle's position at the end of the step.
     pub fn position(&self, particle: usize) -> f64 {
         self.add_sensitivity(self.position, particle, |known| &known.positions)
     }
 
-    /// Returns the tolerance of a particle's velocity.
+    /// Returns the tolerance of a particle's velocity at the end of the step.
     pub fn velocity(&self, particle: usize) -> f64 {
         self.add_sensitivity(self.velocity, particle, |known| &known.velocities)
     }
@@ -251,7 +251,7 @@ fn distance(expected: Vec2, actual: Vec2) -> f64 {
     length(Vec2::new(apart(expected.x, actual.x), apart(expected.y, actual.y)))
 }
 
-/// Returns a logged collision as a decision; `None` if no response can be computed from the collision.
+/// Returns a logged collision as a decision, or `None` if no response can be computed from the collision.
 pub(super) fn logged_decision(logged: LoggedImpulse) -> Option<Decision> {
     let LoggedImpulse { normal, time, .. } = logged;
     let is_usable = normal.x.is_finite() && normal.y.is_finite() && time.is_finite() && normal != normal * 0.0;
@@ -269,8 +269,8 @@ fn is_ordinary(c: f64) -> bool {
     (c == 0.0) | (c.abs() >= SEARCH_MIN_COEFFICIENT) & (c.abs() <= SEARCH_MAX_COEFFICIENT)
 }
 
-/// Returns the time of impact of `polynomials`, infinite if there is certainly no impact; `None` if the root finder
-/// does not end.
+/// Returns the time of impact of `polynomials`. The time is infinite if there is certainly no impact, and `None` if the
+/// root finder does not end.
 pub(super) fn find_time(polynomials: &[Polynomial]) -> Option<f64> {
     if excludes_unit_interval(polynomials) {
         return Some(f64::INFINITY);

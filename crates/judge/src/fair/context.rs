@@ -26,7 +26,7 @@ pub(crate) struct Context<'a> {
 }
 
 impl<'a> Context<'a> {
-    /// Creates the context of a scene.
+    /// Creates the context of judging a scene.
     pub fn new(scene: &'a Scene) -> Self {
         let pairs = pairs(scene);
         let counts = pairs.counts();
@@ -44,7 +44,7 @@ impl<'a> Context<'a> {
         }
     }
 
-    /// Returns the particles of a pair: one, two, or three with an edge.
+    /// Returns the particles of a pair. There are one, two, or, with an edge, three.
     pub(super) fn particles(&self, pair: Pair) -> [Option<usize>; 3] {
         let (first, second) = (pair.first as usize, pair.second as usize);
         match pair.kind {
@@ -59,7 +59,7 @@ impl<'a> Context<'a> {
 }
 
 impl Records<'_> {
-    /// Returns whether the step starts from ordinary states; the geometric part starts from the mid record.
+    /// Returns whether the step starts from ordinary states. The geometric part starts from the mid record.
     pub fn starts_from_ordinary_states(&self, context: &Context<'_>) -> bool {
         let is_hybrid = matches!(context.scene.collision, Collision::Hybrid { .. });
         let mid = self.mid.filter(|_| is_hybrid);
@@ -88,7 +88,7 @@ pub(crate) struct Records<'a> {
     pub end: &'a LenientFrame,
 }
 
-/// A decision with which the step was continued.
+/// A decision that the step was continued with.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct FollowedDecision {
     pub pair: Pair,

@@ -2,7 +2,8 @@
 use fosssim_model::sim::{PairKind, PairKindMap};
 use fosssim_num::tolerances::FAIR_OUTLIER_DEVIATIONS;
 
-/// The factors that polynomials of one kind of pair and number show: the smallest, the largest, and their distribution.
+/// The factors that polynomials of one kind of pair and one number show: the smallest factor, the largest, and the
+/// distribution.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Factors {
     least: f64,
@@ -55,12 +56,12 @@ impl Factors {
         }
     }
 
-    /// Returns the last factor, or 1 without factors.
+    /// Returns the last factor, or 1 if there are no factors.
     pub(super) fn last(&self) -> f64 {
         self.last
     }
 
-    /// Returns the smallest and the largest factor; `None` without factors.
+    /// Returns the smallest and the largest factor, or `None` if there are no factors.
     #[must_use]
     pub fn range(&self) -> Option<[f64; 2]> {
         (self.count > 0).then_some([self.least, self.greatest])
@@ -78,7 +79,7 @@ impl Factors {
     }
 }
 
-/// Returns 2 to the power `power`, rounded down; 0 or infinity beyond normal numbers.
+/// Returns 2 to the power `power`, rounded down. Beyond the normal numbers, the result is 0 or infinity.
 fn power_of_two(power: f64) -> f64 {
     if power < -1022.0 {
         return 0.0;

@@ -1,7 +1,7 @@
 //! The detection polynomials with bounds of their rounding errors (collisions.md 2; numerics.md 1 and 2).
 //!
 //! Each coefficient has the right value, and a bound for the deviation of a correct program. Every operation and every
-//! input adds its modulus to the bound of the result. The formulas are those of the passes
+//! input adds its absolute value to the bound of the result. The formulas are those of the passes
 //! ([`fosssim_model::sim::formulas`]), so values are the reference's own bits.
 use fosssim_model::{
     scene::Scene,
@@ -18,7 +18,7 @@ use fosssim_num::{
     vector::{Vec2, vector_at},
 };
 
-/// The motion of a point in a step: its start position and displacement.
+/// The motion of a point in a step: the position at the start, and the displacement.
 #[derive(Debug, Clone, Copy)]
 pub struct BoundedPointMotion {
     /// The position at the start of the step.
@@ -29,7 +29,7 @@ pub struct BoundedPointMotion {
 
 impl BoundedPointMotion {
     /// Returns the motion between two points. The coordinates may deviate by rounding errors of `size`, because a
-    /// program may use rotated or shifted axes. A point that certainly rests does not deviate.
+    /// program may use rotated or shifted axes. A point that is certainly at rest does not deviate.
     fn from_positions([start, end]: [Vec2; 2], size: f64, rests: bool) -> Self {
         let start_place = with_component_errors(start, size);
         let shift = if rests { BoundedVector::default() } else { with_component_errors(end, size) - start_place };
@@ -40,18 +40,19 @@ impl BoundedPointMotion {
 /// The objects of a pair and their motion.
 #[derive(Debug, Clone, Copy)]
 pub enum BoundedPairMotion {
-    /// Two discs, and the sum of their radii.
+    /// The pair consists of two discs. The value is the sum of their radii.
     Particles([BoundedPointMotion; 2], BoundedValue),
-    /// A disc and an edge's endpoints, and the sum of the radii.
+    /// The pair consists of a disc and an edge with two endpoints. The value is the sum of the radii.
     Edge([BoundedPointMotion; 3], BoundedValue),
-    /// A disc and a half-plane: the motion, the radius, and the point and the normal as given in the scene.
+    /// The pair consists of a disc and a half-plane. The values are the disc's motion and radius, and the point and the
+    /// normal of the half-plane as the scene gives them.
     HalfPlane(BoundedPointMotion, BoundedValue, Vec2, Vec2),
 }
 
 /// The coefficients of a polynomial, highest power first, with nothing dropped.
 pub type BoundedCoefficients = [BoundedValue; MAX_COEFFICIENTS];
 
-/// The polynomials of a pair; each uses the last `sizes()` entries.
+/// The polynomials of a pair. Each uses the last `sizes()` entries.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct ExpectedPolynomials {
     polynomials: [BoundedCoefficients; 4],
@@ -66,13 +67,13 @@ impl ExpectedPolynomials {
         &self.polynomials[number][MAX_COEFFICIENTS - self.sizes[number]..]
     }
 
-    /// Returns all polynomials; unused slots are empty.
+    /// Returns all polynomials. Unused places are empty.
     pub fn polynomials(&self) -> [&[BoundedValue]; 4] {
         std::array::from_fn(|number| self.polynomial(number))
     }
 
-    /// Returns the other accepted form of polynomial `number`, which is the mathematically right approach of a particle
-    /// and an edge.
+    /// Returns the other accepted form of polynomial `number`: the mathematically right approach polynomial of a
+    /// particle and an edge.
     pub fn other_form(&self, number: usize) -> Option<&[BoundedValue]> {
         if number == 3 { self.right_approach.as_ref().map(|right| &right[..]) } else { None }
     }

@@ -1,4 +1,4 @@
-//! The fair verdict on one trace.
+//! Builds the fair verdict on one trace.
 use super::{
     factors::{Factors, FactorsByPolynomial},
     pending_polynomials::{PendingCause, PendingPolynomials},
@@ -27,11 +27,11 @@ pub(crate) struct JudgementBuilder {
     /// The number of polynomials that are identical to the reference's. Approaches count once per step, because they
     /// show nothing for objects at rest.
     identical_polynomials: PairKindMap<[u64; PairKind::MAX_POLYNOMIALS]>,
-    /// Polynomials that depend on the program's factors, step by step.
+    /// The polynomials that depend on the program's factors, step by step.
     pending: Vec<StepPending>,
 }
 
-/// Polynomials of one step and kind that depend on the program's factors.
+/// The polynomials of one step and kind that depend on the program's factors.
 #[derive(Debug, Clone, Copy)]
 struct StepPending {
     polynomials: PendingPolynomials,
@@ -171,7 +171,7 @@ impl JudgementBuilder {
         self.judgement.borderline >= SMALL_SCENE_DECISIONS && self.judgement.borderline > self.judgement.decisions / 2
     }
 
-    /// Stops judging; later steps are not judged.
+    /// Stops judging, so that later steps are not judged.
     pub(crate) fn stop_judging(&mut self, step: u32) {
         self.judgement.first_unjudged_step = Some(step);
     }
@@ -208,7 +208,7 @@ impl JudgementBuilder {
     }
 }
 
-/// Returns whether factors are one factor, except for its roundings.
+/// Returns whether factors are the same factor, except for its roundings.
 fn is_constant([least, greatest]: [f64; 2]) -> bool {
     greatest - least <= 1e-9 * least
 }

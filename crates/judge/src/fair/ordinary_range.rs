@@ -63,7 +63,7 @@ pub(super) fn largest_size(vectors: &[f64]) -> f64 {
     all.fold(0.0, f64::max)
 }
 
-/// Returns the extent of all points together; 0 for a single point.
+/// Returns the extent of all points together, or 0 for a single point.
 fn spread(points: impl Iterator<Item = Vec2>) -> f64 {
     let none = [f64::INFINITY, f64::NEG_INFINITY];
     let [x, y] = points.fold([none; 2], |[x, y], point| [widen(x, point.x), widen(y, point.y)]);

@@ -10,7 +10,7 @@ pub(super) const NO_FACTORS: [f64; 2] = [f64::INFINITY, 0.0];
 pub(crate) enum PendingCause {
     /// The polynomials lack coefficients that the course's library drops with some factors.
     Missing,
-    /// The polynomials claim factors without showing them.
+    /// The polynomials show no factor themselves, but are right only if the program's factor has certain values.
     Claim,
     /// The polynomials are larger than round-off, although the right ones are only round-off. A program that divides
     /// polynomials by their size has such polynomials, and its factors differ.
@@ -23,7 +23,7 @@ pub(crate) enum PendingCause {
 pub(crate) struct PendingPolynomials {
     /// The kind of pair and the number of the polynomial.
     pub place: (PairKind, usize),
-    /// The form in which the polynomials are right; any form, if there is only one.
+    /// The form in which the polynomials are right. If there is only one form, any form is accepted.
     pub form: Form,
     /// The reason why the polynomials depend on factors.
     pub cause: PendingCause,
@@ -38,7 +38,7 @@ pub(crate) struct PendingPolynomials {
 impl PendingPolynomials {
     /// Returns the finding for program factors between `low` and `high`, if there is one.
     pub fn finding(&self, [low, high]: [f64; 2]) -> Option<Finding> {
-        // Factors are known only up to rounding errors.
+        // The factors are known only up to rounding errors.
         let room = 1e-9;
         let (least, most) = (self.least_factor, self.greatest_factor);
         if !(least.0 <= high * (1.0 + room)) {

@@ -50,7 +50,7 @@ pub(super) fn compare_first(
     logged: &LoggedPolynomial<'_>,
 ) -> Result<Match, Mismatch> {
     let own = expected.polynomial(logged.number);
-    // If there is another form, the fault in the first form does not matter.
+    // If another form exists, the fault in the first form does not matter.
     if expected.other_form(logged.number).is_some() && is_wrong_with_every_factor(own, logged.coefficients) {
         return Err(Mismatch::TooLong);
     }

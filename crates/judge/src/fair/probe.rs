@@ -30,7 +30,7 @@ pub(super) struct Sensitivity {
     pub mid: State,
     /// The sensitivity of the state at the end.
     pub end: State,
-    /// Calls whose decisions flip.
+    /// The calls whose decisions change.
     pub flipped_decisions: Vec<usize>,
 }
 
@@ -78,7 +78,8 @@ fn widen_state(own: &mut State, base: &State, other: &State) {
     widen(&mut own.velocities, &base.velocities, &other.velocities);
 }
 
-/// The result of one repetition. Without a synchronization point its mid state is empty and has no deviations.
+/// The result of one repetition. If there is no synchronization point, the state in the middle is empty and has no
+/// deviations.
 #[derive(Default)]
 struct ProbeRun {
     passes: Vec<Vec<f64>>,
@@ -103,7 +104,7 @@ fn run(
     Some(ProbeRun { end: simulation.state().clone(), ..probe.run })
 }
 
-/// Moves every component by up to [`FAIR_UNITS`] rounding errors, up or down; seed 0 moves nothing.
+/// Moves every component up or down by up to [`FAIR_UNITS`] rounding errors. Seed 0 moves nothing.
 pub(crate) fn perturb(state: &mut State, seed: u64) {
     if seed == 0 {
         return;
@@ -122,7 +123,7 @@ impl SignSequence {
         Self(seed.wrapping_mul(0x9e37_79b9_7f4a_7c15))
     }
 
-    /// Returns 1 or -1.
+    /// Returns 1 or -1, the next sign of the sequence.
     fn next(&mut self) -> f64 {
         // Xorshift (Marsaglia, J. Stat. Softw. 8(14), 2003), of which only the signs are used.
         self.0 ^= self.0 << 13;

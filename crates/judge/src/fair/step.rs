@@ -67,7 +67,7 @@ fn follow(
     let follower = Follower::new(context, records, None, &[]).prefer_own();
     let (mut first, mut decisions, _, has_disputes) = run(simulation, follower)?;
     if has_disputes && first.total() > 0 {
-        // The submission may also have the decisions that the root finder finds for right polynomials.
+        // The submission may also make the decisions that the root finder makes for right polynomials.
         (first, decisions, ..) = attempt(simulation, None, &[])?;
     }
     if !first.may_be_round_off() {

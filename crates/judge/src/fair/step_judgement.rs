@@ -23,21 +23,22 @@ pub(crate) struct StepJudgement {
     pub further_counts: FindingCounts,
     /// The number of decisions about pairs.
     pub decisions: u64,
-    /// Borderline decisions that were followed.
+    /// The borderline decisions that were followed.
     pub borderline: Vec<Borderline>,
-    /// Factors of polynomials that differ from the reference's.
+    /// The factors of polynomials that differ from the reference's.
     pub factors: FactorsByPolynomial,
     /// The number of calls of each kind that logged polynomials identical to the reference's.
     pub identical_polynomials: PairKindMap<u64>,
     /// The number of polynomials that lack other small coefficients than the reference's.
     pub lost_decisions: u64,
-    /// The used shares of tolerances.
+    /// The used shares of the tolerances.
     pub shares: Shares,
     /// The first polynomial that has the course's form and not the right form.
     pub course_form: Option<PolynomialPlace>,
     /// The first polynomial that has the right form and not the course's.
     pub right_form: Option<PolynomialPlace>,
-    /// Polynomials that are right only with some factors. The whole trace shows whether the program uses such a factor.
+    /// The polynomials that are right only with some factors. The whole trace shows whether the program uses such a
+    /// factor.
     pub pending: Vec<PendingPolynomials>,
     /// Whether a finding is about polynomials at positions that have the round-off of a response or the failsafe.
     pub has_endless_search: bool,

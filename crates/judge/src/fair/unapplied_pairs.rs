@@ -30,7 +30,7 @@ struct NearPair {
     /// The changes of its particles' velocities by the pair's force in this step.
     changes: [(usize, Vec2); 3],
     count: usize,
-    /// The number of surplus applications, -1, 0 or 1; `None` if unknown.
+    /// The number of surplus applications, which is -1, 0 or 1, or `None` if it is unknown.
     excess: Option<f64>,
 }
 
@@ -158,7 +158,7 @@ impl NearPairs {
             candidate.changes().iter().for_each(|(particle, _)| of_particle[*particle].push(index));
         }
         find_unique_choice(&mut candidates, &of_particle, &mut rest, &wrong, tolerances);
-        // A pair is kept only if it explains all its particles. Its removal may affect its neighbors.
+        // A pair is kept only if it explains all its particles, and its removal may affect its neighbors.
         while let Some(index) = candidates.iter().position(|candidate| {
             let is_named = candidate.excess.is_some_and(|excess| excess != 0.0);
             is_named && !candidate.changes().iter().all(|(particle, _)| is_settled(&rest, *particle))

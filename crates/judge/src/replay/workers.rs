@@ -18,7 +18,7 @@ const MAX_THREADS: usize = 8;
 struct Worker {
     simulation: Simulation,
     buffers: TallyBuffers,
-    /// Root searches of the reference.
+    /// The counts of the reference's root searches.
     search_counts: SearchCounts,
 }
 
@@ -27,7 +27,7 @@ pub(super) struct Workers<'a> {
     scene: &'a Scene,
     root_search: RootSearch,
     judges_individually: bool,
-    /// The number of requested threads; 0 chooses by the number of cores.
+    /// The number of requested threads. The value 0 chooses a number by the number of cores.
     threads: usize,
     list: Vec<Worker>,
     pool: Option<rayon::ThreadPool>,
@@ -93,7 +93,7 @@ impl<'a> Workers<'a> {
         pool.install(|| rayon::join(|| judge_batch(batch, workers, shape, rest), other));
     }
 
-    /// Counts of root searches of the reference.
+    /// Returns the counts of the reference's root searches.
     pub(super) fn search_counts(&self) -> SearchCounts {
         let mut sum = SearchCounts::default();
         self.list.iter().for_each(|worker| sum += worker.search_counts);
@@ -111,7 +111,7 @@ fn judge_batch(batch: &Batch, workers: &mut [Worker], shape: &StepRules<'_>, [re
     let (next, work, fair_work) = (AtomicUsize::new(0), AtomicU64::new(0), AtomicU64::new(0));
     let run = |worker: &mut Worker| {
         while work.load(Ordering::Relaxed) <= rest {
-            // Read the used work before taking the step, so that only earlier steps are counted.
+            // The used work is read before the step is taken, so that only earlier steps are counted.
             let is_asked = fair_work.load(Ordering::Relaxed) <= fair_rest;
             let Some(slot) = slots.get(next.fetch_add(1, Ordering::Relaxed)) else { return };
             // Every index is used once, so the lock is always free.

@@ -21,7 +21,7 @@ pub(super) struct OwnImpact {
 }
 
 impl Follower<'_> {
-    /// Returns the decision with which the step continues. If the trace shows the submission's decision, that is used.
+    /// Returns the decision with which the step continues. The submission's decision is used if the trace shows it.
     pub(super) fn choose_decision(&mut self, pair: Pair, by_polynomials: Decision) -> Decision {
         let call = self.decisions.len();
         let findings = self.judgement.total();
@@ -135,7 +135,7 @@ impl Follower<'_> {
             }
             (Decision::Miss { .. }, Some(actual)) => {
                 if self.is_borderline(call) {
-                    // Round-off may change whether the pair collides, but not where and when.
+                    // Round-off may change whether the pair collides, but not the place and the time of the collision.
                     let (known, judged) = (self.expected_polynomials(), &mut self.judgement);
                     let finding = contact::compare_possible_hit(
                         self.context,

@@ -39,38 +39,40 @@ pub(super) struct Follower<'a> {
     records: Records<'a>,
     /// The step's sensitivity to round-off, in the second comparison.
     sensitivity: Option<&'a Sensitivity>,
-    /// The calls whose borderline decisions are reversed in hybrid scenes, by number.
+    /// The numbers of the calls in hybrid scenes whose borderline decisions are reversed.
     flipped_decisions: &'a [usize],
     /// The judgement of the step so far.
     pub judgement: StepJudgement,
     /// All decisions of the step.
     pub decisions: Vec<FollowedDecision>,
-    /// Calls of hybrid scenes whose decisions round-off may change, in order (in the second comparison).
+    /// The calls of hybrid scenes whose decisions round-off may change, in order. They are known in the second
+    /// comparison.
     pub borderline_calls: Vec<usize>,
     pass: Pass,
     /// The numbers of passes so far, before and after the mid record.
     passes: [usize; 2],
-    /// The numbers of passes in the trace; `None` if its polynomials don't fill whole passes.
+    /// The numbers of passes in the trace, or `None` if its polynomials do not fill whole passes.
     logged_passes: Option<[usize; 2]>,
-    /// The index of the pass's next polynomial in the end record's list; `None` if it is not logged.
+    /// The index of the pass's next polynomial in the end record's list, or `None` if it is not logged.
     next_polynomial: Option<usize>,
-    /// Particles that a response or the failsafe has moved since their last known positions.
+    /// The particles that a response or the failsafe has moved since their last known positions.
     moved_particles: Vec<bool>,
-    /// Particles that the responses to the pass's hits will move after the pass.
+    /// The particles that the responses to the pass's hits will move after the pass.
     particles_to_move: Vec<usize>,
-    /// Whether the part before the mid record, or the geometric part, has an error that can explain its result.
+    /// Whether each part of the step, before the mid record and the geometric part, has an error that can explain its
+    /// result.
     has_error: [bool; 2],
-    /// Polynomials that were wrong at known positions in this step.
+    /// The polynomials that were wrong at known positions in this step.
     wrong_formulas: PairKindMap<[bool; PairKind::MAX_POLYNOMIALS]>,
     /// The pairs of the logged impulses.
     contacts: Contacts,
-    /// Logged impulses that a decision has used.
+    /// The logged impulses that a decision has used.
     used_impulses: Vec<bool>,
     /// The data of the current call.
     call: CurrentCall,
     /// Whether any call was disputed.
     pub has_disputes: bool,
-    /// Whether disputed calls are decided like the reference.
+    /// Whether disputed calls are decided as in the reference.
     prefers_own: bool,
     /// The floors of round-off for polynomials at the positions of the pass, computed on demand.
     round_off_floors: Option<RoundOffFloors>,
@@ -136,7 +138,7 @@ impl<'a> Follower<'a> {
         follower
     }
 
-    /// Decides disputed calls like the reference.
+    /// Decides disputed calls as the reference does.
     pub fn prefer_own(mut self) -> Self {
         self.prefers_own = true;
         self
@@ -286,11 +288,11 @@ impl StepController for Follower<'_> {
             self.call.is_disputed = (time <= 1.0) != (other <= 1.0);
             self.has_disputes |= self.call.is_disputed;
             if self.call.is_disputed && self.prefers_own || motion.is_same_moment(time, other) {
-                // The submission's own time would change only round-off.
+                // The submission's own time differs from the reference's only by round-off.
                 return;
             }
         }
-        // The submission's polynomials decide, even if they are wrong, so that a wrong polynomial is counted only once.
+        // The submission's polynomials decide even if they are wrong, so that a wrong polynomial is counted only once.
         polynomials.copy_from_slice(&searched[..count]);
     }
 

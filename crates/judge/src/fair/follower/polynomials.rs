@@ -11,7 +11,7 @@ use crate::{
 use fosssim_model::sim::{Pair, PairKind};
 use fosssim_num::bounded::BoundedValue;
 
-/// The comparison of each polynomial of a call; the rest of the array is unused.
+/// The comparison of each polynomial of a call. The rest of the array is unused.
 type PolynomialComparisons = [Result<Match, Mismatch>; PairKind::MAX_POLYNOMIALS];
 
 impl<'a> Follower<'a> {
@@ -98,8 +98,8 @@ impl<'a> Follower<'a> {
     }
 
     /// Returns whether another polynomial of the pair that comes from the same coordinates is right, so that the pair
-    /// has the right position. Overlap and approach depend on the distance of the objects, the other two polynomials of
-    /// a particle and an edge depend on the position along the edge.
+    /// has the right position. The polynomials of overlap and approach depend on the distance of the objects; the other
+    /// two polynomials of a particle and an edge depend on the position along the edge.
     fn is_proven(
         &self,
         expected: &ExpectedPolynomials,

@@ -22,7 +22,7 @@ use fosssim_num::{
 /// The comparisons of a call's polynomials that are clearly right.
 pub(super) type QuickMatches = [Option<Match>; PairKind::MAX_POLYNOMIALS];
 
-/// For each polynomial of a kind of pair, the sum of moduli above which the polynomial exceeds round-off.
+/// For each polynomial of a kind of pair, the sum of absolute values above which the polynomial exceeds round-off.
 pub(super) type RoundOffFloors = PairKindMap<[f64; PairKind::MAX_POLYNOMIALS]>;
 
 impl Follower<'_> {
@@ -89,7 +89,7 @@ fn round_off_floors(scene: &Scene, q_start: &[f64], q_end: &[f64]) -> RoundOffFl
         Plane { x: number, y: number }
     };
     // Only differences of positions matter, and they are at most the spread. The bounds add the rest of the positions'
-    // moduli.
+    // absolute values.
     let x = both(0.5 * spread, size + size);
     let d = both(shift, 5.0 * size);
     let radii = BoundedValue { value: Magnitude(radius), bound: Magnitude(radius) };
