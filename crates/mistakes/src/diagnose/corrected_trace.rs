@@ -7,7 +7,7 @@ use fosssim_student::find;
 pub struct CorrectedTrace {
     /// The explanations, the likeliest first.
     pub explanations: Vec<Explanation>,
-    /// The number of explanations at the front that come from all traces together; the others come from this trace
+    /// The number of explanations at the front that come from all traces together. The others come from this trace
     /// alone.
     pub agreed: usize,
 }
@@ -31,7 +31,7 @@ pub fn correct_trace(own: &[Explanation], likely: &[Explanation], refuted: &[Str
     CorrectedTrace { agreed: explanations.len(), explanations }
 }
 
-/// Returns the explanation without refuted parts; `None` if no part is left.
+/// Returns the explanation without its refuted parts, or `None` if no part is left.
 fn remove_refuted(one: &Explanation, refuted: &[String]) -> Option<Explanation> {
     let mut same_as = one.same_as.iter().filter(|key| !refuted.contains(key)).cloned();
     if !refuted.contains(&one.key) || one.is_not_finite() {
@@ -41,8 +41,8 @@ fn remove_refuted(one: &Explanation, refuted: &[String]) -> Option<Explanation> 
     Some(explain_by_row(one, row, same_as.collect()))
 }
 
-/// Returns an explanation from all traces together, as this trace shows it; empty if the trace's own explanations do
-/// not name it.
+/// Returns an explanation from all traces together, as this trace shows it. The list is empty if the trace's own
+/// explanations do not name it.
 fn find_agreement(own: &[Explanation], likely: &Explanation) -> Vec<Explanation> {
     if likely.is_unexplained() {
         // A trace may show several of the mistakes.

@@ -14,15 +14,15 @@ use super::{
 use fosssim_student::find;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// An explanation of a trace, and the statements that would explain it as well, each with whether it explains all of
-/// it.
+/// An explanation of a trace, and the statements that would explain it as well. Each statement has a flag that tells
+/// whether it explains the whole trace.
 #[derive(Clone)]
 pub(super) struct Symptom {
     pub(super) explanation: Explanation,
     pub(super) allowed_statements: BTreeMap<String, bool>,
 }
 
-/// A trace, and the part of it that is not explained yet.
+/// A trace, and the part of it that is still unexplained.
 pub(super) struct OpenTrace {
     pub(super) symptoms: Vec<Symptom>,
     /// Whether a reported explanation covers a part of the trace.
@@ -71,7 +71,7 @@ pub(super) fn collect_symptoms(list: &[Explanation], is_refuted: &impl Fn(&Strin
 /// The evidence for one statement.
 #[derive(Default)]
 struct Support<'a> {
-    /// The symptoms that allow the statement: the trace, and the index in its list.
+    /// The symptoms that allow the statement. Each is a trace and an index in the trace's list.
     symptoms: BTreeSet<(usize, usize)>,
     traces: usize,
     complete_traces: usize,
@@ -83,7 +83,7 @@ struct Support<'a> {
     contradicting_traces: usize,
     /// The most detailed explanation with this statement.
     reported: Option<&'a Explanation>,
-    /// Whether the statement is a known formula, which is tried on every trace.
+    /// Whether the statement is a known formula. Known formulas are tried on every trace.
     is_known: bool,
 }
 
@@ -96,7 +96,7 @@ impl Support<'_> {
     }
 
     /// Returns the weight of an explanation. Every symptom of a stage shows that the stage is wrong; the most frequent
-    /// symptoms show in which way.
+    /// symptoms show the way in which it is wrong.
     fn weight(&self) -> (usize, usize, usize) {
         (self.complete_traces.max(self.related_traces), self.traces.max(self.related_traces), self.complete_traces)
     }
@@ -153,8 +153,8 @@ fn collect_evidence(open: &[OpenTrace]) -> BTreeMap<&str, Support<'_>> {
     all
 }
 
-/// Returns whether a trace's explanation contradicts the reported one: it is about the same polynomials, but does not
-/// allow the report.
+/// Returns whether a trace's explanation contradicts the reported one: both are about the same polynomials, but the
+/// trace's does not allow the report.
 fn contradicts(one: &Explanation, told: &Explanation) -> bool {
     let is_of_formula = match &told.topic {
         ExplanationTopic::Polynomials { found, .. } => matches!(found, PolynomialEvidence::Guess(_)),
@@ -199,7 +199,7 @@ pub(super) fn find_likeliest(open: &[OpenTrace]) -> Option<Explanation> {
 fn merge_explanations(told: &Explanation, open: &[OpenTrace]) -> Explanation {
     let mut told = told.clone();
     let said = told.statement();
-    // Nothing of a contradicting trace is reproduced.
+    // Nothing in a contradicting trace is reproduced.
     let against = open.iter().filter(|trace| !trace.allows_statement(&said)).flat_map(|trace| &trace.symptoms);
     told.samples += against
         .filter(|symptom| contradicts(&symptom.explanation, &told))

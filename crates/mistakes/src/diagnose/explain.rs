@@ -18,12 +18,12 @@ use fosssim_model::{
 use fosssim_student::{Area, Row, assignments::t2m2::Subject, find};
 
 /// The maximum number of pairs for explanations if steps log polynomials. Explanations keep whole steps of the
-/// reference, which take a few hundred bytes per pair. Above the limit, only the first value that is not finite is
-/// reported.
+/// reference, and a step takes a few hundred bytes per pair. Above the limit, only the first value that is not finite
+/// is reported.
 const MAX_PAIRS: usize = 400_000;
 
-/// Returns the likely mistakes of the program that wrote the trace, the likeliest first; empty if nothing is wrong, or
-/// if no known mistake explains it.
+/// Returns the likely mistakes of the program that wrote the trace, the likeliest first. The list is empty if nothing
+/// is wrong, or if no known mistake explains it.
 ///
 /// A known mistake that reproduces all wrong steps comes first, with the details of polynomials that it gets wrong.
 /// Otherwise explanations of polynomials come first that reproduce all their samples, then those that reproduce a part.
@@ -102,7 +102,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
         stages::explain(&mut reference, scene, scan.wrong_steps.iter().chain(&scan.right_steps).filter(is_of_numbers))
     });
     if stage.as_ref().is_some_and(|stage| stage.key == Explanation::ORDER) {
-        // If pairs are in another order, their polynomials cannot be compared.
+        // If pairs are in a different order, their polynomials cannot be compared.
         polynomials.clear();
     }
     let mut all = known;
@@ -117,7 +117,7 @@ fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanation> {
     all
 }
 
-/// Adds a note, once, after an explanation's formulas, that the report must explain their letters.
+/// Adds, once, a note after an explanation's formulas, so that the report explains their letters.
 fn add_letter_note(explanation: &mut Explanation) {
     if explanation.is_unexplained() {
         return;

@@ -1,4 +1,4 @@
-//! Combines the explanations of all traces of one program: the likeliest statement, and the next ones for the
+//! Combines the explanations of all traces of one program: the likeliest statement first, then further ones for the
 //! unexplained rest ([`evidence`](super::evidence)).
 use super::{
     Detail, Explanation, Guess, ListGuess,
@@ -17,7 +17,7 @@ use std::collections::{BTreeMap, BTreeSet};
 /// The maximum number of mistakes reported for a program, in addition to empty stages.
 const MAX_MISTAKES: usize = 3;
 
-/// With at least this many traces, a single one is no evidence for an empty stage.
+/// The number of traces from which on a single trace is no evidence for an empty stage.
 const MANY_TRACES: usize = 8;
 
 /// Returns the likely mistakes of a program that wrote several traces, at most three in addition to stages that are
@@ -31,7 +31,7 @@ pub fn explain_together<'a>(
     refuted: &[String],
 ) -> Vec<Explanation> {
     let traces: Vec<&[Explanation]> = traces.into_iter().collect();
-    // A stage that is visible in one trace is not empty, even if other traces do not show it.
+    // A stage that shows in one trace is not empty, even if it does not show in other traces.
     let denied: BTreeSet<&String> = traces.iter().copied().flatten().flat_map(|one| &one.contradicted_keys).collect();
     let is_refuted = |key: &String| refuted.contains(key) || denied.contains(key);
     let mut open: Vec<OpenTrace> = traces
@@ -88,7 +88,7 @@ pub fn explain_together<'a>(
     unite_empty_stages(empty).into_iter().chain(found).chain(end).collect()
 }
 
-/// Returns the explanation of the first values that are not finite, for the stage in which most traces have them.
+/// Returns the explanation of the first values that are not finite, for the stage in which most traces contain them.
 fn explain_not_finite(traces: &[&[Explanation]]) -> Option<Explanation> {
     let ends = || traces.iter().filter_map(|list| list.iter().find(|one| one.is_not_finite()));
     let agreeing = |one: &Explanation| ends().filter(|other| other.statement() == one.statement()).count();
@@ -127,7 +127,7 @@ fn explain_zero_coefficients(one: &Explanation) -> Vec<Explanation> {
     kinds.filter_map(row).map(told).collect()
 }
 
-/// Returns several empty stages as one explanation; their keys are in [`Explanation::same_as`]. A stage with another
+/// Returns one explanation for several empty stages. Their keys are in [`Explanation::same_as`]. A stage with another
 /// explanation is reported separately.
 fn unite_empty_stages(empty: Vec<Explanation>) -> Vec<Explanation> {
     let has_rival = |one: &Explanation| one.same_as.iter().filter_map(|key| find(key)).any(|row| !is_empty_stage(row));
@@ -205,7 +205,7 @@ fn is_repetition(found: &[Explanation], next: &Explanation, open: &[OpenTrace]) 
             return false;
         }
         let theirs = one.subjects();
-        // If a trace shows no polynomial of a known mistake, that mistake may be the cause of a reported guess.
+        // If a trace does not show a polynomial of a known mistake, that mistake may be the cause of a reported guess.
         let is_guess = matches!(one.topic, ExplanationTopic::Polynomials { .. });
         let kind = find(&next.key).filter(|row| is_formula_area(row.area)).and_then(Row::pair_kind);
         let in_one_formula = match kind.filter(|_| is_guess && subjects.is_empty()) {
@@ -277,7 +277,7 @@ fn keep_earliest_stage(open: &mut Vec<OpenTrace>) {
     open.retain(|trace| !trace.symptoms.is_empty());
 }
 
-/// Returns the stage of a step in which mistakes of an area are made; `None` for polynomials and for the trace.
+/// Returns the stage of a step in which mistakes of an area are made, or `None` for polynomials and for the trace.
 const fn area_stage(area: Area) -> Option<StepStage> {
     match area {
         Area::Decision => Some(StepStage::Detection),
@@ -288,7 +288,7 @@ const fn area_stage(area: Area) -> Option<StepStage> {
     }
 }
 
-/// Returns whether enough traces look as if the stage were empty.
+/// Returns whether enough traces suggest that the stage is empty.
 fn is_confirmed(open: &[OpenTrace], said: &str) -> bool {
     open.len() < MANY_TRACES || open.iter().filter(|trace| trace.allows_complete_statement(said)).count() > 1
 }
@@ -308,8 +308,8 @@ fn is_supported(open: &[OpenTrace], next: &Explanation) -> bool {
     !next.reports_missing_polynomials() && (naming(false) > 0 || is_partner || naming(true) >= open.len().min(2))
 }
 
-/// Removes everything that a mistake explains; of a trace that the mistake explains, only other complete explanations
-/// are kept.
+/// Removes everything that a mistake explains. If the mistake explains a trace, only the trace's other complete
+/// explanations are kept.
 fn remove_explained(open: &mut [OpenTrace], said: &str) {
     for trace in open.iter_mut().filter(|trace| trace.allows_statement(said)) {
         trace.is_covered = true;

@@ -1,8 +1,8 @@
 //! Finds the likely mistake from findings.
 //!
-//! Does not use processes or reports. It takes the steps of a trace that the fair rules find wrong, finds the mistake
-//! that reproduces them, and returns [`Explanation`]s, the likeliest first. These are values, from which reports make
-//! sentences.
+//! This module uses neither processes nor reports. It takes the steps of a trace that the fair rules find wrong, finds
+//! the mistake that reproduces them, and returns [`Explanation`]s, the likeliest first. These are values, from which
+//! reports make sentences.
 #![deny(clippy::disallowed_methods, clippy::disallowed_types, clippy::print_stdout, clippy::print_stderr)]
 
 mod corrected_trace;

@@ -1,4 +1,4 @@
-//! Compares explanations: whether they mean the same mistake.
+//! Decides whether explanations are about the same mistake.
 use super::topic::{ExplanationTopic, PolynomialEvidence};
 use fosssim_findings::explanation::{Detail, Explanation};
 use fosssim_student::{Row, all_rows, find};
@@ -15,8 +15,8 @@ pub(super) fn explain_by_row(one: &Explanation, row: &Row, same_as: Vec<String>)
     Explanation { key: row.id.to_owned(), topic: ExplanationTopic::Mistake, details, same_as, ..one.clone() }
 }
 
-/// Returns whether a trace's explanations name a mistake, as reported or as indistinguishable; for unwritten work, one
-/// stage is enough.
+/// Returns whether a trace's explanations name a mistake, either as reported or as indistinguishable. For unwritten
+/// work, one stage is enough.
 #[must_use]
 pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool {
     if mistake.is_unfinished() {
@@ -39,8 +39,8 @@ pub fn is_named_in(mistake: &Explanation, explanations: &[Explanation]) -> bool 
 }
 
 /// Returns the statements ([`Explanation::statement`]) that explain as much as this explanation of a trace: its own,
-/// those that it cannot distinguish, and all that would give the same polynomials. Each comes with whether it explains
-/// everything that this explanation is about.
+/// those that it cannot distinguish, and all that would give the same polynomials. Each has a flag that tells whether
+/// it explains everything that this explanation is about.
 pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool> {
     let is_known = |key: &&String| find(key).is_some();
     let mut all: BTreeMap<String, bool> = BTreeMap::from([(one.statement(), one.is_exhaustive())]);
@@ -62,8 +62,8 @@ pub(super) fn alternative_statements(one: &Explanation) -> BTreeMap<String, bool
     all
 }
 
-/// Returns whether a guess from the polynomials of a single kind is this known mistake: `radii-squared-apart` of
-/// particles and edges is `pe-radii-squared-apart`.
+/// Returns whether a guess from the polynomials of a single kind names this known mistake in other words:
+/// `radii-squared-apart` of particles and edges is `pe-radii-squared-apart`.
 pub(super) fn is_in_other_words(one: &Explanation, row: &Row) -> bool {
     let is_called_so = row.id.split_once('-').is_some_and(|(_, own)| own == one.key);
     let ExplanationTopic::Polynomials { subjects, .. } = &one.topic else { return false };

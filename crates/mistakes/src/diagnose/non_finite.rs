@@ -38,12 +38,12 @@ pub(super) fn explain_source(scene: &Scene, source: Source<'_>) -> Vec<Explanati
 #[derive(Default)]
 pub(super) struct NonFiniteSearch {
     is_found: bool,
-    /// The first such value; `None` if the reference has the same value.
+    /// The explanation of the first such value, or `None` if the reference has the same value.
     explanation: Option<NonFiniteValue>,
 }
 
 impl NonFiniteSearch {
-    /// Checks the first record.
+    /// Checks the first record of a trace.
     pub(super) fn check_first_record(&mut self, frames: &StepFrames) {
         if let Some(wild) = find_non_finite_value(&frames.before.state) {
             let told =
@@ -52,8 +52,7 @@ impl NonFiniteSearch {
         }
     }
 
-    /// Examines a step: whether it is the first one with a value that is not finite, and whether values are finite
-    /// again.
+    /// Examines a step. It may be the first one with a value that is not finite, or its values may be finite again.
     pub(super) fn examine_step(
         &mut self,
         reference: &mut Reference<'_>,
@@ -104,7 +103,7 @@ fn has_non_finite_value(frame: &LenientFrame) -> bool {
         || frame.polynomials.coefficients.iter().any(|value| !value.is_finite())
 }
 
-/// Returns the stage of a step that computes a value that is not finite from a finite state; `None` if the reference
+/// Returns the stage of a step that computes a value that is not finite from a finite state, or `None` if the reference
 /// does so as well.
 fn find_in_step(
     reference: &mut Reference<'_>,

@@ -1,4 +1,5 @@
-//! Decides which mistakes a student of a milestone can make: those in the parts that the student writes.
+//! Decides which mistakes a student of a milestone can make. These are the mistakes in the parts that the student
+//! writes.
 use fosssim_model::{
     assignments::{Assignment, Part},
     scene::Scene,

@@ -22,7 +22,7 @@ pub fn limit_result(hints: Hints, result: &mut SceneResult) {
     result.card.clone_from(&result.card_for_students);
 }
 
-/// Limits a smallest scene to a hint level; `None` at [`Hints::None`].
+/// Limits a smallest scene to a hint level. At [`Hints::None`] nothing is left, and the result is `None`.
 #[must_use]
 pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<SmallestScene> {
     small.explanations = limit_explanations(hints, std::mem::take(&mut small.explanations));
@@ -38,7 +38,7 @@ pub fn limit_smallest_scene(hints: Hints, mut small: SmallestScene) -> Option<Sm
 pub fn limit_explanations(hints: Hints, explanations: Vec<Explanation>) -> Vec<Explanation> {
     match hints {
         Hints::None => Vec::new(),
-        // Keep the place, but no guesses.
+        // The place is kept, but no guesses.
         Hints::Where => explanations.into_iter().filter(Explanation::is_not_finite).collect(),
         Hints::What => explanations
             .into_iter()

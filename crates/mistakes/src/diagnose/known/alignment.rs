@@ -1,5 +1,5 @@
-//! Finds records that are missing throughout. Every later record is then at the place of another record, so no step
-//! looks right.
+//! Finds records that are missing throughout. Every later record is then at the place of another record, so every step
+//! looks wrong.
 use super::{resimulate::resimulate, row_explanation};
 use crate::diagnose::{
     Explanation,
@@ -24,7 +24,7 @@ pub(super) fn find_missing_record(scene: &Scene, scan: &Scan) -> Option<Explanat
     })
 }
 
-/// Returns the number of records of a trace without the record of `row`.
+/// Returns the number of records that a trace has without the record of `row`.
 fn count_records_without(layout: Layout, row: &Row) -> u64 {
     match row.mistake {
         Mistake::LogNoInitial => layout.records() - 1,
@@ -32,8 +32,8 @@ fn count_records_without(layout: Layout, row: &Row) -> u64 {
     }
 }
 
-/// Returns the number of right steps in the opening if the records are read without the missing one; `None` if one of
-/// them is wrong.
+/// Returns the number of right steps in the opening if the records are read without the missing one, or `None` if one
+/// of them is wrong.
 fn count_aligned_steps(scene: &Scene, layout: Layout, opening: &[LoggedNumbers], row: &Row) -> Option<u64> {
     let world = World::new(scene.clone(), Student::default());
     let initial = world.initial_state();

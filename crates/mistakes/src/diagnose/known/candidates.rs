@@ -10,9 +10,9 @@ use fosssim_student::{Edit, Mistake, Row, Slip, StepMistake};
 
 /// The number of steps on which all rows are tried if no row reproduces everything.
 const MAX_PARTIAL_STEPS: usize = 16;
-/// The maximum number of computed polynomials; each takes about a microsecond.
+/// The maximum number of computed polynomials. Computing one takes about a microsecond.
 const MAX_WORK: u64 = 1_500_000;
-/// A row, with the number of wrong steps that it reproduces.
+/// A row, and the number of wrong steps that it reproduces.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Score {
     pub(super) row: &'static Row,
@@ -20,7 +20,7 @@ pub(super) struct Score {
     pub(super) samples: u64,
 }
 
-/// A row, and the program with only its mistake.
+/// A row, and a program whose only mistake is that of the row.
 type Candidate = (&'static Row, Program);
 
 /// All programs, and the steps in the order of the trials.
@@ -46,8 +46,8 @@ impl<'a> Candidates<'a> {
         Self { candidates, scan, probe_steps: probes, other_steps: others, trials }
     }
 
-    /// Returns the rows that reproduce the most wrong steps, all the same number, in the order of the catalogue. Empty
-    /// if that is less than half.
+    /// Returns the rows that reproduce the most wrong steps, in the order of the catalogue. All of them reproduce the
+    /// same number. The list is empty if that is less than half of the steps.
     pub(super) fn best_scores(&self) -> Vec<Score> {
         let complete = self.complete_scores();
         if complete.is_empty() { self.partial_scores() } else { complete }

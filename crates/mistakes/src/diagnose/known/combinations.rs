@@ -11,22 +11,22 @@ use fosssim_student::{Area, Mistake, Row, RowKind};
 const MAX_MISTAKES: usize = 3;
 /// The maximum number of sets of empty stages that are tried.
 const MAX_SETS: usize = 1 << 8;
-/// The maximum number of computed polynomials; each takes about a microsecond.
+/// The maximum number of computed polynomials. Computing one takes about a microsecond.
 const MAX_WORK: u64 = 700_000;
 
 /// Rows that reproduce a trace together.
 pub(super) struct RowCombination {
-    /// The rows: first empty stages, then the others in the order in which they were found.
+    /// The rows: first the empty stages, then the others in the order in which they were found.
     pub(super) rows: Vec<&'static Row>,
-    /// For each row, the rows that are equally good.
+    /// The rows that are as good as each row of the combination.
     pub(super) equivalent_rows: Vec<Vec<&'static Row>>,
     /// Other rows that explain the trace without any empty stage.
     pub(super) rival_rows: Vec<&'static Row>,
-    /// The number of tried wrong steps, all of which are reproduced.
+    /// The number of wrong steps that were tried. All of them are reproduced.
     pub(super) samples: u64,
 }
 
-/// Returns the set of rows that reproduces all kept steps; `None` if no set of at least two rows is found.
+/// Returns the set of rows that reproduces all kept steps, or `None` if no set of at least two rows is found.
 pub(super) fn find_row_set(
     reference: &Reference<'_>,
     scene: &Scene,
@@ -50,7 +50,7 @@ pub(super) fn find_row_set(
     Some(found)
 }
 
-/// Returns whether a row is an unwritten function.
+/// Returns whether a row stands for a function that was not written.
 pub(in crate::diagnose) fn is_empty_stage(row: &Row) -> bool {
     plausibility(row) == 0
 }
@@ -80,7 +80,7 @@ impl<'a> Search<'a> {
 
     /// Adds rows to a set of empty stages until it reproduces everything.
     fn complete_set(&self, mut set: Vec<&'static Row>) -> Option<RowCombination> {
-        // For each row of the set, the rows that were equally good when it was added.
+        // The rows that were as good as each row of the set when it was added.
         let mut alike: Vec<Vec<&'static Row>> = set.iter().map(|_| Vec::new()).collect();
         let mut best = self.reproduced_share(&set);
         while best < self.full_share() && set.iter().filter(|row| !is_empty_stage(row)).count() < MAX_MISTAKES {
@@ -113,7 +113,7 @@ impl<'a> Search<'a> {
 
     /// Finds several mistakes of a program whose steps log only states. There, a single mistake does not reproduce a
     /// larger part of a step, but all mistakes together reproduce all of it. Unwritten functions come first, then one
-    /// mistake with such functions, then two mistakes; `None` if two disjoint sets reproduce everything.
+    /// mistake with such functions, then two mistakes, or `None` if two disjoint sets reproduce everything.
     fn find_combination(&self) -> Option<RowCombination> {
         let is_asked = |row: &&Row| row.kind == RowKind::Wrong && row.area != Area::Trace;
         let rows: Vec<&'static Row> = applicable_rows(self.scene).filter(is_asked).collect();
@@ -203,7 +203,7 @@ impl<'a> Search<'a> {
         self.empty_stage_rows().into_iter().map(|row| (row, size(row))).filter(|(_, size)| *size > 0).collect()
     }
 
-    /// Returns the smallest set of empty stages that reproduces most; empty if none helps.
+    /// Returns the smallest set of empty stages that reproduces most. The set is empty if none helps.
     fn find_empty_stages(&self) -> Vec<&'static Row> {
         let mut sets = list_subsets(&self.empty_stage_rows());
         // One variant of an empty loop is enough, and an empty failsafe is not visible if it is never called.
@@ -260,7 +260,7 @@ impl<'a> Search<'a> {
             }
         }
         let (progress, mut rows) = best;
-        // Leave out a stage that reproduces as much but breaks steps that are right.
+        // A stage is left out if it reproduces as much but makes right steps wrong.
         let spoils = |row: &&'static Row| {
             let program = self.trials.program(&[set, &[*row]].concat());
             self.scan.right_steps.iter().any(|kept| self.trials.reproduced_share(&program, kept) < 1.0)

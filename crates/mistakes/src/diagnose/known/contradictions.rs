@@ -1,4 +1,4 @@
-//! Finds mistakes that a trace contradicts, no matter which other mistakes it has: its stages are not empty, or its
+//! Finds mistakes that a trace contradicts, regardless of other mistakes. For example, its stages are not empty, or its
 //! zones do not stop.
 use crate::diagnose::sampling::{
     CLEAR_TOLERANCE, KeptStep, LoggedNumbers, ROUND_OFF, Scan, StepDifference, find_state_difference,

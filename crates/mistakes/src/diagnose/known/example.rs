@@ -1,4 +1,4 @@
-//! The first place at which a wrong step differs from the reference.
+//! Finds the first place at which a wrong step differs from the reference.
 use super::resimulate::{ApproachForm, resimulate};
 use crate::diagnose::{
     Example, ExamplePlace, StepRecord,

@@ -191,8 +191,8 @@ fn find_best_mistake(
     (Some(explanation), complete)
 }
 
-/// Returns a rank (smaller is likelier) among mistakes that a trace cannot distinguish. Unwritten functions come first,
-/// and mistakes that show only in special scenes come last. Rows of equal rank keep the catalogue's order.
+/// Returns a rank among mistakes that a trace cannot distinguish; a smaller rank is likelier. Unwritten functions come
+/// first, and mistakes that show only in special scenes come last. Rows of equal rank keep the catalogue's order.
 fn plausibility(row: &Row) -> u8 {
     match row.mistake {
         Mistake::ParticleParticleEmpty

@@ -11,7 +11,7 @@ use fosssim_model::{
 use fosssim_student::{Area, Mistake, StepLog, Student, World, find};
 use std::cell::Cell;
 
-/// The maximum number of computed polynomials; each takes about a microsecond.
+/// The maximum number of computed polynomials. Computing one takes about a microsecond.
 const MAX_WORK: u64 = 200_000;
 
 /// Returns whether the mistake changes a logged value on this scene by more than round-off. If the search would take
@@ -22,7 +22,7 @@ pub fn mistake_is_visible(scene: &Scene, key: &str) -> bool {
     mistake_is_visible_within(scene, key, &Cell::new(0))
 }
 
-/// Returns whether the mistake shows; `work` limits all searches together.
+/// Returns whether the mistake shows. `work` limits all searches together.
 pub(in crate::diagnose) fn mistake_is_visible_within(scene: &Scene, key: &str, work: &Cell<u64>) -> bool {
     let Some(row) = find(key).filter(|row| may_change_trace(scene, row)) else { return false };
     if row.area == Area::Response

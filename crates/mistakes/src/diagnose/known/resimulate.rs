@@ -6,7 +6,7 @@ use fosssim_model::{
 };
 use fosssim_student::{Mistake, Record, State, StepLog, Student, World, step};
 
-/// The form of the particle-edge approach that a submission uses; both are accepted.
+/// The form of the particle-edge approach that a submission uses. Both forms are accepted.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(super) enum ApproachForm {
     /// The program uses the particle-edge approach that the course supplies.
@@ -38,8 +38,8 @@ pub(super) fn step_work(scene: &Scene) -> u64 {
     10 + (of_pairs + scene.forces.len() / 16) as u64
 }
 
-/// Returns the records that a program writes in a step from a given state; `None` if the step fails or writes another
-/// number of records.
+/// Returns the records that a program writes in a step from a given state, or `None` if the step fails or writes
+/// another number of records.
 pub(super) fn resimulate(
     world: &World,
     before: &fosssim_model::sim::State,

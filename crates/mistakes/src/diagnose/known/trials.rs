@@ -7,7 +7,7 @@ use fosssim_model::scene::Scene;
 use fosssim_student::{Row, StepLog, Student, World};
 use std::cell::Cell;
 
-/// Tries programs, and counts the polynomials that they compute; each takes about a third of a microsecond.
+/// Tries programs, and counts the polynomials that they compute. Computing one takes about a third of a microsecond.
 pub(super) struct Trials<'a> {
     /// The scene, prepared for programs of all students.
     world: World,
@@ -38,7 +38,7 @@ impl<'a> Trials<'a> {
         }
     }
 
-    /// Returns whether more than `most` polynomials were computed, or no work is left.
+    /// Returns whether more than `most` polynomials were computed, or whether no work is left.
     pub(super) fn exceeds_limit(&self, most: u64) -> bool {
         self.used_work.get() > most || self.remaining_work.get() == 0
     }
@@ -56,8 +56,7 @@ impl<'a> Trials<'a> {
         Program(self.world.for_student(student))
     }
 
-    /// Returns the part of the logged step that the program reproduces: 1 is all of it, and polynomials are the first
-    /// half.
+    /// Returns the part of the logged step that the program reproduces, from 0 to 1. Polynomials are the first half.
     #[expect(clippy::cast_precision_loss, reason = "a share")]
     pub(super) fn reproduced_share(&self, program: &Program, kept: &KeptStep) -> f64 {
         let logged = &kept.records.end.polynomials;

@@ -72,7 +72,7 @@ impl<'a> PlacedPair<'a> {
         self.geometry.scene.particles[self.numbers()[0]].radius
     }
 
-    /// Returns the radius of the second body; half-planes have none.
+    /// Returns the radius of the second body, or 0 for a half-plane.
     pub fn other_radius(&self) -> f64 {
         match (self.pair.kind, self.edge()) {
             (PairKind::ParticleParticle, _) => self.geometry.scene.particles[self.numbers()[1]].radius,
@@ -80,8 +80,8 @@ impl<'a> PlacedPair<'a> {
         }
     }
 
-    /// Returns the indices of the pair's bodies in an array of particles and edges; for a half-plane, the particle's
-    /// index again.
+    /// Returns the indices of the pair's bodies in an array of particles and edges. For a half-plane, the second index
+    /// is the particle's.
     fn bodies(&self) -> [usize; 2] {
         let [first, second] = self.numbers();
         match self.pair.kind {
@@ -91,7 +91,7 @@ impl<'a> PlacedPair<'a> {
         }
     }
 
-    /// Returns the boxes of the pair's bodies; for a half-plane, the particle's box again.
+    /// Returns the boxes of the pair's bodies. For a half-plane, the second box is the particle's.
     pub fn boxes(&self) -> [BoundingBox; 2] {
         self.bodies().map(|body| self.geometry.boxes[body])
     }
@@ -101,7 +101,7 @@ impl<'a> PlacedPair<'a> {
         [self.center(), self.nearest_point(&self.geometry.before.positions)]
     }
 
-    /// Returns whether the pair is near at positions `x`: its boxes overlap, or its half-plane is in reach.
+    /// Returns whether the pair is near at positions `x`, because its boxes overlap or its half-plane is in reach.
     pub fn is_near(&self, x: &[f64]) -> bool {
         if self.half_plane().is_some() {
             return length(self.nearest_point(x) - vector_at(x, self.numbers()[0])) < self.radius();

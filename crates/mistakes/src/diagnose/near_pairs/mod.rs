@@ -22,7 +22,7 @@ use geometry::{PlacedPair, StepGeometry};
 use std::collections::BTreeSet;
 use traits::TraitVariant;
 
-/// The maximum number of examined wrong steps; for right steps four times as many.
+/// The maximum number of examined wrong steps. Four times as many right steps are examined.
 const MAX_STEPS: usize = 24;
 
 /// The maximum number of pairs times bodies that are examined in a trace, because some traits depend on all bodies
@@ -33,7 +33,7 @@ const MAX_WORK: usize = 4_000_000;
 /// its row.
 const MAX_CHANCE_PROBABILITY: f64 = 2e-3;
 
-/// One of this many wrong pairs may lack a trait that the others have in common.
+/// The number of wrong pairs among which one may lack a trait that the others have in common.
 const PAIRS_PER_EXCEPTION: u64 = 20;
 
 /// The maximum number of reported traits, if several distinguish pairs equally well.

@@ -5,12 +5,12 @@ use fosssim_num::vector::{Vec2, length};
 
 /// A row of the table of traits.
 pub(super) struct TraitRow {
-    /// The trait in plain words, after "in all of them"; `{axis}` is "horizontally" or "vertically".
+    /// The trait in plain words, which follow "in all of them". `{axis}` stands for "horizontally" or "vertically".
     description: &'static str,
-    /// The trait's exact form; `{axis}` is x or y, `{n}` a number.
+    /// The exact form of the trait. `{axis}` stands for x or y, and `{n}` for a number.
     exact_condition: &'static str,
     axes: &'static [TraitAxis],
-    /// The numbers with which the trait is tried, the strictest last.
+    /// The numbers with which the trait is tried. The strictest is last.
     numbers: &'static [f64],
     holds: fn(&PlacedPair<'_>, usize, f64) -> bool,
 }
@@ -33,7 +33,7 @@ fosssim_num::closed_set! {
     letter
 }
 
-/// A row with an axis and a number.
+/// A row of the table with an axis and a number.
 #[derive(Clone, Copy)]
 pub(super) struct TraitVariant {
     pub row: &'static TraitRow,
@@ -60,7 +60,7 @@ impl TraitVariant {
     }
 }
 
-/// Returns all rows with their axes and numbers.
+/// Returns all rows of the table, each with all its axes and numbers.
 pub(super) fn variants() -> impl Iterator<Item = TraitVariant> {
     TRAITS.iter().flat_map(|row| {
         row.axes.iter().flat_map(move |&axis| row.numbers.iter().map(move |&n| TraitVariant { row, axis, n }))
@@ -225,7 +225,7 @@ fn distance([one, other]: [usize; 2]) -> f64 {
     one.abs_diff(other) as f64
 }
 
-/// Returns whether points are in different cells on an axis; with infinite cells, on different sides of the start.
+/// Returns whether points are in different cells on an axis. Infinite cells separate the two sides of the start.
 fn are_split([one, other]: [Vec2; 2], axis: usize, size: f64, start: f64) -> bool {
     ((one[axis] - start) / size).floor() != ((other[axis] - start) / size).floor()
 }

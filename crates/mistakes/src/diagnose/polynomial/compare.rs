@@ -14,17 +14,17 @@ fosssim_model::drops_leading!();
 /// The largest allowed deviation of a coefficient, relative to its bound; both sides are rounded.
 const COEFFICIENT_TOLERANCE: f64 = 2.0 * FAIR_UNITS * UNIT_ROUNDOFF;
 
-/// Returns the logged coefficient of a power; `None` if it was dropped.
+/// Returns the logged coefficient of a power, or `None` if it was dropped.
 pub(super) fn logged_at(logged: &[f64], power: usize) -> Option<f64> {
     logged.len().checked_sub(power + 1).map(|index| logged[index])
 }
 
-/// Returns the expected coefficient of a power; 0 above the degree.
+/// Returns the expected coefficient of a power, or 0 if the power is above the degree.
 pub(super) fn expected_at(expected: &[BoundedValue], power: usize) -> BoundedValue {
     expected.len().checked_sub(power + 1).map_or(BoundedValue::default(), |index| expected[index])
 }
 
-/// Returns whether one logged coefficient is `scale` times the expected one; false for NaN.
+/// Returns whether one logged coefficient is `scale` times the expected one. A NaN is never such a multiple.
 pub(super) fn coefficient_matches(expected: BoundedValue, logged: Option<f64>, scale: f64) -> bool {
     let room = COEFFICIENT_TOLERANCE * scale.abs() * expected.bound;
     match logged {
@@ -45,7 +45,7 @@ pub(super) fn polynomial_matches(expected: &[BoundedValue], logged: &[f64], scal
 }
 
 /// Returns the scale that brings the expected polynomial closest to the logged one, with each coefficient weighted by
-/// its certainty; `None` if no certain coefficient is left, or if the scale is not positive.
+/// its certainty, or `None` if no certain coefficient is left, or if the scale is not positive.
 pub(super) fn fit_scale(expected: &[BoundedValue], logged: &[f64]) -> Option<f64> {
     fit_scale_to_powers(expected, logged, |_| true)
 }

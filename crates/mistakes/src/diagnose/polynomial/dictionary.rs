@@ -9,7 +9,7 @@ use std::borrow::Cow;
 
 /// A product of letters.
 pub(super) struct Product {
-    /// Indices into the dictionary's letters, ascending.
+    /// The indices of the product's letters in the dictionary, ascending.
     pub letters: Vec<usize>,
     /// The product's degree in the displacements.
     pub order: u8,
@@ -62,14 +62,14 @@ impl Dictionary {
         self.products.iter().map(|entry| product(&letters, &entry.letters)).collect()
     }
 
-    /// Returns the formula's weight of a product in a coefficient.
+    /// Returns the weight that the formula gives a product in a coefficient.
     pub fn weight(&self, formula: &Formula, power: usize, product: usize) -> f64 {
         let letters = &self.products[product].letters;
         let same = formula.terms.iter().filter(|term| term.power == power && term.letters == letters);
         same.fold(0.0, |sum, term| sum + term.weight)
     }
 
-    /// Returns the two letters of a product, as separate products; `None` for products of another length.
+    /// Returns the two letters of a product, as separate products, or `None` for products of another length.
     pub fn factors(&self, product: usize) -> Option<[usize; 2]> {
         let &[one, two] = &self.products[product].letters[..] else { return None };
         let alone = |letter: usize| self.products.iter().position(|entry| entry.letters == [letter]);

@@ -1,4 +1,4 @@
-//! Finds the sample that shows a mistake best: wrong, early, and with short inputs.
+//! Finds the sample that shows a mistake best: it is wrong, early, and has short inputs.
 use super::study::{Case, PolynomialStudy};
 use crate::diagnose::{Example, ExamplePlace, ExampleValue};
 use fosssim_model::sim::{PairMotion, PointMotion};
@@ -7,7 +7,7 @@ use fosssim_student::assignments::t2m2::Input;
 
 fosssim_model::drops_leading!();
 
-/// Returns the example of a study, with the number of characters of its inputs.
+/// Returns the example of a study, and the number of characters of its inputs.
 pub(super) fn find_smallest_example(study: &PolynomialStudy) -> Option<(usize, Example)> {
     let wrong = study.cases.iter().filter(|case| !case.is_right);
     let best = wrong.min_by_key(|case| (count_digits(case), case.sample.step, case.sample.pass))?;

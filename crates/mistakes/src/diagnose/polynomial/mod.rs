@@ -43,7 +43,8 @@ const MAX_OTHER_KEYS: usize = 5;
 /// The maximum error of a polynomial that is right except for round-off, relative to the size of its terms.
 const NEARLY_RIGHT_ERROR: f64 = 1e-10;
 
-/// Guesses that cost at most this much more than the best one (see [`Candidate::cost`]) are reported with it.
+/// The maximum difference in cost from the best guess (see [`Candidate::cost`]) with which a guess is reported together
+/// with it.
 const MAX_COST_DIFFERENCE: f64 = 1.6;
 
 /// Explains the wrong polynomials of the samples, the likeliest explanation of the most polynomials first; empty if
@@ -101,7 +102,7 @@ fn explain_missing(samples: &[Sample]) -> Option<Explanation> {
     })
 }
 
-/// A wrong polynomial with the guesses about it, the best first.
+/// A wrong polynomial, and the guesses about it, the best first.
 struct WrongPolynomial<'a> {
     study: PolynomialStudy<'a>,
     candidates: Vec<Candidate>,
@@ -207,7 +208,8 @@ fn guess_detail(mut detail: PolynomialDetail, subjects: &[Subject]) -> Detail {
     Detail::Polynomial(detail)
 }
 
-/// Returns all guesses about a polynomial. The guess that reproduces most comes first; on a tie, the likeliest.
+/// Returns all guesses about a polynomial. The guess that reproduces most comes first; if several reproduce as much,
+/// the likeliest comes first.
 fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     let mut all = structure::collect_candidates(study);
     all.extend(collect_misunderstandings(study));
@@ -295,7 +297,7 @@ fn find_best_shared_key(open: &[WrongPolynomial]) -> Option<String> {
     (best.1.0 > 1).then(|| best.0.to_owned())
 }
 
-/// Returns one explanation for several polynomials.
+/// Returns one explanation that several polynomials share.
 fn explain_shared(covered: &[WrongPolynomial], key: &str) -> Explanation {
     let guesses: Vec<&Candidate> = covered
         .iter()

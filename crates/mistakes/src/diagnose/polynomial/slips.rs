@@ -1,4 +1,5 @@
-//! Finds right formulas with one wrong letter: scaled, with the wrong sign, or replaced by another dot product.
+//! Finds formulas that are right except for one letter. The letter is scaled, has the wrong sign, or is replaced by
+//! another dot product.
 use super::study::{Candidate, PolynomialStudy};
 use crate::diagnose::{Guess, PolynomialDetail, QuantityGuess, Substitute};
 use fosssim_num::bounded::BoundedValue;
@@ -10,13 +11,13 @@ use fosssim_student::assignments::t2m2::{
 
 /// A quantity that is tried instead of a letter.
 enum SlipTrial<'a> {
-    /// The letter itself, multiplied by a factor.
+    /// The letter is multiplied by a factor.
     Scaled(f64),
-    /// The letter with this index instead.
+    /// The letter with this index is used instead.
     Letter(usize),
-    /// A dot product, possibly with the wrong sign.
+    /// A dot product is used instead, possibly with the wrong sign.
     Dot(&'a Ingredient, &'a Ingredient, f64),
-    /// The number 1 instead.
+    /// The number 1 is used instead.
     One,
 }
 
@@ -61,7 +62,7 @@ impl SlipTrial<'_> {
     }
 }
 
-/// Returns the one-letter slips that reproduce at least half of the wrong samples.
+/// Returns the guesses with one wrong letter that reproduce at least half of the wrong samples.
 pub(super) fn collect_candidates(study: &PolynomialStudy) -> Vec<Candidate> {
     study.formula_readings().flat_map(|(reading, formula)| collect_formula_slips(study, formula, reading)).collect()
 }

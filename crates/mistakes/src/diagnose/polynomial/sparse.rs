@@ -6,13 +6,13 @@
 
 use nalgebra::{DMatrix, DVector};
 
-/// A proposal: ascending column indices and their weights.
+/// A proposal, which consists of ascending column indices and their weights.
 pub(super) type WeightedColumns = Vec<(usize, f64)>;
 
 /// The squared residual that counts as zero, relative to the target. The normal equations are not more accurate.
 const SMALL_RESIDUAL: f64 = 1e-10;
 
-/// Columns that are used together must be at least this far from linear dependence.
+/// The minimum distance from linear dependence of columns that are used together.
 const MIN_INDEPENDENCE: f64 = 1e-10;
 
 /// The maximum number of columns for which all triples are tried.
@@ -97,7 +97,7 @@ impl DesignMatrix {
         pursued.into_iter().flatten().find(|support| accept(support)).into_iter().collect()
     }
 
-    /// Runs matching pursuit among the first `among` columns.
+    /// Chooses columns by matching pursuit among the first `among` columns.
     fn find_by_pursuit(&self, target: &[f64], fits: &[f64], among: usize) -> Option<WeightedColumns> {
         let square = dot(target, target);
         let mut chosen: Vec<usize> = Vec::new();
@@ -132,7 +132,7 @@ impl DesignMatrix {
         Some(support)
     }
 
-    /// Solves the normal equations of unit columns by Cholesky's method; `None` if the columns are nearly dependent.
+    /// Solves the normal equations of unit columns by Cholesky's method, or `None` if the columns are nearly dependent.
     fn weights(&self, chosen: &[usize], fits: &[f64]) -> Option<Vec<f64>> {
         let (size, count) = (chosen.len(), self.indices.len());
         let gram = DMatrix::from_fn(size, size, |row, column| self.gram[chosen[row] * count + chosen[column]]);

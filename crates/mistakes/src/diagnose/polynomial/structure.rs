@@ -1,4 +1,5 @@
-//! Guesses about the whole list of coefficients: reversed, negated, cut, another polynomial's, or NaN.
+//! Guesses about the whole list of coefficients: it may be reversed, negated, cut, replaced by another polynomial's, or
+//! NaN.
 use super::{
     compare::{expected_at, logged_at, polynomial_matches},
     study::{Candidate, Case, PolynomialStudy, median, ratio},

@@ -1,4 +1,4 @@
-//! All samples of one polynomial of one kind of pair, and a measure of how well a guess reproduces them.
+//! Collects all samples of one polynomial of one kind of pair, and measures how well a guess reproduces them.
 use super::{
     Sample,
     compare::{
@@ -22,7 +22,7 @@ const MAX_CASES: usize = 1200;
 /// The number of wrong samples on which a guess is tried before it is tried on all.
 const PROBE_COUNT: usize = 12;
 
-/// For each this many right samples, one may contradict a guess because of round-off.
+/// The number of right samples for each of which one may contradict a guess because of round-off.
 const SAMPLES_PER_EXCEPTION: usize = 50;
 
 /// The relative difference below which ratios to the expected coefficients are equal. The limit allows for the rounding
@@ -37,7 +37,7 @@ pub(super) struct Case<'a> {
     pub logged: &'a [f64],
     /// The inputs of the formulas.
     pub inputs: Inputs,
-    /// The coefficients that should have been logged; the quintic in the supplied form.
+    /// The coefficients that should have been logged. The quintic is in the form that the course supplies.
     pub expected: Vec<BoundedValue>,
     /// Whether the logged polynomials are right, in any accepted form.
     pub is_right: bool,
@@ -63,7 +63,7 @@ pub(super) struct Candidate {
     pub guess: Guess,
     /// The exact form of the guess.
     pub details: Vec<PolynomialDetail>,
-    /// All exact forms that reproduce as much, the likeliest first; empty if there is only one.
+    /// All exact forms that reproduce as much, the likeliest first. The list is empty if there is only one.
     pub forms: Vec<Vec<PolynomialDetail>>,
     /// The cost of the guess; a likelier guess costs less. The cost is 1 to 3 for a change of the whole list, about 3
     /// for one factor or sign, 4 for one wrong input, and 5 or more for wrong letters and foreign terms; edits add up.
@@ -73,7 +73,7 @@ pub(super) struct Candidate {
 }
 
 impl<'a> PolynomialStudy<'a> {
-    /// Collects the logged values of a polynomial; `None` if no sample is wrong.
+    /// Collects the logged values of a polynomial, or `None` if no sample is wrong.
     pub fn new(subject: Subject, samples: &'a [Sample]) -> Option<Self> {
         let number = Subject::all_of_kind(subject.kind()).iter().position(|&other| other == subject)?;
         let mut cases: Vec<Case<'a>> = samples
@@ -109,8 +109,8 @@ impl<'a> PolynomialStudy<'a> {
     }
 
     /// Returns the number of samples that a predicted polynomial reproduces, with the submission's usual scale or
-    /// without one, or otherwise with any positive scale; `None` if it reproduces fewer than half of the wrong samples.
-    /// The flag is set if another scale was needed.
+    /// without one, or otherwise with any positive scale, or `None` if it reproduces fewer than half of the wrong
+    /// samples. The flag is set if another scale was needed.
     pub fn count_predicted(&self, predict: impl Fn(&Case) -> Vec<BoundedValue>) -> Option<(usize, bool)> {
         let at_usual_scale = |case: &Case| {
             let predicted = predict(case);
@@ -125,8 +125,8 @@ impl<'a> PolynomialStudy<'a> {
         }
     }
 
-    /// Returns the number of samples with a property; `None` if fewer than half of the wrong ones have it, if the first
-    /// wrong one lacks it, or if right ones contradict it.
+    /// Returns the number of samples with a property, or `None` if fewer than half of the wrong ones have it, if the
+    /// first wrong one lacks it, or if right ones contradict it.
     pub fn count_if(&self, holds: impl Fn(&Case) -> bool) -> Option<usize> {
         if self.cases.iter().find(|case| !case.is_right).is_some_and(|first| !holds(first)) {
             return None;
@@ -275,13 +275,13 @@ pub(super) fn ratio(case: &Case, power: usize) -> Option<f64> {
     (expected.value.abs() > 1e-4 * expected.bound && ratio.is_finite()).then_some(ratio)
 }
 
-/// Returns the median; `None` without values.
+/// Returns the median, or `None` if there are no values.
 pub(super) fn median(mut values: Vec<f64>) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied()
 }
 
-/// Returns `count` indices below `length`, evenly spread; all indices if there are fewer.
+/// Returns `count` indices below `length` that are evenly spread, or all indices if there are fewer.
 pub(super) fn spread_indices(length: usize, count: usize) -> impl Iterator<Item = usize> {
     let count = count.min(length);
     (0..count).map(move |index| index * length / count)
@@ -306,7 +306,7 @@ fn forgive_small_scales(cases: &mut [Case]) {
     }
 }
 
-/// Keeps at most [`MAX_CASES`] samples in their order, preferring wrong ones.
+/// Keeps at most [`MAX_CASES`] samples in their order, and prefers wrong ones.
 fn thin_out(cases: Vec<Case>) -> Vec<Case> {
     if cases.len() <= MAX_CASES {
         return cases;

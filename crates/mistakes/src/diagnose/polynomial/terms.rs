@@ -32,7 +32,7 @@ const MAX_ALTERNATIVES: usize = 3;
 /// The maximum number of forms of a polynomial that are compared with those of other traces.
 const MAX_FORMS: usize = 64;
 
-/// The cost of an unexplained coefficient.
+/// The cost of a coefficient that is not explained.
 const UNKNOWN_COST: f64 = 20.0;
 
 /// A change of one coefficient.
@@ -45,7 +45,7 @@ enum CoefficientEdit {
     Unknown,
 }
 
-/// The guesses about one coefficient, the likeliest first; at least one.
+/// The guesses about one coefficient, the likeliest first. There is at least one.
 struct FormulaGuess {
     power: usize,
     edits: Vec<(CoefficientEdit, f64)>,
@@ -268,7 +268,7 @@ impl<'a> TermFit<'a> {
     }
 }
 
-/// Rounds weights to multiples of [`WEIGHT_STEP`]; `None` if they are not close to multiples.
+/// Rounds weights to multiples of [`WEIGHT_STEP`], or `None` if they are not close to multiples.
 fn snap(support: &WeightedColumns) -> Option<Vec<(usize, f64)>> {
     support
         .iter()

@@ -14,12 +14,12 @@ pub struct Capture {
     logs_impulses: bool,
     has_mid: bool,
     pass: Option<Pass>,
-    /// The records of the step; valid after the step.
+    /// The records of the step, which are valid after the step.
     pub records: StepRecords,
     /// The pairs in the order of detection, with the pass and the index of their first polynomial.
     pub detections: Vec<(Pair, Pass, usize)>,
     /// The events of the step, as bits for each kind of pair and stage with a collision, for the number of rounds, and
-    /// for each kind of zone. Zero if nothing collided.
+    /// for each kind of zone. The number is zero if nothing collided.
     pub event_bits: u32,
 }
 
@@ -31,8 +31,8 @@ impl Capture {
         Self { logs_impulses, has_mid: records.polynomials, ..Self::default() }
     }
 
-    /// Returns the place of a polynomial: pair, pass, number within the pair; `None` if the reference has no such
-    /// polynomial.
+    /// Returns the place of a polynomial: the pair, the pass, and the number within the pair. Returns `None` if the
+    /// reference has no such polynomial.
     pub fn locate_polynomial(&self, index: usize) -> Option<(Pair, Pass, usize)> {
         let after = self.detections.partition_point(|&(_, _, first)| first <= index);
         let &(pair, pass, first) = self.detections.get(after.checked_sub(1)?)?;

@@ -107,17 +107,17 @@ impl StepRecords {
 /// The first difference between the records of a step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepDifference {
-    /// A polynomial of the end record, by its index.
+    /// A polynomial of the end record differs. The value is its index.
     Polynomial(usize),
-    /// The number of polynomials.
+    /// The number of polynomials differs.
     PolynomialCount,
-    /// The mid state, with the particle.
+    /// The state in the middle differs. The value is the number of the particle.
     MidState(usize),
-    /// The impulse list of the end record.
+    /// The impulse list of the end record differs.
     Impulses,
-    /// The end state, with the particle.
+    /// The end state differs. The value is the number of the particle.
     EndState(usize),
-    /// The lists of the mid record.
+    /// The lists of the mid record differ.
     MidLists,
 }
 
@@ -142,7 +142,8 @@ impl From<Record> for LoggedNumbers {
     }
 }
 
-/// Returns the first difference in the order of a step's computation; `None` if the records are equal up to round-off.
+/// Returns the first difference in the order of a step's computation, or `None` if the records are equal up to
+/// round-off.
 pub fn find_first_difference(expected: &StepRecords, actual: &StepRecords, by: &Tolerance) -> Option<StepDifference> {
     let (ours, theirs) = (&expected.end.polynomials, &actual.end.polynomials);
     let wrong = ours.iter().zip(theirs.iter()).position(|(ours, theirs)| !polynomial_matches(ours, theirs, by));

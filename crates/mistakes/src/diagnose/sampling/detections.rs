@@ -24,7 +24,7 @@ pub struct Sample {
     pub pass: u32,
     /// The pair of the detection, of the same kind as `motion`.
     pub pair: Pair,
-    /// The inputs, from the submission's own states.
+    /// The inputs of the detection, from the submission's own states.
     pub motion: PairMotion,
     /// The logged coefficients, one list per polynomial of the kind in the trace's order (2 or 4); each highest power
     /// first and without the small leading coefficients that the course's library drops. If there are fewer lists, the
@@ -106,9 +106,9 @@ struct SampleCollector<'a> {
     mid: &'a LenientFrame,
     log: &'a PolynomialLog,
     samples_by_kind: &'a mut PairKindMap<KindSamples>,
-    /// The number of logged polynomials of each detection, usually all.
+    /// The number of polynomials that each detection logs. Usually all polynomials are logged.
     polynomial_counts: Option<PairKindMap<usize>>,
-    /// The number of the pass, and the index of its next polynomial in the list; `None` in passes that are not
+    /// The number of the pass, and the index of its next polynomial in the list, or `None` in passes that are not
     /// examined.
     next_polynomial: Option<(u32, usize)>,
 }
@@ -133,7 +133,7 @@ fn polynomial_counts(pairs: PairKindMap<usize>, before: usize, all: usize) -> Op
         return Some(full);
     }
     let there: Vec<PairKind> = PairKind::ALL.into_iter().filter(|kind| pairs[*kind] > 0).collect();
-    // For kinds without a pair there is only one choice.
+    // For kinds without a pair, there is only one choice.
     let mut choices = vec![full];
     for &kind in &there {
         let with = |sizes: PairKindMap<usize>, size| {
@@ -143,7 +143,7 @@ fn polynomial_counts(pairs: PairKindMap<usize>, before: usize, all: usize) -> Op
     }
     let changes = |sizes: &PairKindMap<usize>| there.iter().filter(|kind| sizes[**kind] != full[**kind]).count();
     let is_empty = |sizes: &PairKindMap<usize>| there.iter().any(|kind| sizes[*kind] == 0);
-    // The fewest changes come first, because a student may forget a part of one detection, but rarely of two.
+    // The fewest changes come first, because a student may forget a part of one detection, but rarely parts of two.
     choices.sort_by_key(|sizes| (changes(sizes), std::cmp::Reverse(sizes.values().sum::<usize>())));
     let mut fitting = choices.into_iter().filter(fits);
     let first = fitting.next()?;
@@ -183,7 +183,7 @@ impl StepController for SampleCollector<'_> {
         }
         let polynomials: Vec<Vec<f64>> = lists.map(|index| self.log.get(index).to_vec()).collect();
         if polynomials.iter().flatten().any(|value| !value.is_finite()) {
-            // NaN and infinity prove nothing about a formula.
+            // A NaN or an infinity proves nothing about a formula.
             return;
         }
         let expected = formulas::BoundedPairMotion::for_pair(self.scene, pair, q_start, q_end).polynomials();

@@ -22,13 +22,13 @@ use fosssim_model::scene::Scene;
 
 /// The data for explanations.
 pub struct TraceSamples<'a> {
-    /// The reference, with the rest of its budget.
+    /// The reference, and the rest of its budget.
     pub reference: Reference<'a>,
     /// The explanation of the first value that is not finite.
     pub not_finite: Option<Explanation>,
     /// The selected wrong and right steps.
     pub scan: Scan,
-    /// Detections with known inputs.
+    /// The detections whose inputs are known.
     pub detections: Vec<Sample>,
 }
 

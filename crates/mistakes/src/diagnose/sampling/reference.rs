@@ -15,7 +15,7 @@ pub struct Reference<'a> {
 }
 
 /// The maximum number of polynomials that programs with mistakes may compute for one explanation. Unusual steps of root
-/// searches count, too. Explanations of sample programs need up to four million. With a lower limit, combinations of
+/// searches count as well. Explanations of sample programs need up to four million. With a lower limit, combinations of
 /// mistakes are no longer found; with a higher limit, a hostile trace takes longer to explain.
 const MAX_TRIAL_WORK: u64 = 5_000_000;
 
@@ -26,7 +26,7 @@ impl<'a> Reference<'a> {
         Self { simulation, budget: Budget::new(scene, false), trials: Cell::new(MAX_TRIAL_WORK) }
     }
 
-    /// Returns the end state of a step from `before`; `None` if it has no result, or the budget is used up.
+    /// Returns the end state of a step from `before`, or `None` if it has no result, or the budget is used up.
     pub fn step(&mut self, step: u32, before: &State, observer: &mut dyn Observer) -> Option<&State> {
         self.simulation.state_mut().clone_from(before);
         self.simulation.set_steps_done(step - 1);

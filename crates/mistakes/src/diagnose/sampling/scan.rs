@@ -16,10 +16,10 @@ use fosssim_model::{
 use fosssim_num::tolerances::KNOWN_STATE_ERROR;
 use std::collections::{BTreeMap, BTreeSet};
 
-/// The maximum number of kept steps, wrong and right.
+/// The maximum number of kept steps of each sort, wrong and right.
 const MAX_WRONG: usize = 200;
 const MAX_RIGHT: usize = 40;
-/// The first this many similar wrong steps are all kept; of further ones, only some are kept.
+/// The number of similar wrong steps that are all kept. Of further ones, only some are kept.
 const MAX_SIMILAR_WRONG: u32 = 8;
 const SIMILAR_SAMPLING_RATE: u32 = 16;
 /// The number of similar right steps that are kept.
@@ -38,15 +38,15 @@ pub struct KeptStep {
     pub before: State,
     /// The submission's records.
     pub records: StepRecords,
-    /// The first difference from the reference; `None` for right steps.
+    /// The first difference from the reference, or `None` for right steps.
     pub difference: Option<StepDifference>,
-    /// Facts that depend on the step and the previous one.
+    /// The facts that depend on the step and the previous one.
     pub context: StepContext,
     /// A number that similar steps share.
     pub signature: u64,
 }
 
-/// Facts that follow from the step and the previous one.
+/// The facts that follow from the step and the previous one.
 #[derive(Debug, Clone, Copy, Default)]
 pub struct StepContext {
     /// Whether the record would be right if the polynomials of the previous step were removed from its front.
@@ -95,7 +95,7 @@ pub struct Scanner {
     scan: Scan,
     signature_counts: BTreeMap<(bool, u64), u32>,
     memory: usize,
-    /// Wrong steps with events that end in values that are not finite.
+    /// The wrong steps with events that end in values that are not finite.
     non_finite_steps: Vec<KeptStep>,
     /// The number of the previous step, and the change of its velocities.
     last_positions: Option<(u32, Vec<f64>)>,

@@ -102,9 +102,10 @@ pub struct StepReader<'a> {
     layout: Layout,
     reader: LenientReader<&'a [u8]>,
     is_whole: bool,
-    /// The number of the next step; `None` after the end.
+    /// The number of the next step, or `None` after the end.
     next_step: Option<u32>,
-    /// The records of the last step read; before the first step, the first record of the trace, if there is one.
+    /// The records of the last step that was read. Before the first step, the first record of the trace is here, if
+    /// there is one.
     pub frames: StepFrames,
     /// Facts about the trace in addition to its steps.
     pub outline: Outline,

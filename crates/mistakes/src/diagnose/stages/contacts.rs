@@ -12,8 +12,8 @@ use crate::diagnose::{
 use fosssim_model::{sim::PairKind, trace::LoggedImpulse};
 use fosssim_num::vector::{Vec2, length};
 
-/// Returns the explanation that the pairs of the first pass are in a different order, if all polynomials of the pass
-/// are logged.
+/// Returns the explanation that the pairs of the first pass are in a different order. All polynomials of the pass must
+/// be logged.
 pub(super) fn explain_order(facts: &[StepFacts]) -> Option<Explanation> {
     let wrong: Vec<&StepFacts> = facts.iter().filter(|facts| facts.has_wrong_formula()).collect();
     let permuted = wrong.iter().filter(|facts| is_permuted(facts)).count();

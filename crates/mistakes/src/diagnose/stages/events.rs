@@ -14,7 +14,7 @@ use fosssim_model::{
 };
 use fosssim_num::{bounded::BoundedValue, vector::Vec2};
 
-/// A contact that the reference finds.
+/// A contact that the reference finds in a step.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Hit {
     pub(super) pair: Pair,
@@ -122,7 +122,7 @@ impl StepController for NoCollisions {
 
 /// A step of the submission, and the reference's.
 pub(super) struct StepFacts {
-    /// Whether anything differs.
+    /// Whether anything in the step differs.
     pub(super) is_wrong: bool,
     pub(super) before: State,
     /// The state after the integrator, without collisions.
@@ -139,7 +139,7 @@ pub(super) struct StepFacts {
 }
 
 impl StepFacts {
-    /// Returns the facts about a step; `None` if the reference has no result.
+    /// Returns the facts about a step, or `None` if the reference has no result.
     pub(super) fn for_step(reference: &mut Reference<'_>, scene: &Scene, kept: &KeptStep) -> Option<Self> {
         let prediction = reference.step(kept.step, &kept.before, &mut SteeringObserver(NoCollisions))?.clone();
         let mut observers = (Capture::new(&scene.collision), StepEvents { scene, events: Events::default() });
@@ -197,8 +197,8 @@ impl StepFacts {
         })
     }
 
-    /// Returns the numbers of passes that the submission logged before and after the middle of the step; `None` if the
-    /// polynomials do not fill whole passes.
+    /// Returns the numbers of passes that the submission logged before and after the middle of the step, or `None` if
+    /// the polynomials do not fill whole passes.
     pub(super) fn logged_passes(&self) -> Option<(usize, usize)> {
         let (size, (_, middle)) = (self.pass_size(), self.mid_states()?);
         let (first, all) = (middle.polynomials.len(), self.actual.end.polynomials.len());

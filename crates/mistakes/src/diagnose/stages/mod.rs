@@ -25,13 +25,13 @@ use fosssim_model::scene::{Collision, Scene};
 /// The maximum number of steps that are compared.
 const MAX_STEPS: usize = 120;
 
-/// The maximum number of polynomials that are compared; each takes about a microsecond.
+/// The maximum number of polynomials that are compared. Comparing one takes about a microsecond.
 const MAX_POLYNOMIALS: usize = 200_000;
 
 /// The relative difference below which ratios are equal.
 const RATIO_TOLERANCE: f64 = 1e-6;
 
-/// Returns the observation about the stages of `steps`; `None` if polynomials with known inputs are wrong, or if
+/// Returns the observation about the stages of `steps`, or `None` if polynomials with known inputs are wrong, or if
 /// nothing is wrong.
 pub(super) fn explain<'a>(
     reference: &mut Reference<'_>,
@@ -76,7 +76,7 @@ fn new_observation(fault: StageFault, details: Vec<StageDetail>, samples: usize)
     }
 }
 
-/// Returns the value that all of `values` equal, up to round-off.
+/// Returns the value to which all of `values` are equal, up to round-off.
 fn common_value(values: &[f64]) -> Option<f64> {
     let mut sorted = values.to_vec();
     sorted.sort_by(f64::total_cmp);
@@ -85,7 +85,7 @@ fn common_value(values: &[f64]) -> Option<f64> {
     (middle.is_finite() && values.iter().all(is_alike)).then_some(middle)
 }
 
-/// Returns the common ratio, or otherwise the range of ratios.
+/// Returns the ratio that all values share, or otherwise the range of the ratios.
 fn ratios(values: &[f64]) -> Ratios {
     let (low, high) = range(values.iter().copied());
     common_value(values).map_or(Ratios::Between(low, high), Ratios::All)

@@ -20,7 +20,7 @@ const ROUND_OFF_LIMIT: f64 = 1e-11;
 /// The change caused by a contact.
 #[derive(Debug, Clone, Copy)]
 struct Change {
-    /// The ratio to the expected value along the contact vector; `None` if the expected value is zero.
+    /// The ratio to the expected value along the contact vector, or `None` if the expected value is zero.
     ratio: Option<f64>,
     /// Whether the component perpendicular to the contact vector also changed.
     is_across: bool,
@@ -31,7 +31,7 @@ struct Change {
 pub(super) struct Responses {
     changes: BTreeMap<ChangedQuantity, Vec<Change>>,
     contacts: usize,
-    /// The number of contacts of impulse rounds that changed nothing; whether the program found them is unknown.
+    /// The number of contacts of impulse rounds that changed nothing. It is unknown whether the program found them.
     unresolved: usize,
     has_rounds: bool,
 }
@@ -70,7 +70,7 @@ impl Responses {
         of_kind().next().is_some() && of_kind().all(|(_, changes)| changes.iter().all(|change| change.is_right))
     }
 
-    /// Returns the fault in responses; `None` if all visible responses are right.
+    /// Returns the fault in responses, or `None` if all visible responses are right.
     pub(super) fn explain(&self, facts: &[StepFacts]) -> Option<Explanation> {
         let changes = &self.changes;
         let wrong: BTreeMap<ChangedQuantity, Vec<Change>> = changes

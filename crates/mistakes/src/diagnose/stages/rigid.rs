@@ -1,4 +1,4 @@
-//! Impact zones and the rigid failsafe: steps whose first part is right.
+//! Examines impact zones and the rigid failsafe in steps whose first part is right.
 //!
 //! A zone is wrong if other zones, moved correctly, explain the particles' positions. The failsafe is examined on right
 //! zones: those with one contact, or with particles that move as one body.
@@ -203,7 +203,7 @@ impl ZoneMotions {
         let all = self.results.len();
         let wrong = all - self.count_results(ZoneResult::Right);
         let count = |fault: WrongZones| self.count_results(ZoneResult::Wrong(fault));
-        // Check first the results that prove the failsafe right.
+        // The results that prove the failsafe right are checked first.
         let faults = [
             WrongZones::NotMerged,
             WrongZones::Joined,
@@ -267,8 +267,8 @@ impl MotionErrors {
                 .map(|(state, center)| measure_turn(zone, start, from, state, center));
             let is_once_round = rotation_angle(scene, zone, start, first.middle).abs() < std::f64::consts::PI;
             if !is_once_round {
-                // Of a rotation by more than half a turn only the remainder is visible, which shows neither the angle
-                // nor the direction.
+                // If a rotation exceeds half a turn, only the remainder is visible, which shows neither the angle nor
+                // the direction.
                 self.turns.push(if (angle - right).abs() <= MIN_TURN { 1.0 } else { f64::NAN });
             } else if right.abs() > MIN_TURN {
                 self.turns.push(angle / right);

@@ -1,4 +1,4 @@
-//! The impulse rounds of `hybrid`: their number, the positions that they use, and their result.
+//! Examines the impulse rounds of `hybrid`: their number, the positions that they use, and their result.
 //!
 //! The polynomials of a round show the positions at its beginning, which are the result of the previous round.
 use super::{Explanation, RATIO_TOLERANCE, events::StepFacts, new_observation, responses::Responses};

@@ -1,5 +1,5 @@
-//! The result of one impact zone in the first round of the geometric part. The particles that moved as one body show
-//! the actual zones.
+//! Finds the result of one impact zone in the first round of the geometric part. The particles that moved as one body
+//! show the actual zones.
 use super::events::StepFacts;
 use crate::diagnose::{WrongZones, sampling::pair_particles};
 use fosssim_model::{
@@ -78,7 +78,7 @@ pub(super) struct FirstRound<'a> {
 }
 
 impl<'a> FirstRound<'a> {
-    /// Returns the zones of a step; `None` if the step has no first round, or if something before it is wrong.
+    /// Returns the zones of a step, or `None` if the step has no first round, or if something before it is wrong.
     pub(super) fn for_scene(scene: &'a Scene, facts: &'a StepFacts) -> Option<Self> {
         let (loop_passes, passes) = facts.logged_passes().filter(|_| facts.has_right_mid_state())?;
         let is_right = facts.right_polynomials >= (loop_passes + 1) * facts.pass_size();
@@ -200,7 +200,7 @@ impl<'a> FirstRound<'a> {
         if zone.particles.len() > MAX_PARTICLES {
             return None;
         }
-        // Try a part of the zone, alone or with particles that are in no zone.
+        // A part of the zone is tried, alone or with particles that are in no zone.
         let parts = (1..1_u32 << zone.particles.len()).map(|bits| {
             let is_in = |(bit, _): &(usize, &usize)| bits >> bit & 1 == 1;
             zone.particles.iter().enumerate().filter(is_in).map(|(_, one)| *one).collect::<Vec<usize>>()
