@@ -14,8 +14,8 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// The unit roundoff of doubles, `2^-53`.
 pub const UNIT_ROUNDOFF: f64 = 1.110_223_024_625_156_5e-16;
 
-/// A value and the bound of its error in units of [`UNIT_ROUNDOFF`] (same unit as the value), for one number or for one
-/// in each [lane](super::lanes).
+/// A value and a bound of its error, in units of [`UNIT_ROUNDOFF`] times the unit of the value. There may be one
+/// number, or one in each [lane](super::lanes).
 #[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct BoundedValue<N = f64> {
     /// The computed value.
@@ -87,7 +87,7 @@ impl<N: Number + Modulus> Mul for BoundedValue<N> {
     }
 }
 
-/// A divisor of 0 gives the quotient of the division, and an infinite or NaN bound.
+/// A divisor of 0 gives the division's quotient, with an infinite or NaN bound.
 impl Div for BoundedValue {
     type Output = Self;
     #[inline]
@@ -106,7 +106,7 @@ impl<N: Number> Neg for BoundedValue<N> {
     }
 }
 
-/// The factor has no error.
+/// The factor is exact.
 impl Mul<BoundedValue> for f64 {
     type Output = BoundedValue;
     #[inline(always)]
@@ -156,7 +156,7 @@ impl Neg for Magnitude {
     }
 }
 
-/// The factor has no error.
+/// The factor is exact.
 impl Mul<BoundedValue<Magnitude>> for f64 {
     type Output = BoundedValue<Magnitude>;
     fn mul(self, other: BoundedValue<Magnitude>) -> BoundedValue<Magnitude> {

@@ -38,7 +38,7 @@ pub fn first_time(polynomials: &[Polynomial]) -> Result<f64, DoesNotTerminate> {
 #[inline]
 pub fn first_time_with_steps(polynomials: &[Polynomial], steps: &mut u64) -> Result<f64, DoesNotTerminate> {
     let lists = polynomials.iter().map(Polynomial::coefficients);
-    // Two polynomials, of degree five at most, have at most five common intervals; four of them nine.
+    // Two polynomials of degree five at most have at most five common intervals; four of them have at most nine.
     match polynomials.len() {
         0..=2 => intersect_sets::<5>(lists, steps),
         3..=4 => intersect_sets::<9>(lists, steps),
@@ -101,7 +101,7 @@ fn solve_positive_set(coefficients: &[f64], steps: &mut u64) -> Result<PositiveS
     let mut storage = [0.0; MAX_DEGREE];
     let breaks = sorted_real_parts(&zeros, &mut storage);
     let (Some(&first), Some(&last)) = (breaks.first(), breaks.last()) else {
-        // If there is no real zero, t = 0 represents the whole line.
+        // If there is no real zero, the time 0 represents the whole line.
         if evaluate(coefficients, 0.0) > 0.0 {
             set.push(Interval::ALL_TIMES);
         }

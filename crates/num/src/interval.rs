@@ -16,7 +16,8 @@ impl Interval {
     /// The interval of all times.
     pub const ALL_TIMES: Self = Self { lo: f64::NEG_INFINITY, hi: f64::INFINITY };
 
-    /// Returns whether the two intervals share a point (closed comparison; false with a NaN bound).
+    /// Returns whether the two intervals share a point. Ends that are equal count as shared, and an interval with a NaN
+    /// bound shares none.
     #[inline]
     #[must_use]
     pub fn touches(self, other: Self) -> bool {

@@ -108,7 +108,7 @@ impl Instructions {
         Self(Arch::Scalar)
     }
 
-    /// Does work with the instructions.
+    /// Performs the work with the instructions.
     #[inline]
     pub fn run<W: LaneWork>(self, work: W) -> W::Output {
         self.0.dispatch(DispatchedWork(work))
@@ -119,7 +119,7 @@ impl Instructions {
 pub trait LaneWork {
     /// The type of the result.
     type Output;
-    /// Does the work. It must always be inlined, with everything that it calls and without closures, which would be
+    /// Performs the work. It must always be inlined, with everything that it calls and without closures, which would be
     /// compiled for other instructions, because the callers are compiled once for each set of instructions.
     fn run<S: Simd>(self, simd: S) -> Self::Output;
 }
@@ -202,19 +202,19 @@ impl<S: Simd> Lanes<S> {
         }
     }
 
-    /// Returns the moduli.
+    /// Returns the absolute values.
     #[inline(always)]
     pub fn abs(self) -> Self {
         Self { values: self.simd.abs_f64s(self.values), ..self }
     }
 
-    /// Returns the larger number of each lane; no number may be NaN.
+    /// Returns the larger number of each lane. No number may be NaN.
     #[inline(always)]
     pub fn max(self, other: Self) -> Self {
         Self { values: self.simd.max_f64s(self.values, other.values), ..self }
     }
 
-    /// Returns the largest number of all lanes; no number may be NaN.
+    /// Returns the largest number of all lanes. No number may be NaN.
     #[inline(always)]
     pub fn largest(self) -> f64 {
         self.simd.reduce_max_f64s(self.values)
@@ -307,12 +307,12 @@ pub struct Mask<S: Simd> {
 }
 
 impl<S: Simd> Mask<S> {
-    /// Returns a number in lanes that are set, 0 elsewhere.
+    /// Returns the number in lanes that are set, and 0 in the others.
     #[inline(always)]
     pub fn select_or_zero(self, number: f64) -> Lanes<S> {
         let simd = self.simd;
         let mask = if Lanes::<S>::COUNT > 1 {
-            // All bits of a lane or none, as in a mask of several lanes. A selection would test it again.
+            // A lane has all bits set or none, as in a mask of several lanes. A selection would test this again.
             pulp::bytemuck::pod_read_unaligned(pulp::bytemuck::bytes_of(&self.lanes))
         } else {
             simd.select_u64s(self.lanes, simd.splat_u64s(u64::MAX), simd.splat_u64s(0))

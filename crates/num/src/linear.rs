@@ -5,13 +5,14 @@
 //! column's largest is found while its entries are computed.
 use super::lanes::{Instructions, LaneWork, Lanes, Simd};
 
-/// The columns that a triangular solve treats as one panel.
+/// The number of columns that a triangular solve treats as one panel.
 const PANEL_COLUMNS: usize = 8;
 
-/// The columns of a panel whose products are added to the other rows in one go.
+/// The number of columns of a panel whose products are added to the other rows at a time.
 const GROUP_COLUMNS: usize = 4;
 
-/// Scratch space of [`solve`], kept between calls so that none allocates after the first of its size.
+/// The scratch memory of [`solve`]. It is kept between calls, so that only the first call of each size allocates
+/// memory.
 #[derive(Debug, Clone, Default)]
 pub struct Workspace {
     row_swaps: Vec<usize>,
@@ -52,7 +53,7 @@ pub fn solve(matrix: &mut [f64], rhs: &mut [f64], workspace: &mut Workspace) {
 /// `row_swaps[k]` is the row that was exchanged with row k; `column_order[k]` the original column that is now in
 /// place k.
 struct Decomposition<'a> {
-    /// n x n, column-major.
+    /// The matrix of size n x n, column by column.
     matrix: &'a mut [f64],
     n: usize,
     row_swaps: &'a mut Vec<usize>,
@@ -96,8 +97,8 @@ impl LaneWork for Decomposition<'_> {
 }
 
 impl Decomposition<'_> {
-    /// Returns the entry of largest modulus in rows and columns from k on: on a tie the first, column by column. NaN
-    /// never replaces another entry, but a NaN at the start stays.
+    /// Returns the entry of largest modulus in rows and columns from k on. If several have it, the first one column by
+    /// column is returned. NaN never replaces another entry, but a NaN at the start stays.
     #[inline(always)]
     fn pivot(&self, k: usize) -> Pivot {
         let n = self.n;
@@ -132,7 +133,7 @@ impl Decomposition<'_> {
             self.column_order.swap(k, pivot.column);
             self.moduli.swap(k, pivot.column);
             let (before, from) = self.matrix.split_at_mut(pivot.column * n);
-            // Vector instructions, unlike those of `swap_with_slice`.
+            // This loop uses vector instructions, unlike `swap_with_slice`.
             for (entry, other) in before[k * n..(k + 1) * n].iter_mut().zip(from) {
                 (*entry, *other) = (*other, *entry);
             }

@@ -1,4 +1,4 @@
-//! Prints numbers as C++ streams do by default, `%g` with six significant digits (`oracle-behavior.md`, head), and in
+//! Prints numbers as C++ streams do by default (`%g` with six significant digits, `oracle-behavior.md`, head), and in
 //! the shortest exact form.
 
 /// The number of significant digits of C++ streams.

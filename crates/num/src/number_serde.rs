@@ -53,7 +53,7 @@ pub trait WrittenNumbers: Sized {
     type Form: Serialize + DeserializeOwned;
     /// Converts the value to its serialized form.
     fn write(&self) -> Self::Form;
-    /// Converts the serialized form back to the value.
+    /// Converts the serialized form to the value.
     fn read(form: Self::Form) -> Self;
 }
 

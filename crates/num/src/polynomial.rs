@@ -70,7 +70,7 @@ impl Polynomial {
         Self { length: coefficients.len() as u8, storage }
     }
 
-    /// Returns the coefficients, highest power first; empty if all were too small.
+    /// Returns the coefficients, highest power first. The list is empty if all coefficients were too small.
     #[inline]
     #[must_use]
     pub fn coefficients(&self) -> &[f64] {

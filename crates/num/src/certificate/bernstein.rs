@@ -13,7 +13,7 @@ use super::{
 #[inline]
 pub(super) fn is_never_positive(coefficients: &[f64]) -> bool {
     match *coefficients {
-        // The value at 0 is the cheapest test; it is positive for most polynomials that are positive anywhere.
+        // The value at 0 is the cheapest test, and is positive for most polynomials that are positive anywhere.
         [.., last] if last >= 0.0 => false,
         [a, b, c, d] => is_negative_on_unit(&[a, b, c, d], &[1.0, 1.0 / 3.0, 1.0 / 3.0, 1.0]),
         [a, b, c, d, e] => is_negative_on_unit(&[a, b, c, d, e], &[1.0, 0.25, 1.0 / 6.0, 0.25, 1.0]),
@@ -39,7 +39,7 @@ fn is_negative_on_unit<const LENGTH: usize>(coefficients: &[f64; LENGTH], recipr
     for i in 0..LENGTH {
         control[i] = coefficients[LENGTH - 1 - i] * reciprocals[i];
     }
-    // Pascal's triangle: entry k becomes the sum of (k over i) times entry i.
+    // Pascal's triangle is added up, so that entry k becomes the sum of (k over i) times entry i.
     for row in 1..LENGTH {
         for i in (row..LENGTH).rev() {
             control[i] += control[i - 1];

@@ -28,11 +28,11 @@ pub(super) fn find_exclusion(coefficients: &[f64]) -> Option<Level> {
     excluded.then_some(level)
 }
 
-/// Returns whether the line `a t + b` is excluded; neither may be zero.
+/// Returns whether the line `a t + b` is excluded. Neither number may be zero.
 #[inline]
 fn is_line_excluded(a: f64, b: f64) -> bool {
     if a < 0.0 {
-        // Positive before its zero at a positive time; only rounding could hide it.
+        // The line is positive before its zero at a positive time. Only rounding could hide this.
         if b > 0.0 {
             return false;
         }
@@ -54,7 +54,8 @@ fn is_line_excluded_exactly(a: f64, b: f64) -> bool {
     !meets && !zero.is_nan()
 }
 
-/// Returns whether the parabola `a t² + b t + c` is excluded; `a` is not zero, and `b` and `c` are not both zero.
+/// Returns whether the parabola `a t² + b t + c` is excluded. The number `a` must not be zero, and `b` and `c` must not
+/// both be zero.
 #[inline]
 fn is_parabola_excluded(a: f64, b: f64, c: f64) -> bool {
     c < 0.0 && (has_no_real_zero(a, b, c) || is_negative_on_unit(a, b, c))
@@ -67,7 +68,7 @@ fn is_parabola_excluded(a: f64, b: f64, c: f64) -> bool {
 #[inline]
 fn has_no_real_zero(a: f64, b: f64, c: f64) -> bool {
     let product = 4.0 * a * c;
-    // Moderate products exclude overflow and underflow in the closed form; NaN fails.
+    // Moderate products exclude overflow and underflow in the closed form. A NaN fails the test.
     a < 0.0
         && b * b < product * PARABOLA_COMPLEX_FACTOR
         && c <= a * PARABOLA_MIN_ZERO_PRODUCT

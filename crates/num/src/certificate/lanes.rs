@@ -27,7 +27,7 @@ pub fn is_line_never_positive<S: Simd>(a: Lanes<S>, b: Lanes<S>) -> Mask<S> {
     let constant = small & b.is_below(MIN_LEADING_COEFFICIENT);
     let near = a.lt(zero) & b.le(zero) & (LINE_NEAR_LIMIT * a).le(b);
     let known = constant | (!small & (b.is_zero() | near));
-    // Positive before its zero at a positive time; only rounding could hide it.
+    // The line is positive before its zero at a positive time. Only rounding could hide this.
     let falls = a.lt(zero) & zero.lt(b);
     let open = !(small | known | falls);
     if open.any() { known | (open & is_line_excluded_exactly(a, b)) } else { known }

@@ -33,7 +33,7 @@ use super::{
 };
 
 crate::closed_set! {
-    /// The level of the certificate that has decided, cheapest first.
+    /// The level of the certificate that has decided. The cheapest level is first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
     pub enum Level {
         /// A polynomial that is nowhere positive by its form: empty, a constant, or `c z^m`.

@@ -1,4 +1,4 @@
-//! Certified decisions: whether a detection hits within the step, whatever rounding did to its polynomials.
+//! Certified decisions: whether a detection hits within the step, regardless of the rounding of its polynomials.
 //!
 //! A detection hits if the first time `tau` of its polynomials is at most 1 (root-finder.md 16). It is enough that the
 //! *closures* of their positive sets meet in `(0, 1]`; a common open interval is not necessary. Each coefficient is
@@ -12,8 +12,7 @@
 //!
 //! * **Yes** exactly if `tau(lower) <= 1`, with `[tau(upper), tau(lower)]` as enclosure of the time;
 //! * **No** exactly if `tau(upper) > 1`;
-//! * **Borderline** otherwise: some choices hit, others do not. (Also if a proof would take too long; see
-//!   [`decide`].)
+//! * **Borderline** otherwise: some choices hit, others do not. (Also if a proof would take too long; see [`decide`].)
 //!
 //! It remains to decide two lists without errors. `range` rejects them by signs and by Bernstein coefficients, `pieces`
 //! by subdivision with bounds on its own rounding (Higham, *Accuracy and Stability of Numerical Algorithms*, section
@@ -57,25 +56,25 @@ const MAX_SPREAD: u64 = 400;
 /// Whether the detection hits within the step.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum HitCertainty {
-    /// `tau <= 1` for every choice of coefficients within their bounds.
+    /// All choices of coefficients within their bounds give `tau <= 1`.
     Hits,
-    /// `tau > 1` for every choice.
+    /// All choices give `tau > 1`.
     Misses,
-    /// Some choices hit, others do not; or nothing could be proved, see [`decide`].
+    /// Some choices hit and others do not, or nothing could be proved (see [`decide`]).
     Borderline,
 }
 
 crate::closed_set! {
-    /// The level that has decided, cheapest first.
+    /// The level that has decided. The cheapest level is first.
     #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
     pub enum Level {
-        /// Signs of the coefficients, or the interval sum of their terms (L0).
+        /// The signs of the coefficients, or the interval sum of their terms, decide (L0).
         Range,
-        /// The Bernstein coefficients on `[0, 1]` of one polynomial (L1).
+        /// The Bernstein coefficients of one polynomial on `[0, 1]` decide (L1).
         Bernstein,
-        /// Subdivision of `[0, 1]` (L2).
+        /// The subdivision of `[0, 1]` decides (L2).
         Subdivision,
-        /// Integer arithmetic (L3).
+        /// Integer arithmetic decides (L3).
         Exact,
     }
 }

@@ -26,11 +26,11 @@ const NOISE_FACTOR: f64 = 2.0;
 /// The result of a search.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum Answer {
-    /// All polynomials are positive at this time, so `tau` is at most this.
+    /// All polynomials are positive at this time, so `tau` is at most this time.
     Reached(f64),
-    /// At every time in `[0, 1]` a polynomial is negative.
+    /// A polynomial is negative at every time in `[0, 1]`.
     Never,
-    /// No such time was found, but some pieces are undecided.
+    /// No such time was found, but some pieces are still undecided.
     Unknown,
 }
 
@@ -103,7 +103,8 @@ struct PieceWalk<'a> {
 }
 
 impl PieceWalk<'_> {
-    /// Visits the piece from `lo` to `hi`. Returns the first time at which all were found to be positive, if any.
+    /// Visits the piece from `lo` to `hi`. Returns the first time at which all polynomials were found to be positive,
+    /// if there is one.
     fn visit(&mut self, lo: f64, hi: f64, controls: &BernsteinForms, depth: u32) -> Option<f64> {
         self.pieces += 1;
         let mut open = BernsteinForms::new();
@@ -184,7 +185,7 @@ fn rises_once(control: &BernsteinForm) -> bool {
 
 /// The sign of a polynomial on a piece, as far as its Bernstein coefficients show it.
 enum Sign {
-    /// All coefficients are negative, by at least this amount.
+    /// All coefficients are negative, and at least this far from zero.
     Negative(f64),
     /// All coefficients are positive.
     Positive,

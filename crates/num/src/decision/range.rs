@@ -15,7 +15,8 @@ pub(crate) enum IntervalEnd {
     Lower,
 }
 
-/// More than the total effect of underflow on a sum or a convex combination of six numbers, fifty times in a row.
+/// A bound that exceeds the total effect of underflow on a sum or a convex combination of six numbers, fifty times in a
+/// row.
 const UNDERFLOW_BOUND: f64 = f64::MIN_POSITIVE * (1.0 / 1_048_576.0);
 
 /// The bound on the error of the Bernstein coefficients, in units of the sum of the moduli of the power coefficients.
@@ -26,10 +27,10 @@ const CONVERSION_BOUND: f64 = 16.0 * UNIT_ROUNDOFF;
 const ROUNDING_COUNT: usize = 1 + 1 + (MAX_COEFFICIENTS - 1) + 1;
 const _: () = assert!(CONVERSION_BOUND >= 2.0 * ROUNDING_COUNT as f64 * UNIT_ROUNDOFF, "the margin of the proof");
 
-/// A polynomial without errors.
+/// A polynomial whose coefficients have no errors.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct ExactPolynomial {
-    /// The coefficients, lowest power first; zeros after `length`.
+    /// The coefficients, lowest power first. Zeros follow after `length`.
     pub(crate) coefficients: [f64; MAX_COEFFICIENTS],
     /// The number of coefficients.
     pub(crate) length: usize,
@@ -37,7 +38,7 @@ pub(crate) struct ExactPolynomial {
     pub(crate) bound: f64,
 }
 
-/// Bernstein coefficients on a piece of `[0, 1]`; the last `6 - length` are unused.
+/// The Bernstein coefficients on a piece of `[0, 1]`. The last `6 - length` are unused.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct BernsteinForm {
     /// The coefficients.
@@ -88,7 +89,7 @@ impl Problem {
     #[inline]
     pub(crate) fn is_finite(&self) -> bool {
         self.polynomials().iter().all(|polynomial| {
-            // A product with 0 is 0 for finite numbers, otherwise NaN.
+            // A product with 0 is 0 for finite numbers, and NaN for others.
             polynomial.coefficients.iter().map(|value| value * 0.0).sum::<f64>() == 0.0
         })
     }
@@ -106,7 +107,7 @@ impl Problem {
         by(ExactPolynomial::try_signs, Level::Range).or_else(|| by(ExactPolynomial::try_bernstein, Level::Bernstein))
     }
 
-    /// Returns whether all polynomials are positive at 0 (exact, because no arithmetic is needed).
+    /// Returns whether all polynomials are positive at 0. The answer is exact, because no arithmetic is needed.
     #[inline]
     pub(crate) fn starts_positive(&self) -> bool {
         self.polynomials().iter().all(|polynomial| polynomial.coefficients[0] > 0.0)
@@ -183,8 +184,8 @@ pub(crate) fn slack(distance: f64, bound: f64) -> f64 {
 }
 
 impl ExactPolynomial {
-    /// Tries level L0: by signs (if no coefficient is positive, no value after 0 is), or because the positive terms
-    /// cannot compensate a negative constant.
+    /// Tries level L0. The signs exclude a hit if no coefficient is positive, or if the positive terms cannot
+    /// compensate a negative constant.
     #[inline]
     fn try_signs(&self) -> Option<f64> {
         let (mut greatest, mut size) = (self.coefficients[0], self.coefficients[0].abs());
@@ -198,10 +199,10 @@ impl ExactPolynomial {
         if distance > 0.0 || none_positive { Some(slack(distance, self.bound)) } else { None }
     }
 
-    /// Tries level L1: all Bernstein coefficients are negative.
+    /// Tries level L1. All Bernstein coefficients must be negative.
     #[inline]
     fn try_bernstein(&self) -> Option<f64> {
-        // Positive at 0, so no search is needed.
+        // The polynomial is positive at 0, so no search is needed.
         if self.coefficients[0] > 0.0 {
             return None;
         }

@@ -23,7 +23,7 @@ pub fn are_short(values: &[f64], bits: u32) -> bool {
     highest == i32::MIN || i64::from(highest) - i64::from(lowest) <= i64::from(bits)
 }
 
-/// Returns `|value|` as mantissa and power of two; the mantissa of zero is 0. `value` must be finite.
+/// Returns `|value|` as mantissa and power of two. The mantissa of zero is 0, and `value` must be finite.
 pub(super) fn split_double(value: f64) -> (u64, i32) {
     let bits = value.to_bits();
     let exponent = i32::try_from((bits >> 52) & 0x7FF).unwrap_or(0);

@@ -3,7 +3,7 @@ use super::{multiply_add, tables::POWER_TABLE};
 
 /// The number 128 / ln 2.
 const STEPS_PER_E: f64 = f64::from_bits(0x4067_1547_652b_82fe);
-/// The number -ln 2 / 128 in two parts; a product of the first with a small integer is exact.
+/// The number -ln 2 / 128 in two parts. A product of the first part with a small integer is exact.
 const MINUS_STEP: [f64; 2] = [f64::from_bits(0xbf76_2e42_fefa_0000), f64::from_bits(0xbd0c_f79a_bc9e_3b3a)];
 /// The constant that, added to a number, rounds it to an integer in the lowest bits of the sum.
 const ROUNDING_SHIFT: f64 = f64::from_bits(0x4338_0000_0000_0000);
@@ -19,7 +19,7 @@ const TINY_EXPONENT: u64 = 0x3c9;
 const LARGE_EXPONENT: u64 = 0x408;
 const OVERFLOW_EXPONENT: u64 = 0x409;
 
-/// Returns `e^x`; infinite above 709.78, zero below -745.13.
+/// Returns `e^x`. The result is infinite above 709.78 and zero below -745.13.
 #[must_use]
 pub fn exp(x: f64) -> f64 {
     let exponent = x.to_bits() >> 52 & 0x7ff;

@@ -1,7 +1,7 @@
 //! `ln x = k ln 2 + ln c + ln(z/c)` for `x = 2^k z` with a `c` close to `z` from a table (Tang, ACM TOMS 16, 1990).
 use super::{multiply_add, tables::LOGARITHM_TABLE};
 
-/// The number ln 2 in two parts; a product of the first with an exponent is exact.
+/// The number ln 2 in two parts. A product of the first part with an exponent is exact.
 const LN_2: [f64; 2] = [f64::from_bits(0x3fe6_2e42_fefa_3800), f64::from_bits(0x3d2e_f357_93c7_6730)];
 /// The coefficients of `ln(1 + r) - r` from `r^2` on, for `|r| < 1/256`.
 const SERIES_COEFFICIENTS: [f64; 5] = [
@@ -33,7 +33,7 @@ const NEAR_ONE_BIT_COUNT: u64 = 0x0003_0900_0000_0000;
 /// The number 2^27, for half of a number's bits.
 const HALF_BITS_FACTOR: f64 = 134_217_728.0;
 
-/// Returns the natural logarithm; `-inf` at zero, NaN below.
+/// Returns the natural logarithm. The result is `-inf` at zero and NaN below.
 #[must_use]
 pub fn ln(x: f64) -> f64 {
     let mut bits = x.to_bits();

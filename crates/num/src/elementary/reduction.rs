@@ -7,7 +7,7 @@ use super::{multiply_add, tables::TWO_OVER_PI};
 pub(super) struct ReducedAngle {
     pub(super) quarters: u32,
     pub(super) angle: f64,
-    /// The difference of the angle from its nearest double.
+    /// The difference of the exact angle from its nearest double.
     pub(super) rest: f64,
 }
 
@@ -19,7 +19,7 @@ const QUARTERS_PER_RADIAN: f64 = f64::from_bits(0x3fe4_5f30_6dc9_c883);
 const ROUNDING_SHIFT: f64 = f64::from_bits(0x4338_0000_0000_0000);
 /// The constant that rounds to multiples of four.
 const TURN_ROUNDING_SHIFT: f64 = f64::from_bits(0x4358_0000_0000_0000);
-/// The number π/2 in four parts; products of the first three with the quarters of a near angle are exact.
+/// The number π/2 in four parts. Products of the first three parts with the quarters of a near angle are exact.
 const HALF_PI_PARTS: [f64; 4] = [
     f64::from_bits(0x3ff9_21fb_5800_0000),
     f64::from_bits(0xbe4d_de97_3c00_0000),

@@ -3,8 +3,8 @@
 //! The tables of `e^x`, of the angles and of `2/π` follow from mathematics, except for the last bit of 17 small parts.
 #![cfg_attr(rustfmt, rustfmt::skip)]
 
-/// For `i` in 0..128: the relative rounding error of the double nearest to 2^(i/128), then that double's bits minus `i
-/// << 45`.
+/// The entries for `i` in 0..128: the relative rounding error of the double nearest to 2^(i/128), then that double's
+/// bits minus `i << 45`.
 pub(super) const POWER_TABLE: [u64; 256] = [
     0x0000000000000000, 0x3ff0000000000000, 0x3c9b3b4f1a88bf6e, 0x3feff63da9fb3335, 0xbc7160139cd8dc5d,
     0x3fefec9a3e778061, 0xbc905e7a108766d1, 0x3fefe315e86e7f85, 0x3c8cd2523567f613, 0x3fefd9b0d3158574,
@@ -60,8 +60,8 @@ pub(super) const POWER_TABLE: [u64; 256] = [
     0x3feff3c22b8f71f1,
 ];
 
-/// For each of 128 intervals of `[0.6875, 1.375)`: a number close to `1/c` and one close to `ln c`, for a `c` near the
-/// interval's middle.
+/// The entries for each of 128 intervals of `[0.6875, 1.375)`: a number close to `1/c` and one close to `ln c`, for a
+/// `c` near the interval's middle.
 pub(super) const LOGARITHM_TABLE: [u64; 256] = [
     0x3ff734f0c3e0de9f, 0xbfd7cc7f79e69000, 0x3ff713786a2ce91f, 0xbfd76feec20d0000, 0x3ff6f26008fab5a0,
     0xbfd713e31351e000, 0x3ff6d1a61f138c7d, 0xbfd6b85b38287800, 0x3ff6b1490bc5b4d1, 0xbfd65d5590807800,
@@ -117,7 +117,8 @@ pub(super) const LOGARITHM_TABLE: [u64; 256] = [
     0x3fd432eee32fe000,
 ];
 
-/// For `i` in 0..110: the sine and the cosine of `i/128`, each with the rounding error of its nearest double.
+/// The entries for `i` in 0..110: the sine and the cosine of `i/128`, each with the rounding error of its nearest
+/// double.
 pub(super) const ANGLE_TABLE: [u64; 440] = [
     0x0000000000000000, 0x0000000000000000, 0x3ff0000000000000, 0x0000000000000000,
     0x3f7fffeaaaaeeeef, 0xbc1e45e2ec67b77c, 0x3fefffc000155552, 0x3c8f4a01a0196dae,

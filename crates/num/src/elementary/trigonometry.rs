@@ -29,7 +29,7 @@ const SINE_COEFFICIENTS: [f64; 2] = [f64::from_bits(0xbfc5_5555_5555_5515), f64:
 const COSINE_COEFFICIENTS: [f64; 3] =
     [0.5, f64::from_bits(0xbfa5_5555_5555_5535), f64::from_bits(0x3f56_c16b_edd9_e239)];
 
-/// Returns the sine of an angle in radians; NaN for infinity.
+/// Returns the sine of an angle in radians, or NaN for infinity.
 #[must_use]
 pub fn sin(angle: f64) -> f64 {
     match high_word(angle) {
@@ -40,7 +40,7 @@ pub fn sin(angle: f64) -> f64 {
     }
 }
 
-/// Returns the cosine of an angle in radians; NaN for infinity.
+/// Returns the cosine of an angle in radians, or NaN for infinity.
 #[must_use]
 pub fn cos(angle: f64) -> f64 {
     match high_word(angle) {

@@ -6,7 +6,7 @@ use crate::elementary::{exp, ln};
 /// The number of Newton steps after which the iteration is known to cycle; every other iteration takes fewer than 500.
 const MAX_NEWTON_STEPS: usize = 1000;
 
-/// Returns the bound for a polynomial of degree `N`; 0 if its constant term is 0. Its steps are added to `steps`.
+/// Returns the bound for a polynomial of degree `N`, or 0 if its constant term is 0. Its steps are added to `steps`.
 ///
 /// # Errors
 /// Fails with [`DoesNotTerminate`] if a coefficient is not finite, or if the Newton iteration cycles among subnormal

@@ -1,10 +1,10 @@
-//! The fixed-shift stage, and the choice between the two variable-shift iterations (root-finder.md 11 and 12).
+//! Runs the fixed-shift stage, and chooses between the two variable-shift iterations (root-finder.md 11 and 12).
 use super::{
     Coefficients, SearchResult, linear_iteration, quadratic_iteration,
     scalars::{Division, ScalarKind, Scalars},
 };
 
-/// The convergence tests of one sequence of estimates: of the factor's `v`, or of the real zero `s`.
+/// The convergence tests of one sequence of estimates, which are those of the factor's `v` or of the real zero `s`.
 #[derive(Clone, Copy)]
 struct Convergence {
     previous: f64,
@@ -139,7 +139,7 @@ impl Attempt<'_> {
                     zero_tried = true;
                     real.tighten();
                     if let linear_iteration::Outcome::Cluster(s) = outcome {
-                        // The double zero at s; K is unchanged since the linear iteration.
+                        // The factor has a double zero at s, and K is unchanged since the linear iteration.
                         u = -(s + s);
                         v = s * s;
                         Stage::Quadratic

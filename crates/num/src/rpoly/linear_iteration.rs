@@ -1,4 +1,4 @@
-//! The variable-shift iteration for a real zero (root-finder.md 14).
+//! Runs the variable-shift iteration for a real zero (root-finder.md 14).
 use super::{
     Coefficients,
     constants::{ETA_2, UNIT_ERROR},
@@ -9,7 +9,7 @@ const MAX_STEPS: usize = 10;
 
 /// The result of a linear iteration.
 pub(super) enum Outcome {
-    /// A zero was found. Holds it and the quotient.
+    /// A zero was found. The values are the zero and the quotient.
     Zero(f64, Coefficients),
     /// The iteration stalls near this point, so two zeros may be close together.
     Cluster(f64),
@@ -17,7 +17,7 @@ pub(super) enum Outcome {
     Failed,
 }
 
-/// Iterates from `s`; `k` is changed on failure.
+/// Iterates from `s`. On failure, `k` is changed.
 #[inline]
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,

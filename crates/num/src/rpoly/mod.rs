@@ -20,20 +20,20 @@ mod scaling;
 
 use constants::{ROTATION_COSINE, ROTATION_SINE, START_X, START_Y};
 
-/// The highest degree that [`zeros`] accepts; the simulator itself needs five.
+/// The highest degree that [`zeros`] accepts. The simulator itself needs only five.
 pub const MAX_DEGREE: usize = 6;
 
 /// The number of shifts after which the search stops.
 const MAX_SHIFTS: usize = 20;
 
-/// The coefficients of a polynomial or of a quotient, highest power first; those beyond the degree are unused.
+/// The coefficients of a polynomial or of a quotient, highest power first. Those beyond the degree are unused.
 type Coefficients = [f64; MAX_DEGREE + 1];
 
-/// A zero, as real and imaginary part.
+/// A zero, as its real and its imaginary part.
 type Zero = (f64, f64);
 
-/// The error if the search would never end: a coefficient is not finite (root-finder.md 9.4), or the Newton iteration
-/// of the bound cycles among subnormal numbers (9.5). The original hangs.
+/// The error that the search would never end, because a coefficient is not finite (root-finder.md 9.4), or the Newton
+/// iteration of the bound cycles among subnormal numbers (9.5). The original hangs.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, thiserror::Error)]
 #[error("the root search does not terminate")]
 pub struct DoesNotTerminate;
@@ -58,7 +58,7 @@ impl Zeros {
         if self.rejected { -1 } else { self.length as i32 }
     }
 
-    /// Returns the zeros as pairs (real part, imaginary part); empty if the polynomial was rejected.
+    /// Returns the zeros as pairs (real part, imaginary part). The list is empty if the polynomial was rejected.
     #[inline]
     #[must_use]
     pub fn as_slice(&self) -> &[(f64, f64)] {
@@ -133,7 +133,7 @@ fn solve_closed_form(zeros: &mut Zeros, coefficients: &[f64]) {
 
 /// Finds one or two zeros at a time and deflates, until a closed form is left or all shifts fail.
 fn search(zeros: &mut Zeros, mut polynomial: Coefficients, mut degree: usize) -> Result<(), DoesNotTerminate> {
-    // The direction carries over from one zero to the next.
+    // The search for the next zero continues with this direction.
     let mut direction = (START_X, START_Y);
     loop {
         let found = match degree {

@@ -1,4 +1,4 @@
-//! The no-shift stage: five steps that make the small zeros stand out (root-finder.md 10).
+//! Runs the no-shift stage, whose five steps make the small zeros stand out (root-finder.md 10).
 use super::{Coefficients, constants::UNIT_ERROR};
 
 /// The number of steps of this stage.
@@ -33,7 +33,7 @@ fn derivative<const N: usize>(polynomial: &Coefficients) -> Coefficients {
     let mut k = Coefficients::default();
     k[0] = polynomial[0];
     for i in 1..N {
-        // Two roundings: the product, then the quotient.
+        // There are two roundings, first of the product and then of the quotient.
         k[i] = ((N - i) as f64 * polynomial[i]) / N as f64;
     }
     k

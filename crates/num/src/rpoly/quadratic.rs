@@ -1,7 +1,7 @@
-//! Division by quadratic factors, and their zeros (root-finder.md 4 and 5).
+//! Divides by quadratic factors, and finds their zeros (root-finder.md 4 and 5).
 use super::{Coefficients, Zero};
 
-/// Divides a polynomial of degree `M` by `z² + u z + v`; the last two entries are the remainder.
+/// Divides a polynomial of degree `M` by `z² + u z + v`. The last two entries are the remainder.
 #[inline(always)]
 pub(super) fn divide<const M: usize>(f: &Coefficients, u: f64, v: f64) -> Coefficients {
     let mut g = Coefficients::default();
@@ -43,7 +43,7 @@ pub(super) fn zeros(a: f64, b: f64, c: f64) -> [Zero; 2] {
     // A NaN discriminant also ends here.
     let root = if half >= 0.0 { -root } else { root };
     let large = (-half + root) / a;
-    // The test is written like the original's: a NaN is not zero.
+    // The test is written like the original's, because a NaN is not zero.
     let small = if large == 0.0 { 0.0 } else { (c / large) / a };
     [(small, 0.0), (large, 0.0)]
 }

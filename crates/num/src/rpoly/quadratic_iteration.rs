@@ -1,4 +1,4 @@
-//! The variable-shift iteration for a quadratic factor (root-finder.md 13).
+//! Runs the variable-shift iteration for a quadratic factor (root-finder.md 13).
 use super::{
     Coefficients, Zero,
     constants::{ETA_2, ETA_7, ETA_9, UNIT_ERROR},
@@ -11,7 +11,8 @@ const MAX_STEPS: usize = 20;
 /// The number of steps of the additional fixed-shift loop for clusters.
 const CLUSTER_STEPS: usize = 5;
 
-/// Returns two zeros and the quotient, from the starting factor `z² + u z + v`; `None` on failure, with `k` changed.
+/// Returns two zeros and the quotient, from the starting factor `z² + u z + v`. On failure the result is `None`, and
+/// `k` is changed.
 #[inline]
 pub(super) fn run<const N: usize>(
     polynomial: &Coefficients,

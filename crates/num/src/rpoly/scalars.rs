@@ -133,7 +133,7 @@ impl<const N: usize> Scalars<N> {
         k
     }
 
-    /// Returns the new estimate `(u, v)` of the quadratic factor; `(0, 0)` if there is none.
+    /// Returns the new estimate `(u, v)` of the quadratic factor, or `(0, 0)` if there is none.
     #[inline(always)]
     pub(super) fn estimate(&self, k: &Coefficients, polynomial: &Coefficients, division: &Division<N>) -> (f64, f64) {
         let Self { c, d, s, g, y, phi, delta, psi, .. } = *self;

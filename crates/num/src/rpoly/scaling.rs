@@ -1,4 +1,4 @@
-//! Scaling by a power of two (root-finder.md 8).
+//! Scales polynomials by a power of two (root-finder.md 8).
 use super::{
     Coefficients,
     constants::{LARGEST_NUMBER, SCALING_TARGET},
@@ -23,7 +23,8 @@ pub(super) fn scale<const N: usize>(polynomial: &mut Coefficients) {
     if (factor > 1.0 && LARGEST_NUMBER / factor < largest) || (factor <= 1.0 && largest < 10.0) {
         return;
     }
-    // Truncated toward zero, even if negative. It is between -201 and 1000, so the power is a normal number.
+    // The exponent is truncated toward zero, even if it is negative. It is between -201 and 1000, so the power is a
+    // normal number.
     #[expect(clippy::cast_possible_truncation, reason = "truncation is what the original does")]
     let exponent = (ln(factor) / std::f64::consts::LN_2 + 0.5) as i64;
     if exponent != 0 {

@@ -14,7 +14,7 @@ impl DyadicNumber {
     /// The number 0.
     pub(super) const ZERO: Self = Self { numerator: BigInt::ZERO, exponent: 0 };
 
-    /// Returns 1.
+    /// Returns the number 1.
     pub(super) fn one() -> Self {
         Self { numerator: BigInt::from(1), exponent: 0 }
     }
@@ -52,8 +52,8 @@ impl DyadicNumber {
     }
 }
 
-/// Returns `integer * 2^exponent` for an integer up to `2^53`; exact for exponents in `-1074..=0` with a result of at
-/// most 1.
+/// Returns `integer * 2^exponent` for an integer up to `2^53`. The result is exact for exponents in `-1074..=0` if it
+/// is at most 1.
 fn scale_by_power(integer: u64, exponent: i32) -> f64 {
     let power = |exponent: i32| f64::from_bits(u64::try_from(exponent + 1023).unwrap_or(0) << 52);
     let half = exponent / 2;

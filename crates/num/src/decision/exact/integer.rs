@@ -8,11 +8,11 @@ use num_bigint::{BigInt, Sign};
 /// The prime modulus `2^61 - 1`, for a quick test whether polynomials have a common zero.
 const MODULUS: u64 = (1 << 61) - 1;
 
-/// The coefficients, lowest power first; the last is not zero. The zero polynomial has none.
+/// The coefficients, lowest power first. The last is not zero, and the zero polynomial has none.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub(super) struct IntegerPolynomial(Vec<BigInt>);
 
-/// Returns the sign of a number: -1, 0 or 1.
+/// Returns the sign of a number, which is -1, 0 or 1.
 fn sign(value: &BigInt) -> i8 {
     match value.sign() {
         Sign::Minus => -1,
@@ -62,7 +62,7 @@ impl IntegerPolynomial {
         &self.0
     }
 
-    /// Returns the degree; 0 for the zero polynomial.
+    /// Returns the degree, or 0 for the zero polynomial.
     pub(super) fn degree(&self) -> usize {
         self.0.len().saturating_sub(1)
     }
@@ -77,7 +77,7 @@ impl IntegerPolynomial {
         !self.0.is_empty() && self.0.iter().all(|value| sign(value) >= 0)
     }
 
-    /// Returns the sign at a time.
+    /// Returns the sign of the polynomial at a time.
     pub(super) fn sign_at(&self, time: &DyadicNumber) -> i8 {
         // Horner's rule, with everything multiplied by 2^(exponent * degree).
         let mut value = BigInt::ZERO;
@@ -147,7 +147,7 @@ impl IntegerPolynomial {
         Self(self.0.iter().map(|value| value / &content).collect())
     }
 
-    /// Returns the remainder of a positive multiple of `self`; the divisor must not be zero.
+    /// Returns the remainder of a positive multiple of `self`. The divisor must not be zero.
     fn pseudo_remainder(&self, divisor: &Self) -> Self {
         let mut rest = self.clone();
         let leading = &divisor.0[divisor.degree()];
@@ -165,7 +165,7 @@ impl IntegerPolynomial {
         rest
     }
 
-    /// Returns the primitive greatest common divisor; neither polynomial may be zero.
+    /// Returns the primitive greatest common divisor. Neither polynomial may be zero.
     fn common_factor(&self, other: &Self) -> Self {
         if self.is_coprime_modulo_prime(other) {
             return Self::one();
@@ -212,13 +212,13 @@ impl IntegerPolynomial {
         Self::new(quotient)
     }
 
-    /// Returns a polynomial with the same zeros, each simple; `self` must not be zero.
+    /// Returns a polynomial with the same zeros, each of them simple. `self` must not be zero.
     pub(super) fn square_free_part(&self) -> Self {
         let derivative = self.derivative();
         if derivative.0.is_empty() { self.clone() } else { self.divide_by(&self.common_factor(&derivative)) }
     }
 
-    /// Returns a square-free polynomial with the zeros of both; both must be square-free and not zero.
+    /// Returns a square-free polynomial with the zeros of both polynomials. Both must be square-free and not zero.
     pub(super) fn unite(&self, other: &Self) -> Self {
         self.multiply(&other.divide_by(&self.common_factor(other)))
     }

@@ -15,21 +15,21 @@ use dyadic::DyadicNumber;
 use integer::IntegerPolynomial;
 use isolate::{Root, roots_within_step};
 
-/// Whether and when `tau` is reached, for coefficients without errors.
+/// The answer to whether and when `tau` is reached, for coefficients without errors.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum ExactAnswer {
     /// The time `tau` is greater than 1.
     Never,
     /// The time `tau` is at most 1.
     First {
-        /// Encloses `tau`, a fraction of the step in `[0, 1]`; both ends are equal if `tau` is a double.
+        /// An enclosure of `tau`, a fraction of the step in `[0, 1]`. Both ends are equal if `tau` is a double.
         time: [f64; 2],
         /// Whether only the closures of the positive sets meet, and there is no time in `[0, 1]` at which all
         /// polynomials are positive. For example, one becomes positive exactly when another stops, or all become
         /// positive right after 1. A tiny change of a coefficient may change this.
         touching: bool,
     },
-    /// A coefficient is infinite or NaN; nothing is decided.
+    /// A coefficient is infinite or NaN, so nothing is decided.
     NotFinite,
 }
 
@@ -106,7 +106,7 @@ fn first_sample_time(roots: &[Root]) -> DyadicNumber {
     }
 }
 
-/// Returns a time between root `index` and the next, or 1, at which no polynomial is zero; `None` after a root at 1.
+/// Returns a time between root `index` and the next, or 1, at which no polynomial is zero, or `None` after a root at 1.
 fn sample_time_after(roots: &[Root], index: usize) -> Option<DyadicNumber> {
     let root = &roots[index];
     if root.is_one() {
