@@ -5,7 +5,7 @@ use super::{Area, Mistake, StepMistake};
 #[derive(Debug, Clone, Copy, Default)]
 pub struct Student {
     mistakes: [Option<Mistake>; Student::MAX_MISTAKES],
-    /// The areas of the mistakes, one bit each; most queries are about areas without a mistake.
+    /// The areas of the mistakes, one bit each. Most queries are about areas without a mistake.
     areas: u64,
     /// Whether one of the mistakes is a slip in a quantity ([`StepMistake::Edit`]).
     pub(super) has_slips: bool,
@@ -21,7 +21,7 @@ impl Student {
         Self::default().with_mistake(mistake)
     }
 
-    /// Returns the student with a mistake added. Of two mistakes in one formula or rule, only the first is made.
+    /// Returns the student with a further mistake. Of two mistakes in one formula or rule, only the first is made.
     #[must_use]
     pub fn with_mistake(mut self, mistake: Option<Mistake>) -> Self {
         if let Some(free) = self.mistakes.iter_mut().find(|place| place.is_none()) {
@@ -32,7 +32,7 @@ impl Student {
         self
     }
 
-    /// Returns the mistakes, which precede all free slots.
+    /// Returns the mistakes. Free slots follow them in the array.
     pub(super) fn mistakes(&self) -> impl Iterator<Item = Mistake> {
         self.mistakes.iter().map_while(|mistake| *mistake)
     }
@@ -48,7 +48,7 @@ impl Student {
         self.mistakes[0].is_none()
     }
 
-    /// Returns the mistake in one of `areas`, if many mistakes are distinguished in one place; the first area with a
+    /// Returns the mistake in one of `areas`, if many mistakes are distinguished in one place. The first area with a
     /// mistake counts.
     pub fn mistake_in(&self, areas: &[Area]) -> Option<Mistake> {
         let mut here = areas.iter().filter(|area| self.areas & area_bit(**area) != 0);
@@ -60,8 +60,8 @@ impl Student {
         self.mistakes().find(|mistake| rows.contains(mistake))
     }
 
-    /// Returns the student with the corrected particle-edge approach (collisions.md 2). That is also correct, and
-    /// independent of the mistake.
+    /// Returns the student with the corrected particle-edge approach (collisions.md 2). This approach is correct as
+    /// well, and is independent of the mistake.
     #[must_use]
     pub fn with_right_approach(self) -> Self {
         Self { right_approach: true, ..self }

@@ -15,7 +15,7 @@ use super::{
 /// The areas whose mistakes are made in this module.
 const MODULE_AREAS: &[Area] = &[Area::Failsafe];
 
-/// The mistakes in zones that stop or should stop; the others are made in zones that move.
+/// The mistakes in zones that stop or should stop. The other mistakes are made in zones that move.
 const STOP_MISTAKES: &[Mistake] = &[
     Mistake::FailsafeFixedForgotten,
     Mistake::FailsafeHalfPlaneForgotten,

@@ -1,9 +1,9 @@
 //! Correct programs for which explanations are known to report mistakes.
 
-/// Correct variants for which explanations report a mistake in some scene. Remove an entry when its
+/// The correct variants for which explanations report a mistake in some scene. An entry must be removed when its
 /// explanations are right.
 pub const FALSE_POSITIVES: &[&str] = &[
-    // More round-off than the explanations allow for, so that any formula fits.
+    // The program has more round-off than the explanations allow for, so any formula fits.
     "frame-shifted",
     "frame-comoving",
 ];

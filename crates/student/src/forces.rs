@@ -84,8 +84,8 @@ fn add_spring(world: &World, force: &Force, x: &[f64], v: &[f64], g: &mut [f64])
     world.contribute_opposite(g, Term::SpringDamping, (a, b), damped, l);
 }
 
-/// Returns the factor of a direction, for a student who takes its modulus, or a square like in the energy; `factor` is
-/// the squared quantity.
+/// Returns the factor of a direction, for a student who takes its absolute value, or a square like in the energy;
+/// `factor` is the squared quantity.
 fn apply_slips(student: Student, term: Term, value: f64, factor: f64) -> f64 {
     match () {
         () if student.makes_slip(term, Slip::Absolute) => value.abs(),

@@ -4,7 +4,7 @@ use fosssim_num::vector::{divide, length, vector_at};
 
 use super::{Slip, StepMistake, Term, step_failure::StepFailure, world::World};
 
-/// A 2 x 2 block, `block[row][column]`.
+/// A block of two rows and two columns, `block[row][column]`.
 type Matrix2 = [[f64; 2]; 2];
 
 const IDENTITY: Matrix2 = [[1.0, 0.0], [0.0, 1.0]];

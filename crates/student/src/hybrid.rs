@@ -10,7 +10,7 @@ use super::{
 /// The areas whose mistakes are made in this module.
 const MODULE_AREAS: &[Area] = &[Area::ImpactZones];
 
-/// A number of rounds that no right program needs in any scene; some mistakes change the list of zones forever.
+/// The number of rounds that no right program exceeds in any scene. Some mistakes change the list of zones forever.
 const MAX_ROUNDS: u32 = 1000;
 
 /// The number of zones (or the number of particles, if larger) beyond which a step with a guard is stopped.
@@ -94,7 +94,7 @@ fn respond_geometrically(
             }
             return Ok(());
         }
-        // Some mistakes enlarge the list in every round; a step with a guard does not wait for that.
+        // Some mistakes enlarge the list in every round. A step with a guard does not wait for the end.
         if log.guard.is_some() && next.len() > MAX_ZONES.max(world.scene.particles.len()) {
             return Err(StepFailure::Stopped);
         }

@@ -13,7 +13,7 @@ use super::{
 const MAX_IMPULSE: f64 = 0.5;
 
 /// Applies impulses until a pass finds no contact (returns true) or `max_iterations` rounds are over (returns false).
-/// `state` is the prediction at first and the result at the end.
+/// `state` is the prediction at the beginning, and the result at the end.
 pub fn apply(
     world: &World,
     q_start: &[f64],
@@ -82,7 +82,7 @@ pub fn apply(
     if student.makes(Mistake::ImpulsesOneLeftSucceeds) && list.len() == 1 {
         return Ok(true);
     }
-    // All rounds found contacts; a correct program does nothing more.
+    // All rounds found contacts, so a correct program changes nothing more.
     match student.mistake_in(&[Area::ImpulseLoop]) {
         Some(Mistake::ImpulsesDetectAfterLast) => {
             return Ok(detection::detect_contacts(world, q_start, &state.x, log)?.is_empty());
@@ -95,7 +95,7 @@ pub fn apply(
     Ok(false)
 }
 
-/// Returns the result of a program that ends before its first round; `None` if it continues.
+/// Returns the result of a program that ends before its first round, or `None` if it continues.
 fn end_before_rounds(
     world: &World,
     q_start: &[f64],

@@ -8,13 +8,13 @@ use super::{
     Slip, StepMistake, Term, author::Student, forces, hessians, objects::State, step_failure::StepFailure, world::World,
 };
 
-/// The maximum number of iterations of Newton's method; the course's program would continue forever.
+/// The maximum number of iterations of Newton's method. The course's program would continue forever.
 const MAX_NEWTON_ITERATIONS: u32 = 100_000;
 
 /// The maximum number of iterations with a mistake, because such a program converges soon or hardly at all.
 const MAX_MISTAKEN_NEWTON_ITERATIONS: u32 = 60;
 
-/// Advances the state by one step, without collisions. `solves` counts the systems that are solved.
+/// Advances the state by one step without collisions. `solves` counts the systems that are solved.
 pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(), StepFailure> {
     let whole = whole_step_term(world.scene.integrator);
     if whole.is_some_and(|whole| world.student.makes_slip(whole, Slip::Missing)) {
@@ -25,7 +25,7 @@ pub fn advance(world: &World, state: &mut State, solves: &mut u32) -> Result<(),
         Integrator::ExplicitEuler => {
             step_explicit(world, world, [Term::ExplicitPositions, Term::ExplicitVelocities], true, state);
         }
-        // The library supplies the integrator, and the student the forces.
+        // The library supplies the integrator, and the student writes the forces.
         Integrator::ForwardBackwardEuler => {
             step_explicit(&world.for_student(Student::default()), world, SYMPLECTIC_TERMS, false, state)
         }
@@ -107,7 +107,7 @@ fn step_explicit(world: &World, forces: &World, [of_x, of_v]: [Term; 2], moves_b
     world.advance(of_x, &mut state.x, h, &change_rate(world, of_x, right, other));
 }
 
-/// Clears the entries of fixed particles in a right-hand side.
+/// Sets the entries of fixed particles in a right-hand side to zero.
 fn clear_fixed(world: &World, whole: Term, vector: &mut [f64]) {
     if [Slip::RightOfFixed, Slip::FixedForgotten].into_iter().any(|slip| world.student.makes_slip(whole, slip)) {
         return;

@@ -98,7 +98,7 @@ impl<'a> NearPairSearch<'a> {
             StepMistake::NearPairsOfStart,
             StepMistake::NearPairsOfLastStep,
         ];
-        // The box of a nearby pair always overlaps.
+        // The box of a nearby pair always overlaps the other one.
         !looks.into_iter().any(makes)
             || (0..2).all(|axis| one[0][axis] <= other[1][axis] && other[0][axis] <= one[1][axis])
     }

@@ -2,7 +2,7 @@
 use fosssim_num::vector::Vec2;
 use std::collections::BTreeSet;
 
-/// Positions and velocities, `x0, y0, x1, y1, ...` each.
+/// The positions and velocities, each in the order `x0, y0, x1, y1, ...`.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct State {
     /// The positions of all particles.
@@ -23,11 +23,11 @@ pub struct Pair {
 /// An object that a particle may collide with, by its index among its kind.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum Object {
-    /// A second particle.
+    /// The object is a second particle.
     Particle(usize),
-    /// An edge.
+    /// The object is an edge.
     Edge(usize),
-    /// A half-plane.
+    /// The object is a half-plane.
     HalfPlane(usize),
 }
 

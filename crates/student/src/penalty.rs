@@ -40,7 +40,7 @@ pub fn add_gradient(world: &World, layer: PenaltyLayer, x: &[f64], v: &[f64], g:
             }
         }
     };
-    // Such a force affects distant pairs.
+    // A force with such a mistake affects distant pairs as well.
     if PairKind::ALL.into_iter().any(|kind| student.slips(pair_term(kind)).any(|slip| !slip.keeps_distance())) {
         for pair in world.pairs() {
             let (kind, other) = pair.object.numbers();
@@ -77,7 +77,7 @@ impl PenaltySum<'_> {
         }
     }
 
-    /// Returns `k` times the depth of the overlap of two bodies' layers, a negative number; `None` if they do not
+    /// Returns `k` times the depth of the overlap of two bodies' layers, a negative number, or `None` if they do not
     /// overlap.
     fn overlap_depth(&self, term: Term, distance: f64, [first, second]: [f64; 2]) -> Option<[f64; 2]> {
         let PenaltyLayer { k, h, detection } = self.layer;
@@ -130,7 +130,7 @@ impl PenaltySum<'_> {
         let edge = world.scene.edges[edge];
         let (x1, x2, x3) = (vector_at(self.x, i), vector_at(self.x, edge.first), vector_at(self.x, edge.second));
         let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-        // Unlike in the responses, a NaN is kept.
+        // A NaN is kept here, unlike in the responses.
         let alpha = closest_alpha(world.student, term, alpha, |alpha| alpha.clamp(0.0, 1.0));
         let n = x2 + alpha * (x3 - x2) - x1;
         let particles = &world.scene.particles;

@@ -25,7 +25,7 @@ pub fn restitution_factor(world: &World) -> f64 {
     if student.makes(Mistake::ResponseHalved) { f } else { 2.0 * f }
 }
 
-/// Returns the coefficient of restitution of the scene; 1 if it has none.
+/// Returns the coefficient of restitution of the scene, or 1 if the scene has none.
 fn restitution(world: &World) -> f64 {
     match world.scene.collision {
         Collision::Simple { restitution }
@@ -58,7 +58,7 @@ struct PairResponse<'a> {
     result: &'a mut State,
     /// The unit contact vector.
     u: Vec2,
-    /// Twice the factor `(1 + COR) / 2`.
+    /// The factor `(1 + COR) / 2`, doubled.
     bounce: f64,
 }
 
@@ -71,7 +71,7 @@ impl PairResponse<'_> {
         divide(vector_at(&self.predicted.x, particle) - vector_at(self.q_start, particle), self.world.scene.time_step)
     }
 
-    /// Pushes a particle that is not fixed; `share / inertia` is the change of its speed along `u`.
+    /// Pushes a particle that is not fixed. The change of its speed along `u` is `share / inertia`.
     fn push(&mut self, particle: usize, sign: f64, share: f64, moved: f64, inertia: f64) {
         let student = self.world.student;
         if self.world.is_fixed(particle) && !student.makes(Mistake::ResponseMovesFixed) {
@@ -193,7 +193,7 @@ pub fn second_share(student: Student, alpha: f64) -> f64 {
     }
 }
 
-/// Clamps a number to the range from 0 to 1; NaN becomes 0.
+/// Clamps a number to the range from 0 to 1. A NaN becomes 0.
 pub fn clamp(alpha: f64) -> f64 {
     let positive = if 0.0 < alpha { alpha } else { 0.0 };
     if positive < 1.0 { positive } else { 1.0 }

@@ -12,7 +12,7 @@ use super::{
     world::{StepLog, World},
 };
 
-/// Handles all pairs in order; each uses the velocities after the previous pairs.
+/// Handles all pairs in order. Each uses the velocities after the previous pairs.
 pub fn handle(world: &World, state: &mut State, log: &mut StepLog) {
     let pass = SimplePass { world, start: state.v.clone() };
     for pair in world.pairs() {
@@ -106,7 +106,7 @@ impl SimplePass<'_> {
             () if self.makes(kind.response, Slip::NoFactor) => 2.0,
             () if self.makes(kind.response, Slip::Inelastic) => 1.0,
             () if self.makes(kind.response, Slip::RestitutionOnly) => restitution,
-            // Doubles the half, in the order of the reference.
+            // The half is doubled, in the order of the reference.
             () => 2.0 * ((1.0 + restitution) / 2.0),
         }
     }
@@ -117,7 +117,7 @@ impl SimplePass<'_> {
         vector_at(if from_start { &self.start } else { &state.v }, particle)
     }
 
-    /// Returns the mass of a body of the pair; infinite if it is fixed.
+    /// Returns the mass of a body of the pair, which is infinite if the body is fixed.
     fn mass(&self, kind: &SimpleKind, particle: usize) -> f64 {
         let is_finite = [Slip::FixedFinite, Slip::FixedAsFree].into_iter().any(|slip| self.makes(kind.response, slip));
         match () {
@@ -227,7 +227,7 @@ impl SimplePass<'_> {
         self.push(kind, state, (2, three), n, -(of_three * third / (m3 / m1 + low * m3 / m2 + high) * u));
     }
 
-    /// Responds to a contact with a half-plane; a fixed particle is changed as well.
+    /// Responds to a contact with a half-plane. A fixed particle is changed as well.
     fn particle_half_plane(&self, state: &mut State, one: usize, index: usize) -> Option<Vec2> {
         let kind = &HALF_PLANE_KIND;
         let plane = self.world.scene.half_planes[index];

@@ -23,7 +23,7 @@ pub struct TermPart {
 }
 
 impl TermPart {
-    /// Returns a particle's part of a quantity without pairs; the part is added.
+    /// Returns a particle's part of a quantity without pairs. The part is added.
     pub const fn from_term(term: Term, particle: usize) -> Self {
         Self { term, particle, first: particle, role: 0, length: 1.0, is_negative: false }
     }
@@ -112,7 +112,7 @@ impl World {
         }
     }
 
-    /// Adds opposite forces to the gradient of two particles; `push` is the second particle's part.
+    /// Adds opposite forces to the gradient of two particles. `push` is the second particle's part.
     pub fn contribute_opposite(&self, g: &mut [f64], term: Term, ends: (usize, usize), push: Vec2, length: f64) {
         let part = |role, particle| {
             let first = ends.0;

@@ -1,4 +1,4 @@
-//! The reasons why a step of a student's program has no end.
+//! Lists the reasons why a step of a student's program has no end.
 use fosssim_num::rpoly::DoesNotTerminate;
 
 /// The reason why a step has no end.

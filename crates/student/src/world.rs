@@ -13,8 +13,8 @@ use super::{
     objects::{Contact, Object, Pair, State},
 };
 
-/// The data that stay constant during a run. Programs of many students share a scene, and none stores the list of its
-/// pairs, which has millions of entries in a large scene.
+/// The data that stay constant during a run. Programs of many students share a scene. No program stores the list of its
+/// pairs, because that list has millions of entries in a large scene.
 pub struct World {
     /// The scene as loaded.
     pub scene: Arc<Scene>,
@@ -114,7 +114,7 @@ fn pairs(scene: &Scene, student: Student) -> impl Iterator<Item = Pair> {
     }))
 }
 
-/// The pairs of one particle.
+/// The pairs of one particle, in the order of detection.
 #[derive(Clone, Copy)]
 struct ParticlePairs<'a> {
     scene: &'a Scene,

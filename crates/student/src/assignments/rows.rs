@@ -11,11 +11,11 @@ fosssim_num::closed_set! {
     /// The kind of a row.
     #[derive(Debug, Clone, Copy, PartialEq, Eq)]
     pub enum RowKind {
-        /// A mistake, with a wrong result.
+        /// The program has a mistake, and its result is wrong.
         Wrong = "wrong",
-        /// A correct program with other arithmetic and the same mathematics.
+        /// The program is correct, and computes the same mathematics with other arithmetic.
         Variant = "variant",
-        /// A program that harms itself or others.
+        /// The program harms itself or others.
         Hostile = "hostile",
     }
 }
@@ -27,14 +27,14 @@ pub struct MistakeRow<M> {
     pub mistake: M,
     /// The mistake's id for users.
     pub id: &'static str,
-    /// Whether the row is wrong, correct or hostile.
+    /// The kind of the row: wrong, correct or hostile.
     pub kind: RowKind,
     /// The area of the assignment in which the mistake is made.
     pub area: Area,
     /// The mistake in one sentence, in a teacher's words, without formulas, symbols or numbers, so that it does not
     /// reveal the solution.
     pub summary: &'static str,
-    /// The exact form: the wrong and the right expression, in the assignment's notation.
+    /// The exact form of the mistake: the wrong and the right expression, in the assignment's notation.
     pub term: &'static str,
 }
 
@@ -52,7 +52,7 @@ impl<M> MistakeRow<M> {
         format!("{}: {}", self.program_part(), self.summary)
     }
 
-    /// Returns the kind of pair for which the mistake is made, if there is only one.
+    /// Returns the kind of pair to which the mistake is limited, if there is only one.
     #[must_use]
     pub fn pair_kind(&self) -> Option<PairKind> {
         PairKind::ALL.into_iter().find(|kind| kind.name().eq_ignore_ascii_case(self.program_part()))

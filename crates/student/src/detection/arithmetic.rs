@@ -14,7 +14,7 @@ use fosssim_model::sim::PointMotion;
 pub trait Number:
     Copy + From<f64> + Add<Output = Self> + Sub<Output = Self> + Mul<Output = Self> + Div<Output = Self>
 {
-    /// Returns `self * factor + addend`, rounded like in this program's compiler.
+    /// Returns `self * factor + addend`, rounded as by this program's compiler.
     fn multiply_add(self, factor: Self, addend: Self) -> Self;
 
     /// Returns the number rounded to a double.

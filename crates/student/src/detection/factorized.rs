@@ -34,7 +34,7 @@ fn derivative(p: &[f64; 3]) -> [f64; 2] {
     [2.0 * p[0], p[1]]
 }
 
-/// Returns the overlap with the line; `square` is the squared sum of the radii.
+/// Returns the overlap with the line. `square` is the square of the sum of the radii.
 pub fn quartic(bodies: &[PointMotion; 3], square: f64) -> Vec<f64> {
     let (q, g) = quadratics(bodies);
     let mut result: Vec<f64> = product(&q, &q).iter().map(|coefficient| -coefficient).collect();

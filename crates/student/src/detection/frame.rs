@@ -16,13 +16,13 @@ const ROTATION: (f64, f64) = (0.764_842_187_284_488_5, 0.644_217_687_237_691);
 /// The coordinate axes in which a program computes.
 #[derive(Clone, Copy)]
 pub enum Axes {
-    /// The axes of the scene.
+    /// The axes are those of the scene.
     Scene,
-    /// The axes have a different origin.
+    /// The axes have another origin.
     Shifted,
-    /// The axes have a different origin in each detection, which moves with the first particle.
+    /// The axes have another origin in each detection, which moves with the first particle.
     Comoving,
-    /// Axes with other directions.
+    /// The axes have other directions.
     Rotated,
 }
 

@@ -9,7 +9,7 @@ const MODULE_AREAS: &[Area] = &[Area::Handover];
 /// Passes on the polynomials of one pair, without small leading coefficients: unchanged, or changed by this student's
 /// mistake.
 pub fn pass_on(student: Student, object: Object, mut lists: Vec<Vec<f64>>) -> Vec<Polynomial> {
-    // An empty detection passes nothing on, even if the student made other mistakes.
+    // An empty detection passes on no polynomials, even if the student made other mistakes.
     if lists.is_empty() {
         return Vec::new();
     }

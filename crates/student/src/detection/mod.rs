@@ -36,7 +36,7 @@ use particle_edge::alpha;
 
 fosssim_model::drops_leading!();
 
-/// The areas whose mistakes are made in contact vectors.
+/// The areas of the mistakes that are made in contact vectors.
 const VECTOR_AREAS: &[Area] = &[Area::ContactVector, Area::Handover];
 
 /// The mistakes that reject a contact with a right time.
@@ -163,7 +163,7 @@ fn contact_distance(motion: &PairMotion) -> f64 {
 
 /// The lists that a program reads at a wrong index for pairs of a kind.
 struct IndexSlip {
-    /// Whether positions are read at the particle's number, as if each had one coordinate.
+    /// Whether positions are read at the particle's number, as if each particle had one coordinate.
     is_single: bool,
     radius: Option<RadiusSlip>,
 }
@@ -275,7 +275,7 @@ pub fn detect(
     Ok(Some(Contact { pair, n, time }))
 }
 
-/// Returns the time of impact; the log counts the unusual part of the search.
+/// Returns the time of impact. The log counts the unusual part of the search.
 fn search_time(polynomials: &[Polynomial], log: &mut StepLog) -> Result<f64, StepFailure> {
     let mut steps = 0;
     let found = first_time_with_steps(polynomials, &mut steps);
@@ -316,7 +316,7 @@ fn is_within_step(student: Student, time: f64, time_step: f64) -> bool {
     }
 }
 
-/// Returns whether a further test rejects the impact. Some programs make such tests, which are wrong.
+/// Returns whether a further test rejects the impact. Some programs make such a test, which is wrong.
 fn is_rejected(student: Student, motion: &PairMotion, time: f64) -> bool {
     let distance = |t: f64| length(contact_vector(student, motion, t));
     match (student.mistake_among(REJECTION_MISTAKES), motion) {

@@ -7,7 +7,8 @@
 const POLYNOMIAL_NAMES: [&str; 2] = ["alpha > 0", "alpha < 1"];
 
 /// Returns the first part of a formula in a sentence: a number, an operator, a product with a dot, a function's
-/// argument, or a letter of a quantity. `None` if there are only words; `alpha > 0` and `alpha < 1` count as names.
+/// argument, or a letter of a quantity. Returns `None` if there are only words. The names `alpha > 0` and `alpha < 1`
+/// do not count as formulas.
 #[must_use]
 pub fn find_formula(sentence: &str) -> Option<String> {
     let text = POLYNOMIAL_NAMES.iter().fold(sentence.to_owned(), |text, name| text.replace(name, "alpha"));
@@ -17,7 +18,7 @@ pub fn find_formula(sentence: &str) -> Option<String> {
         let (before, after) = (at(index.checked_sub(1)), at(Some(index + 1)));
         let is_formula = match letter {
             '^' | '*' | '/' | '=' | '<' | '>' | '+' | '|' | '\u{b7}' | '\u{d7}' | '\u{b2}' => true,
-            // Hyphens join words.
+            // A hyphen joins words.
             '-' => !(before.is_alphabetic() && after.is_alphabetic()),
             '.' => before.is_alphanumeric() && after.is_alphanumeric(),
             '(' => before.is_alphanumeric(),
@@ -33,12 +34,12 @@ pub fn find_formula(sentence: &str) -> Option<String> {
         .map(str::to_owned)
 }
 
-/// Returns whether a letter means nothing by itself; digits are checked before.
+/// Returns whether a letter has no meaning by itself. Digits are checked before.
 const fn is_plain_letter(letter: char) -> bool {
     matches!(letter, 'a' | 'A' | '\'' | '0'..='9')
 }
 
-/// Returns whether a digit at this point belongs to a step's number, which is a place.
+/// Returns whether a digit at this point belongs to the number of a step, which is only a place.
 fn belongs_to_step_number(before: &[char]) -> bool {
     let number = before.iter().rev().take_while(|letter| letter.is_ascii_digit()).count();
     before[..before.len() - number].ends_with(&[' ', 's', 't', 'e', 'p', ' '])

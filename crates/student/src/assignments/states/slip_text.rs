@@ -1,4 +1,4 @@
-//! The sentences of rows: each describes a slip of a quantity, and its exact form.
+//! Writes the sentences of rows. Each sentence describes a slip of a quantity and its exact form.
 use super::{slips::Slip, terms::TermRow};
 use crate::assignments::rows::Area;
 
@@ -93,7 +93,7 @@ impl Slip {
     }
 }
 
-/// Returns the description of a further power `by` of a factor that has the power `has`.
+/// Returns the description of a further power `by` of a factor, whose right power is `has`.
 fn describe_power(has: i8, by: i8, factor: &str) -> String {
     match (has.signum(), (has + by).signum()) {
         (0, 1) => format!("is multiplied by {factor}"),

@@ -56,7 +56,7 @@ slips! {
     RightOfFixed "leaves the entries of fixed particles in its right-hand side";
     /// Newton's method ends after this number of iterations.
     Iterations(u8) "ends after a fixed number of iterations";
-    /// Newton's method ends at a change below ten to the power of minus this.
+    /// Newton's method ends at a change below ten to the power of minus this number.
     Loose(i8) "ends too early, at a larger change than the assignment requires";
     OtherVelocity "uses the old velocity instead of the new one";
     MeanVelocity "uses the mean of the old and the new velocity";
@@ -120,7 +120,7 @@ pub(super) const BLOCKS: &[Slip] =
     &[Slip::DiagonalOnly, Slip::OffDiagonalSign, Slip::OneHalf, Slip::FirstOnly, Slip::SecondOnly, Slip::Assigned];
 
 impl Slip {
-    /// Returns whether bodies without a force stay unaffected.
+    /// Returns whether bodies without a force remain unaffected.
     pub fn keeps_distance(self) -> bool {
         use Slip::{Always, EndRadius, Middle, Mirrored, Negated, ToPoint, Unclamped, Undivided};
         !matches!(self, Always | EndRadius | Middle | Mirrored | Negated | ToPoint | Unclamped | Undivided)

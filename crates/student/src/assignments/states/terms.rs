@@ -33,7 +33,7 @@ macro_rules! terms {
         #[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
         pub enum Term { $($(#[doc = $subject] $term,)*)* }
 
-        /// All quantities.
+        /// The rows of all quantities.
         pub const TERMS: &[TermRow] = &[$($(TermRow {
             term: Term::$term, id: $id, subject: $subject, formula: $formula, part: $part,
             mass: $mass, step: $step, length: $length, is_function: $function, slips: $slips,

@@ -14,7 +14,7 @@ pub struct NamedEdit {
     pub sentence: &'static str,
     /// The exact form of the change.
     pub detail: &'static str,
-    /// The cost of the guess; see `study`.
+    /// The cost of the guess (see `study`).
     pub cost: f64,
     /// The kinds of pairs that the change concerns.
     pub(super) kinds: &'static [PairKind],
@@ -23,7 +23,7 @@ pub struct NamedEdit {
 }
 
 impl NamedEdit {
-    /// Returns the changed polynomial, highest power first; `None` if the change does not concern this polynomial.
+    /// Returns the changed polynomial, highest power first, or `None` if the change does not concern this polynomial.
     #[must_use]
     pub fn polynomial(&self, subject: Subject, inputs: &Inputs) -> Option<Vec<BoundedValue>> {
         match self.edit {
@@ -41,19 +41,19 @@ impl NamedEdit {
 /// A change of the formulas of one kind of pair.
 #[derive(Clone, Copy)]
 pub enum FormulaEdit {
-    /// A change that has a name in explanations.
+    /// The change has a name in explanations.
     Named(&'static NamedEdit),
     /// All formulas use other inputs.
     OtherInputs(fn(&mut Inputs)),
-    /// A term of the first reading's coefficient of `t^power`, named by its letters, has this additional factor.
+    /// A term of the first reading's coefficient of `t^power`, which its letters name, has this additional factor.
     Weight(Subject, usize, &'static [usize], f64),
-    /// The formula's letters have other values.
+    /// The letters of the formula have other values.
     Letters(Subject, fn(&mut [BoundedValue], &Inputs)),
-    /// A different formula is used.
+    /// The polynomial is computed by a different formula.
     Formula(Subject, fn(&Inputs) -> Vec<BoundedValue>),
-    /// The coefficients change, highest power first.
+    /// The coefficients of the polynomial change, highest power first.
     List(Subject, fn(&mut Vec<f64>)),
-    /// The list of all polynomials changes.
+    /// The list of all polynomials of the pair changes.
     Lists(fn(&mut Vec<Vec<f64>>)),
 }
 

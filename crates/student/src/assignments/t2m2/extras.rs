@@ -74,7 +74,7 @@ const ALPHA_EXTRAS: &[Letter] = &[
     letter("x3.x3", 0, |inputs| inputs.x[2].dot(inputs.x[2])),
 ];
 
-/// Letters that belong to other formulas of a particle and a half-plane.
+/// The letters that belong to other formulas of a particle and a half-plane.
 pub const HALF_PLANE_EXTRAS: &[Letter] = &[
     letter("|n|", 0, |inputs| length(inputs.normal())),
     letter("r", 0, |inputs| inputs.radii[0]),

@@ -10,7 +10,7 @@ use fosssim_num::bounded::BoundedValue;
 pub struct Letter {
     /// The letter's name in messages.
     pub name: &'static str,
-    /// The letter's meaning, in the assignment's notation; empty if the name explains it.
+    /// The letter's meaning, in the assignment's notation. The text is empty if the name explains the letter.
     pub meaning: &'static str,
     /// The letter's degree in the displacements.
     pub order: u8,
@@ -18,8 +18,8 @@ pub struct Letter {
     pub value: fn(&Inputs) -> BoundedValue,
 }
 
-/// The product of `letters` (indices into the formula's letters) with the factor `weight`, in the coefficient of
-/// `t^power`.
+/// A term of a formula. It is the product of `letters` (indices into the formula's letters) with the factor `weight`,
+/// in the coefficient of `t^power`.
 pub struct Term {
     /// The power of t.
     pub power: usize,
@@ -69,7 +69,7 @@ pub fn product(values: &[BoundedValue], letters: &[usize]) -> BoundedValue {
     }
 }
 
-/// Returns the readings of one polynomial, which are all right; the assignment's reading is first.
+/// Returns the readings of one polynomial. All of them are right, and the assignment's reading is first.
 pub fn readings(subject: Subject) -> &'static [Formula] {
     match subject {
         Subject::ParticleOverlap => PARTICLE_OVERLAP_FORMULAS,

@@ -9,15 +9,16 @@ use fosssim_num::{
 /// The numbers used in the formulas, with error bounds. An explanation may replace them.
 #[derive(Debug, Clone, Copy)]
 pub struct Inputs {
-    /// The start positions of the particle and the other one or two points; for a half-plane its point and its normal.
+    /// The start positions of the particle and of the other one or two points. For a half-plane, these are its point
+    /// and its normal.
     pub x: [BoundedVector; 3],
-    /// The displacements of the same points; a half-plane has none.
+    /// The displacements of the same points. A half-plane has none.
     pub d: [BoundedVector; 3],
-    /// The radii of the particle and of the other object (0 for a half-plane).
+    /// The radii of the particle and of the other object, which are 0 for a half-plane.
     pub radii: [BoundedValue; 2],
     /// The value for the square of the sum of the radii.
     pub square: BoundedValue,
-    /// The value for the squared length of the normal; 0 without one.
+    /// The value for the squared length of the normal, or 0 if there is no normal.
     pub normal_square: BoundedValue,
 }
 
@@ -51,7 +52,8 @@ pub(super) fn square_root(square: BoundedValue) -> BoundedValue {
     BoundedValue { value, bound: value + if value > 0.0 { square.bound / value } else { 0.0 } }
 }
 
-/// The differences in the formulas. `12` is "1 minus 2"; 1 is the particle, 2 and 3 are the edge's endpoints.
+/// The differences are named as in the formulas: `12` is "1 minus 2", where 1 is the particle, and 2 and 3 are the
+/// edge's endpoints.
 impl Inputs {
     pub(crate) fn x12(&self) -> BoundedVector {
         self.x[0] - self.x[1]

@@ -38,7 +38,8 @@ pub fn find_edit(key: &str) -> Option<&'static NamedEdit> {
     NAMED_EDITS.iter().find(|edit| edit.key == key)
 }
 
-/// The table of named edits: name, key, kinds of pairs, cost, and the change; the sentence; the exact form.
+/// The table of named edits. A row has the name, the key, the kinds of pairs, the cost and the change, then the
+/// sentence, then the exact form.
 macro_rules! named_edits {
     ($($name:ident $key:literal $kinds:tt $cost:literal: $edit:expr => $sentence:literal => $detail:literal;)*) => {
         $(#[doc = $sentence]
@@ -51,7 +52,7 @@ macro_rules! named_edits {
             edit: $edit,
         };)*
 
-        /// All named edits.
+        /// All named edits, in the order of the table.
         pub const NAMED_EDITS: &[NamedEdit] = &[$($name,)*];
     };
 }

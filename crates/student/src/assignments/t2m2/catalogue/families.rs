@@ -9,9 +9,9 @@ use std::collections::BTreeSet;
 
 /// The contents of one cell of a family.
 enum FamilyCell {
-    /// The row with this id.
+    /// The row with this id fills the cell.
     Is(&'static str),
-    /// There is no row, for this reason.
+    /// The cell is empty for this reason.
     None(&'static str),
 }
 
@@ -259,7 +259,7 @@ const SUM_FAMILY: MistakeFamily = MistakeFamily {
 const FAMILIES: [&MistakeFamily; 7] =
     [&PAIR_FAMILY, &END_FAMILY, &ALPHA_FAMILY, &PLACE_FAMILY, &QUANTITY_FAMILY, &ROUND_FAMILY, &SUM_FAMILY];
 
-/// Prefixes of the ids of rows that exist only for one kind of pair, with the reasons.
+/// The prefixes of the ids of rows that exist only for one kind of pair, with the reasons.
 const SINGLE_KIND_PREFIXES: &[(&str, &str)] = &[
     ("pe-quartic-", "a product of the quartic"),
     ("pe-cubic-", "a product of the quartic"),
@@ -317,7 +317,7 @@ fn every_cell_is_a_row_or_has_its_reason() {
     }
 }
 
-/// A new row of one kind of pair must be in a family, together with the rows of the other kinds.
+/// A new row of one kind of pair must belong to a family, together with the rows of the other kinds.
 #[test]
 fn every_row_of_one_kind_of_pair_belongs_to_a_family() {
     let known: BTreeSet<&str> =
