@@ -12,7 +12,7 @@ use fosssim_mistakes::diagnose::{Explanation, explain_kept_trace};
 use fosssim_model::scene::Scene;
 use std::io::{self, Read};
 
-/// The part of a trace that is kept while it is judged.
+/// The part of a trace that is kept during judging.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum KeptPart {
     /// Nothing is kept, because the trace is neither explained nor shown.
@@ -51,7 +51,7 @@ pub fn examine<'a, R: Read + Send>(
     let outcome = replay::judge(scene, kept.keep_from(&mut trace), options, &mut ObserverPair(&mut rulings, progress));
     if keep == KeptPart::All && outcome.stop.is_some() {
         let room = (MAX_KEPT_BYTES - kept.bytes().len()) as u64;
-        // After an error of reading, nothing more is kept.
+        // After an error of reading, no more bytes are kept.
         let _ = io::copy(&mut kept.keep_from(trace.take(room)), &mut io::sink());
     }
     ExaminedTrace { scene, rulings: rulings.into_steps(&outcome), outcome, trace: kept }

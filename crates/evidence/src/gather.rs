@@ -12,7 +12,7 @@ use fosssim_model::{
 };
 use std::io::Read;
 
-/// The maximum number of steps with details, and of numbers in their expected states; in large scenes fewer steps are
+/// The maximum number of steps with details, and of numbers in their expected states. In large scenes, fewer steps are
 /// kept.
 const MAX_INSPECTED_STEPS: usize = 12;
 const MAX_NUMBERS: usize = 40_000;
@@ -20,7 +20,7 @@ const MAX_NUMBERS: usize = 40_000;
 /// The distance of a coordinate, in scene units, above which a motion differs from the reference's.
 const MOTION_TOLERANCE: f64 = 1e-10;
 
-/// The class of a step, for the strip over all steps.
+/// The class of a step in the strip over all steps.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub enum StepClass {
     /// The step is right, and it ends in the same state as the reference's own run.
@@ -51,14 +51,14 @@ impl StepClass {
 pub struct Step {
     /// The class of the step.
     pub class: StepClass,
-    /// The largest difference of a position coordinate from the reference's, after a step from the trace's own state;
-    /// NaN if one of them is NaN.
+    /// The largest difference of a position coordinate from the reference's, after a step from the trace's own state.
+    /// The value is NaN if one of them is NaN.
     pub position: f64,
     /// The largest distance of velocities, measured in the same way.
     pub velocity: f64,
     /// The number of the reference's detection passes.
     pub expected_passes: u32,
-    /// The number of detection passes according to the trace's number of polynomials; `None` if that is not a whole
+    /// The number of detection passes according to the trace's number of polynomials, or `None` if that is not a whole
     /// number of passes.
     pub actual_passes: Option<u32>,
 }
@@ -222,8 +222,8 @@ impl<'a> Gathering<'a> {
         }
     }
 
-    /// Runs a step from the trace's own state; `None` if it has no result. With `wanted` the step is inspected in
-    /// detail.
+    /// Runs a step from the trace's own state, or returns `None` if the step has no result. With `wanted` the step is
+    /// inspected in detail.
     fn step<'f>(
         &mut self,
         step: u32,
@@ -295,12 +295,12 @@ fn max_distance(one: &[f64], other: &[f64]) -> f64 {
     one.iter().zip(other).map(|(a, b)| (a - b).abs()).fold(0.0, max_with_nan)
 }
 
-/// Returns the larger number; NaN counts as larger than any number.
+/// Returns the larger number. A NaN counts as larger than any number.
 fn max_with_nan(one: f64, other: f64) -> f64 {
     if one.is_nan() || other <= one { one } else { other }
 }
 
-/// An observer that keeps the state of the synchronization point.
+/// An observer that keeps the state at the synchronization point.
 #[derive(Default)]
 struct MidState {
     state: Option<State>,
@@ -323,7 +323,7 @@ struct PassCount<'a> {
 }
 
 impl PassCount<'_> {
-    /// Returns the number of passes that log `logged` polynomials; all passes of a step log the same number.
+    /// Returns the number of passes that log `logged` polynomials. All passes of a step log the same number.
     fn passes_of(&self, logged: usize) -> Option<u32> {
         let passes = self.passes as usize;
         if self.polynomials == 0 || passes == 0 {

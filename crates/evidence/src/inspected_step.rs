@@ -7,13 +7,14 @@ use fosssim_model::{
     trace::{LoggedImpulse, PolynomialLog},
 };
 
-/// The maximum number of kept passes of a step, and of numbers in their positions; in large scenes fewer passes are
+/// The maximum number of kept passes of a step, and of numbers in their positions. In large scenes, fewer passes are
 /// kept.
 const MAX_PASSES: usize = 24;
 const MAX_POSITIONS: usize = 12_000;
 /// The maximum number of kept pairs of a pass, for each of differing, missing and repeated ones.
 const MAX_PAIRS: usize = 256;
-/// The maximum number of kept calls of a step, used if the trace has logged a different number of polynomials.
+/// The maximum number of kept calls of a step. Calls are kept in case the trace has logged a different number of
+/// polynomials.
 const MAX_CALLS: usize = 1 << 14;
 /// The maximum number of wrong or missing calls that are shown without a finding.
 const MAX_SHOWN_CALLS: usize = 2;
@@ -42,7 +43,7 @@ pub struct InspectedPass {
 /// The impact zones after one merge.
 #[derive(Debug, Clone, PartialEq, Eq)]
 pub struct MergedZones {
-    /// The geometric round; 0 before the first failsafe.
+    /// The number of the geometric round, or 0 before the first failsafe.
     pub round: u32,
     /// The particles of each zone, and whether it contains a half-plane.
     pub zones: Vec<(Vec<u32>, bool)>,
@@ -51,7 +52,7 @@ pub struct MergedZones {
 /// The trace's log of a call.
 #[derive(Debug, Clone, PartialEq)]
 pub enum CallLog {
-    /// The logged polynomials in the order of the reference's, each with the highest power first; a missing polynomial
+    /// The logged polynomials in the order of the reference's, each with the highest power first. A missing polynomial
     /// is empty.
     These(Vec<Vec<f64>>),
     /// The trace has logged no polynomials of the call.
@@ -69,7 +70,7 @@ pub struct InspectedCall {
     pub pair: Pair,
     /// The reference's own computation of the call.
     pub study: Result<Study, EndlessSearch>,
-    /// The number of polynomials that the reference logs for the call; 0 without continuous-time detection.
+    /// The number of polynomials that the reference logs for the call, or 0 without continuous-time detection.
     pub polynomials: usize,
     /// The trace's log of the call.
     pub logged: CallLog,
@@ -82,7 +83,7 @@ pub struct InspectedStep {
     pub step: u32,
     /// The expected mid record, given the state that the step starts from.
     pub expected_mid: Option<State>,
-    /// The expected end record, given the trace's own mid record; `None` if the step has no result.
+    /// The expected end record, given the trace's own mid record, or `None` if the step has no result.
     pub expected_end: Option<State>,
     /// The first detection passes of the reference.
     pub passes: Vec<InspectedPass>,
@@ -92,7 +93,7 @@ pub struct InspectedStep {
     pub expected_polynomials: usize,
     /// The number of polynomials that the trace has logged.
     pub actual_polynomials: usize,
-    /// The number of logged polynomials without a call of the reference; `None` if unknown.
+    /// The number of logged polynomials without a call of the reference, or `None` if unknown.
     pub surplus: Option<usize>,
     /// The responses of the reference.
     pub expected_contacts: Vec<Impulse>,
@@ -107,11 +108,11 @@ pub struct InspectedStep {
 /// The selection of a pair's calls.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub(crate) enum WantedCalls {
-    /// The pair's calls that find a collision.
+    /// The wanted calls are those of the pair that find a collision.
     Hits,
-    /// The pair's call in one pass.
+    /// The wanted call is that of the pair in one pass.
     In(Pass),
-    /// All calls of the pair in the step.
+    /// The wanted calls are all calls of the pair in the step.
     Every,
 }
 
@@ -137,7 +138,7 @@ pub(crate) struct Inspector<'a> {
     /// The calls and their polynomials, at most [`MAX_CALLS`].
     asked: Vec<AskedCall>,
     right: PolynomialLog,
-    /// For each inspected call, its number in the step, and the index of its first polynomial.
+    /// The number in the step of each inspected call, and the index of its first polynomial.
     places: Vec<(usize, usize)>,
     /// The number of calls so far.
     calls: usize,
@@ -176,7 +177,7 @@ impl<'a> Inspector<'a> {
         } else if self.calls == self.asked.len() {
             match self.log {
                 Some(log) => self.assign(log),
-                // An empty list can be assigned without doubt.
+                // An empty list can be assigned without any doubt.
                 None if actual == 0 => self.assign(&PolynomialLog::default()),
                 None => {}
             }
@@ -359,7 +360,7 @@ impl Observer for Inspector<'_> {
         });
         if wanted {
             let study = Study::for_motion(&motion());
-            // Only after the whole step is it known whether the list is as long as the reference's.
+            // Only at the end of the step is it known whether the list is as long as the reference's.
             self.step.calls.push(InspectedCall { pass, pair, study, polynomials: count, logged: CallLog::Unknown });
             self.places.push((self.calls - 1, first));
         }

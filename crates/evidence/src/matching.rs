@@ -17,8 +17,8 @@ const MISMATCH_COST: u32 = 3;
 /// mark is not a verdict; with a larger value, small differences are not marked.
 const MARKED_DEVIATION: f64 = 1e-9;
 
-/// Returns for each expected polynomial the index of its counterpart in the trace's list, right or wrong; `None` if the
-/// lists are too long to be compared.
+/// Returns for each expected polynomial the index of its counterpart in the trace's list, right or wrong, or `None` if
+/// the lists are too long to be compared.
 pub(crate) fn match_polynomials(expected: &PolynomialLog, actual: &PolynomialLog) -> Option<Vec<Option<usize>>> {
     let same = |one: usize, other: usize| !are_different(actual.get(other), expected.get(one));
     let (rows, columns) = (expected.len(), actual.len());
@@ -75,7 +75,7 @@ pub(crate) fn are_different(own: &[f64], right: &[f64]) -> bool {
     if scale == 0.0 || most == 0.0 || !most.is_finite() {
         return own.len() != right.len() && (most != 0.0 || scale != 0.0);
     }
-    // The course's library may have dropped small leading coefficients of only one of the two.
+    // The course's library may have dropped small leading coefficients of only one polynomial.
     let (excess, own) = own.split_at(own.len().saturating_sub(right.len()));
     let (missing, right) = right.split_at(right.len() - own.len());
     let small = |list: &[f64], size: f64| list.iter().all(|c| c.abs() <= MARKED_DEVIATION * size);

@@ -10,7 +10,7 @@ use std::io::Read;
 /// grow.
 pub const MAX_NUMBERS: usize = 1 << 21;
 
-/// The kept records: those of steps `first` to `last` (0 is the initial record).
+/// The kept records, which are those of steps `first` to `last`. Step 0 is the initial record.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct Window {
     /// The first step, whose end record is the first kept record.
@@ -51,7 +51,7 @@ impl Window {
 pub struct Track {
     /// The positions and velocities of each record in trace order, 2N each.
     pub values: Vec<f64>,
-    /// The number of records; it is smaller than the window's if the motion ends early.
+    /// The number of records. It is smaller than the window's if the motion ends early.
     pub records: usize,
 }
 
