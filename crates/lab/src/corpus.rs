@@ -1,4 +1,4 @@
-//! A corpus of submissions judged by the original: `verdicts.jsonl`, `scenes/` and `submissions/`.
+//! Reads a corpus of submissions that the original has judged: `verdicts.jsonl`, `scenes/` and `submissions/`.
 use anyhow::Context;
 use fosssim_oracle::scene::{Scene, original};
 use serde::Deserialize;
@@ -9,7 +9,7 @@ use std::path::Path;
 pub struct CorpusRow {
     /// The submission's name.
     pub submission: String,
-    /// The kind of the trace; `a` is a correct trace.
+    /// The kind of the trace. The kind `a` is a correct trace.
     pub kind: String,
     /// The scene's name.
     pub scene: String,

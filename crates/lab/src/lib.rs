@@ -1,4 +1,4 @@
-//! Measurement tools: the sources of tables in the docs.
+//! The measurement tools, which are the sources of tables in the docs.
 #![forbid(unsafe_code)]
 
 pub mod corpus;

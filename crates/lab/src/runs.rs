@@ -1,4 +1,4 @@
-//! Programs and scenes for the tools: the traces that programs write, and the judge's results for them.
+//! Runs programs on scenes for the tools: gives the traces that programs write, and the judge's results for them.
 use anyhow::{Context, ensure};
 use fosssim_oracle::{
     judge::{
@@ -13,7 +13,7 @@ use fosssim_oracle::{
 use rayon::prelude::*;
 use std::path::Path;
 
-/// Returns the trace that a program writes; if the program does not end, the part written until then.
+/// Returns the trace that a program writes, or the part written so far if the program does not end.
 #[must_use]
 pub fn record_trace(scene: &Scene, student: Student) -> Vec<u8> {
     student::record_trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)

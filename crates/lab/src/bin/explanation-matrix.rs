@@ -19,13 +19,13 @@ use std::{
 
 /// The explanation of one trace.
 enum Outcome {
-    /// The trace is right, bit for bit.
+    /// The trace is right, and identical to the reference's.
     Same,
-    /// The mistake is named first.
+    /// The mistake is the first one that is named.
     First,
     /// The mistake is one that this trace cannot distinguish from the first one.
     Among(String),
-    /// A mistake is named, but not the one that was made; the value is its name.
+    /// A mistake is named, but not the one that was made. The value is the name of the reported one.
     Other(String),
     /// No mistake is named, although the parity rules find wrong steps.
     Nothing(u64),
@@ -33,7 +33,7 @@ enum Outcome {
     Unseen,
 }
 
-/// The explanation of a trace, and the time it took.
+/// The explanation of a trace, the time that it took, and all explanations of the trace.
 type ExplainedTrace = (Outcome, Duration, Vec<Explanation>);
 
 fn main() -> anyhow::Result<ExitCode> {

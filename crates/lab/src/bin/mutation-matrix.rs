@@ -24,7 +24,7 @@ use std::{
 enum Answer {
     /// The trace is right.
     Same,
-    /// The trace differs and is accepted.
+    /// The trace differs from the reference's and is accepted.
     Accepted,
     /// The trace is rejected only because of decisions that depend on coefficients which the course's library dropped
     /// as too small. The factor of the polynomials is the cause, and the program really behaves differently.
