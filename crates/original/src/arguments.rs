@@ -1,8 +1,7 @@
 //! The original's command line (oracle-behavior.md 1): the parsed arguments, or the message and exit code of an error.
 //!
-//! Words are bytes, so file names may be other than UTF-8. The rules are those of the original's argument library:
-//! value and flag are separate words, the first invalid word ends the program, and `--help` and `--version` take effect
-//! in order.
+//! Words are bytes, so file names need not be UTF-8. The rules are those of the original's argument library: value and
+//! flag are separate words, the first invalid word ends the program, and `--help` and `--version` take effect in order.
 use crate::{
     flags::{FLAGS, Flag},
     usage,
@@ -40,7 +39,7 @@ pub(crate) fn parse(program: &[u8], words: &[Vec<u8>]) -> Result<Arguments, Endi
             b"--" | b"--ignore_rest" => break,
             b"-h" | b"--help" => return Err(Ending { stdout: usage::help_text(program), ..Ending::default() }),
             b"--version" => return Err(Ending { stdout: usage::version_text(program), ..Ending::default() }),
-            // The library treats these words as bundles of flags that are used up.
+            // The library treats these words as bundles of flags without any flag left.
             b"" | b"-" => continue,
             _ => {}
         }
@@ -87,7 +86,7 @@ fn is(flag: &Flag, word: &[u8]) -> bool {
     }
 }
 
-/// Returns a boolean like a C++ stream reads it: one integer that is 0 or 1. An empty value keeps the default.
+/// Returns a boolean as a C++ stream reads it: one integer that is 0 or 1. An empty value keeps the default.
 fn parse_boolean(value: &[u8]) -> Result<Option<bool>, Vec<u8>> {
     let is_space = |byte: &u8| byte.is_ascii_whitespace() || *byte == 0x0b;
     let mut rest = value;

@@ -6,7 +6,7 @@ use fosssim_num::{number_format::format_g, vector::Vec2};
 /// The line above the collisions of a step.
 pub(crate) const HEADER: &str = "Collision Detection Error: \n";
 
-/// Returns the line about one collision; `None` if the remark is about polynomials.
+/// Returns the line about one collision, or `None` if the remark is about polynomials.
 pub(crate) fn line(remark: &Remark) -> Option<String> {
     match remark {
         Remark::Missed(expected) => {
@@ -21,7 +21,7 @@ pub(crate) fn line(remark: &Remark) -> Option<String> {
     }
 }
 
-/// Returns `Particle A - Edge B with normal = X Y`; empty for an unknown kind of pair.
+/// Returns `Particle A - Edge B with normal = X Y`, or an empty text for an unknown kind of pair.
 fn describe(impulse: &LoggedImpulse) -> String {
     let Some(kind) = impulse.kind() else { return String::new() };
     let second = kind.original_second_name();
@@ -29,7 +29,7 @@ fn describe(impulse: &LoggedImpulse) -> String {
     format!("Particle {} - {second} {} with normal = {normal}", impulse.first, impulse.second)
 }
 
-/// Returns both components; the first is padded to the length of the second, never the reverse.
+/// Returns both components. The first is padded to the length of the second, but the second is never padded.
 fn format_direction(normal: Vec2) -> String {
     let (x, y) = (format_g(normal.x), format_g(normal.y));
     format!("{x:>width$} {y}", width = y.len())

@@ -109,7 +109,7 @@ pub trait Pictures {
     fn step(&mut self, step: u32, positions: &[f64]) -> Result<(), String>;
 }
 
-/// Runs the replacement; `program` is the name in its messages, `words` are the arguments.
+/// Runs the replacement. `program` is the name in its messages, and `words` are the arguments.
 #[must_use]
 pub fn main(program: &[u8], words: &[OsString], outside: &dyn Services) -> ExitCode {
     let words: Vec<Vec<u8>> = words.iter().map(|word| word.as_bytes().to_vec()).collect();
@@ -126,7 +126,7 @@ pub fn main(program: &[u8], words: &[OsString], outside: &dyn Services) -> ExitC
     ExitCode::from(code)
 }
 
-/// Prints to standard error; a failure cannot be reported any more.
+/// Prints to standard error. A failure to do so cannot be reported.
 fn print_error(text: &[u8]) {
     drop(io::stderr().lock().write_all(text));
 }

@@ -26,7 +26,7 @@ use std::{
 /// The exit code of every failure.
 const FAILURE_CODE: u8 = 1;
 
-/// Runs with parsed arguments; `words` are the raw arguments. Returns the exit code.
+/// Runs with parsed arguments, and returns the exit code. `words` are the raw arguments.
 pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Services) -> u8 {
     if arguments.input.is_some() && arguments.output.is_some() {
         return print_error(INPUT_AND_OUTPUT);
@@ -81,7 +81,7 @@ pub(crate) fn run(arguments: &Arguments, words: &[Vec<u8>], outside: &dyn Servic
     }
 }
 
-/// Ends a run whose folder for pictures is missing; the original detects that after the first record.
+/// Ends a run whose folder for pictures is missing. The original detects this after the first record.
 fn without_folder(
     arguments: &Arguments,
     identity: Identity,
@@ -105,7 +105,7 @@ fn print_error(text: impl AsRef<[u8]>) -> u8 {
     FAILURE_CODE
 }
 
-/// Reads the scene like the original. A directory can be opened and reads as empty text.
+/// Reads the scene like the original. A directory can be opened, and is read as an empty text.
 fn load(arguments: &Arguments) -> Result<(OriginalScene, Identity), Rejection> {
     let name = Path::new(&arguments.scene);
     let unreadable = || Rejection::from_unreadable_file(arguments.scene.as_bytes());
@@ -133,7 +133,7 @@ fn refuse_scene(arguments: &Arguments, refusal: &Rejection) -> u8 {
     refusal.exit_code
 }
 
-/// Returns the reason why a run is not supported: a window, a picture, or too much memory.
+/// Returns the reason why a run is not supported. It would need a window, a picture, or too much memory.
 fn find_unsupported(arguments: &Arguments, scene: &Scene) -> Option<String> {
     if arguments.display {
         return Some("there is no window to simulate in (the default); add -d 0 to run without one\n".to_owned());
@@ -160,7 +160,7 @@ fn create_now(name: &Path) -> io::Result<File> {
     open_for_writing(OpenOptions::new().write(true).create(true).truncate(true), name)
 }
 
-/// Opens the trace; a directory can be opened and reads as an empty file.
+/// Opens the trace. A directory can be opened, and is read as an empty file.
 fn open(name: &Path) -> io::Result<Box<dyn Read + Send>> {
     let (file, metadata) = open_for_reading(name)?;
     if metadata.is_dir() { Ok(Box::new(io::empty())) } else { with_timeout(file, &metadata) }
@@ -232,7 +232,7 @@ fn grade(scene: &Scene, trace: Box<dyn Read + Send>, mut transcript: Transcript<
     if let Some(residuals) = residual_file(&outcome, scene.assignment().definition())
         && let Ok(mut file) = create_now(Path::new("residual.txt"))
     {
-        // Like the original, this follows links, truncates, and ignores failures.
+        // The original follows links, truncates the file and ignores failures, so this does as well.
         drop(file.write_all(residuals.as_bytes()));
     }
     if let Some(error) = &outcome.parity.endless_step {

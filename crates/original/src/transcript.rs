@@ -30,11 +30,11 @@ pub(crate) struct Heading<'a> {
 /// A task of the original.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Task<'a> {
-    /// Simulate without output files.
+    /// The scene is simulated without output files.
     Run,
-    /// Record a trace in this file.
+    /// A trace is recorded in this file.
     Record(&'a [u8]),
-    /// Grade the trace in this file.
+    /// The trace in this file is graded.
     Grade(&'a [u8]),
 }
 
@@ -113,7 +113,7 @@ impl<'a, W: Write> Transcript<'a, W> {
                 let text = format!("{RED}Error while trying to deserialize time step impulses. Exiting.\n");
                 self.write(text.as_bytes());
             }
-            // Here the original crashes or hangs. The reason goes to standard error, but the run is closed normally.
+            // The original crashes or hangs here. The reason goes to standard error, but the run is closed normally.
             Some(
                 Stop::Trace { cause: ReadFailure::Memory | ReadFailure::Limit | ReadFailure::Io, .. } | Stop::Step(_),
             ) => self.write(b"\n"),
@@ -175,7 +175,7 @@ impl<'a, W: Write> Transcript<'a, W> {
         self.write(format!("T: {time}\nFrame run time: {frame}s. Total run time: {total}s. \n").as_bytes());
     }
 
-    /// Prints a dot when the next threshold is reached; never more than one. Without steps the quotient is NaN, and
+    /// Prints a dot when the next threshold is reached, but never more than one. Without steps the quotient is NaN, and
     /// there is no dot.
     fn print_dot(&mut self, steps_done: u32) {
         if f64::from(steps_done) / f64::from(self.steps) >= self.threshold {

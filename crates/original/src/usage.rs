@@ -1,4 +1,4 @@
-//! The original's usage, version and parse-error texts, with the line breaks of its argument library.
+//! Writes the original's usage, version and parse-error texts, with the line breaks of its argument library.
 use crate::flags::{Flag, list_flags};
 
 const WIDTH: usize = 75;
@@ -33,7 +33,7 @@ pub(crate) fn help_text(program: &[u8]) -> Vec<u8> {
     text
 }
 
-/// Returns the output of a parse error; `argument` is a space if the error does not belong to an argument.
+/// Returns the output of a parse error. `argument` is a space if the error does not belong to an argument.
 pub(crate) fn failure(program: &[u8], argument: &[u8], message: &[u8]) -> Vec<u8> {
     let mut text = [b"PARSE ERROR: ", argument, b"\n             ", message, b"\n\nBrief USAGE: \n"].concat();
     text.extend(brief_usage(program));

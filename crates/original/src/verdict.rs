@@ -1,4 +1,4 @@
-//! The original's closing text about residuals, and the text of `residual.txt` (oracle-behavior.md 6).
+//! Writes the original's closing text about residuals, and the text of `residual.txt` (oracle-behavior.md 6).
 use crate::words::{PINK, RESET};
 use fosssim_judge::{Outcome, Overall, Residuals};
 use fosssim_model::assignments::Definition;
@@ -41,8 +41,9 @@ pub(crate) fn describe_incomplete(residuals: &Residuals) -> String {
     text
 }
 
-/// Returns the text of `residual.txt`: per residual `1` or `0`, three spaces, and the value; in the contest also a line
-/// about collisions. `None` if grading did not finish; the file is then not written.
+/// Returns the text of `residual.txt`. Each residual has a line with `1` or `0`, three spaces, and the value; in the
+/// contest, a line about collisions follows. If grading did not finish, the result is `None`, and the file is not
+/// written.
 #[must_use]
 pub(crate) fn residual_file(outcome: &Outcome, assignment: &Definition) -> Option<String> {
     if outcome.parity.overall == Overall::None {

@@ -1,4 +1,5 @@
-//! The original's messages on standard error, and its colors, which are part of the text even in files and pipes.
+//! Defines the original's messages on standard error, and its colors, which are part of the text even in files and
+//! pipes.
 
 /// The escape sequence that ends every color.
 pub(crate) const RESET: &str = "\x1b[m";
