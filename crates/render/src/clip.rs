@@ -10,7 +10,7 @@ pub struct ClipRectangle {
 }
 
 impl ClipRectangle {
-    /// Returns the part of a line inside the rectangle (Liang and Barsky, ACM TOG 3, 1984); `None` if there is none.
+    /// Returns the part of a line inside the rectangle (Liang and Barsky, ACM TOG 3, 1984), or `None` if there is none.
     pub fn line(&self, from: Point, to: Point) -> Option<[Point; 2]> {
         if !from.iter().chain(&to).all(|value| value.is_finite()) {
             return None;
@@ -43,8 +43,8 @@ impl ClipRectangle {
         ends.iter().all(|&end| near(end)).then_some(ends)
     }
 
-    /// Returns the corners of the part of the frame where `inside` is not negative, for a linear function of the
-    /// position (Sutherland and Hodgman, Comm. ACM 17, 1974).
+    /// Returns the corners of the part of the rectangle where `inside`, a linear function of the position, is not
+    /// negative (Sutherland and Hodgman, Comm. ACM 17, 1974).
     pub fn side(&self, inside: impl Fn(Point) -> f64) -> Vec<Point> {
         let ([left, top], [right, bottom]) = (self.low, self.high);
         let corners = [[left, top], [right, top], [right, bottom], [left, bottom]];

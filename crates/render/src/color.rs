@@ -15,7 +15,7 @@ impl Rgb {
     /// The default color of edges (scene-format.md 4).
     pub const EDGE: Self = Self([0, 99, 99]);
 
-    /// Returns a mixture of this color and `other`, with `share` of 8 parts of `other`.
+    /// Returns a mixture of this color and `other`, with `share` of 8 parts from `other`.
     #[must_use]
     pub fn mix(self, other: Self, share: u8) -> Self {
         let part = |own: u8, other: u8| {
@@ -32,7 +32,7 @@ impl Rgb {
         (2126 * red + 7152 * green + 722 * blue) / 10_000
     }
 
-    /// Returns black or white, whichever is readable on this background.
+    /// Returns black or white. The color that is readable on this background is chosen.
     #[must_use]
     pub fn ink(self) -> Self {
         if self.brightness() > 127 { Self::BLACK } else { Self::WHITE }
@@ -48,7 +48,7 @@ impl Rgb {
 
 impl From<scene::Color> for Rgb {
     fn from(color: scene::Color) -> Self {
-        // A reader returns no NaN and no value out of range; others are clamped.
+        // A reader returns no NaN and no value out of range, but other values are clamped.
         #[expect(clippy::cast_possible_truncation, clippy::cast_sign_loss, reason = "clamped to a byte")]
         let part = |value: f64| (value.clamp(0.0, 1.0) * 255.0).round() as u8;
         Self([part(color.red), part(color.green), part(color.blue)])

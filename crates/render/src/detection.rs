@@ -1,4 +1,4 @@
-//! A detection call as a picture, like the assignment's figure 2, with the numbers of the pair.
+//! Draws a detection call as a picture, like the assignment's figure 2, with the numbers of the pair.
 use crate::plot::{PlotTarget, PlottedPolynomial, PolynomialPlot};
 use fosssim_judge::study::Study;
 

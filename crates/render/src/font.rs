@@ -6,8 +6,8 @@ pub const LETTER_WIDTH: u32 = 6;
 /// The height of a letter in dots.
 pub const LETTER_HEIGHT: u32 = 7;
 
-/// Returns the rows of a letter, from the top; the highest of five bits is the leftmost dot. `None` for an unknown
-/// letter.
+/// Returns the rows of a letter from the top, or `None` for an unknown letter. The highest of five bits is the leftmost
+/// dot.
 #[rustfmt::skip]
 pub const fn rows(letter: char) -> Option<[u8; LETTER_HEIGHT as usize]> {
     Some(match letter {

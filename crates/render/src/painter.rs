@@ -11,13 +11,13 @@ use fosssim_model::scene::{Color, Scene};
 use fosssim_num::vector::{Vec2, vector_at};
 use std::collections::VecDeque;
 
-/// The minimum width of discs and lines, in pixels; otherwise they would be invisible.
+/// The minimum width of discs and lines, in pixels. Narrower ones would be invisible.
 const MIN_WIDTH: f64 = 1.5;
 
 /// The visible depth of a half-plane's inside.
 const INSIDE_DEPTH: f64 = 0.25;
 
-/// The radius in pixels above which discs are drawn as half-planes, which is how they look in the picture.
+/// The radius in pixels above which discs are drawn as half-planes, because they look like half-planes in the picture.
 const MAX_DISC_RADIUS: f64 = 100_000.0;
 
 /// The maximum number of points drawn of a particle's path; some of the older points are dropped.
@@ -28,7 +28,7 @@ const MAX_PATH_POINTS: usize = 2000;
 pub struct PictureOptions {
     /// The size of the picture.
     pub size: Size,
-    /// Whether the step and the time are shown in the lower left corner.
+    /// Whether the picture shows the step and the time in its lower left corner.
     pub label: bool,
 }
 
@@ -52,7 +52,7 @@ struct Trail {
     particle: usize,
     color: Rgb,
     duration: f64,
-    /// Times and positions, oldest first.
+    /// The times and positions, oldest first.
     points: VecDeque<(f64, Vec2)>,
 }
 
@@ -61,8 +61,8 @@ impl Painter {
     #[must_use]
     pub fn new(scene: &Scene, extent: &Extent, options: PictureOptions) -> Self {
         let display = &scene.display;
-        // Later elements override earlier ones; invalid indices are the original's undefined behavior and color
-        // nothing.
+        // Later elements override earlier ones. Invalid indices are undefined behavior in the original, and color
+        // nothing here.
         let colored = |count: usize, default: Rgb, list: &[(usize, Color)]| {
             let mut colors = vec![default; count];
             for &(index, color) in list {
@@ -153,7 +153,7 @@ impl Painter {
         shapes
     }
 
-    /// Draws edges and particles: in their own colors, or all of them as an overlay's thin outlines.
+    /// Draws edges and particles, either in their own colors or as the thin outlines of an overlay.
     fn draw_bodies(&self, positions: &[f64], overlay: Option<Paint>, shapes: &mut Vec<Shape>) {
         for &(ends, radius, color) in &self.edges {
             let [first, second] = ends.map(|end| vector_at(positions, end));
@@ -216,7 +216,7 @@ impl Painter {
 
     fn draw_half_plane(&self, point: Vec2, normal: Vec2, color: Rgb, shapes: &mut Vec<Shape>) {
         let place = self.view.place(point);
-        // In the picture y points down.
+        // The y axis points down in the picture.
         let (x, y) = (normal.x, -normal.y);
         let length = x.hypot(y);
         if !(length > 0.0) || !length.is_finite() || !place.iter().all(|value| value.is_finite()) {

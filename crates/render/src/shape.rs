@@ -8,11 +8,11 @@ pub type Point = [f64; 2];
 /// The paint of a shape.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub enum Paint {
-    /// A filled shape, or a plain stroke.
+    /// The shape is filled, or is a plain stroke.
     Solid(Rgb),
-    /// A filled shape or stroke with an opacity from 0 to 1.
+    /// The shape is filled or a stroke, with an opacity from 0 to 1.
     Faint(Rgb, f64),
-    /// A dashed outline, or a dashed stroke.
+    /// The shape is a dashed outline or a dashed stroke.
     Dashed(Rgb),
 }
 
@@ -29,32 +29,32 @@ impl Paint {
 /// An element of a picture.
 #[derive(Debug, Clone, PartialEq)]
 pub enum Shape {
-    /// A disc; a dashed disc is an outline.
+    /// The shape is a disc. A dashed disc is an outline.
     Disc {
         /// The shape's center.
         center: Point,
-        /// The shape's radius, positive.
+        /// The shape's radius, which is positive.
         radius: f64,
         /// The paint of the shape.
         paint: Paint,
     },
-    /// A line with round ends.
+    /// The shape is a line with round ends.
     Line {
-        /// The shape's points, at least two.
+        /// The shape's points. There are at least two.
         points: Vec<Point>,
-        /// The shape's width, positive.
+        /// The shape's width, which is positive.
         width: f64,
         /// The paint of the shape.
         paint: Paint,
     },
-    /// A filled polygon.
+    /// The shape is a filled polygon.
     Area {
         /// The shape's corners.
         points: Vec<Point>,
         /// The paint of the shape.
         paint: Paint,
     },
-    /// A line of text.
+    /// The shape is a line of text.
     Text {
         /// The shape's lower left corner.
         place: Point,

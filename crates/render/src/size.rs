@@ -17,7 +17,7 @@ pub struct Size {
 /// The reason why a size is rejected.
 #[derive(Debug, Clone, PartialEq, Eq, thiserror::Error)]
 pub enum BadSize {
-    /// The text is not two numbers.
+    /// The text does not consist of two numbers.
     #[error("`{0}` is not a size; write WIDTHxHEIGHT, for example 640x480")]
     Unreadable(String),
     /// A side is too small or too large.

@@ -7,7 +7,7 @@ use crate::{
 };
 use std::fmt::Write;
 
-/// Returns a picture as an SVG document; `title` is for screen readers.
+/// Returns a picture as an SVG document. `title` is for screen readers.
 #[must_use]
 pub fn render_document(size: Size, background: Rgb, title: &str, shapes: &[Shape]) -> String {
     let (width, height) = (size.width(), size.height());

@@ -1,4 +1,4 @@
-//! The part of the plane that a picture shows.
+//! Computes the part of the plane that a picture shows.
 use crate::size::Size;
 use fosssim_model::scene::{Scene, Viewport};
 use fosssim_num::vector::Vec2;
@@ -6,13 +6,13 @@ use fosssim_num::vector::Vec2;
 /// The ratio of the picture's width to that of the bodies.
 const MARGIN: f64 = 1.1;
 
-/// The largest coordinate for which a view is fitted; the squares and sums of larger ones are infinite.
+/// The largest coordinate for which a view is fitted. The squares and sums of larger ones are infinite.
 const MAX_PLACE: f64 = 1e100;
 
 /// The maximum factor by which bodies that leave the scene widen the initial view.
 const MAX_WIDENING: f64 = 4.0;
 
-/// The smallest box around discs; initially empty.
+/// The smallest box around discs, which is empty at first.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Extent {
     low: Vec2,
@@ -85,12 +85,12 @@ impl Extent {
     }
 }
 
-/// The map from the plane to pixels; y points up in the plane and down in the picture.
+/// The map from the plane to pixels. In the plane y points up, and in the picture it points down.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct View {
     size: Size,
     center: Vec2,
-    /// The number of pixels per length unit; positive and finite.
+    /// The number of pixels per length unit, which is positive and finite.
     scale: f64,
 }
 
@@ -99,7 +99,7 @@ impl View {
     #[must_use]
     pub fn for_scene(scene: &Scene, extent: &Extent, size: Size) -> Self {
         match scene.display.viewport {
-            // Zero or negative means "fit".
+            // Zero and negative sizes mean that the view fits the scene.
             Some(Viewport { center, size: half }) if half > 0.0 => Self::new(center, [half, half], size),
             _ if extent.is_empty() => Self::new(Vec2::zeros(), [1.0, 1.0], size),
             _ => {
@@ -112,7 +112,7 @@ impl View {
     /// Creates the view that shows at least `half` on every side of `center`.
     fn new(center: Vec2, [x, y]: [f64; 2], size: Size) -> Self {
         let scale = (0.5 * f64::from(size.width()) / x).min(0.5 * f64::from(size.height()) / y);
-        // For a single point, or no points, one length unit on every side.
+        // If there is a single point or none, the view shows one length unit on every side.
         let fallback = 0.5 * f64::from(size.width().min(size.height()));
         let scale = if scale.is_finite() && scale > 0.0 { scale } else { fallback };
         let center = if center.x.abs() < MAX_PLACE && center.y.abs() < MAX_PLACE { center } else { Vec2::zeros() };

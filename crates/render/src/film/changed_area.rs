@@ -1,7 +1,7 @@
-//! The changes from one picture to the next; films store only the changes.
+//! Finds the changes from one picture to the next, because films store only the changes.
 use crate::size::Size;
 
-/// A rectangle of pixels, never empty.
+/// A rectangle of pixels, which is never empty.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ChangedArea {
     pub left: u32,
@@ -11,9 +11,9 @@ pub struct ChangedArea {
 }
 
 impl ChangedArea {
-    /// Returns the smallest rectangle outside of which two pictures of one byte per pixel are equal; one pixel if they
-    /// are equal everywhere, because a film has no empty pictures. The first picture of a film has no previous one, and
-    /// its rectangle is the whole picture.
+    /// Returns the smallest rectangle outside of which two pictures of one byte per pixel are equal. If they are equal
+    /// everywhere, the rectangle is one pixel, because a film has no empty pictures. The first picture of a film has no
+    /// previous one, and its rectangle is the whole picture.
     pub fn between(size: Size, before: &[u8], after: &[u8]) -> Self {
         if before.is_empty() {
             return Self { left: 0, top: 0, width: size.width(), height: size.height() };

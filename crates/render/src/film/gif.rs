@@ -81,7 +81,7 @@ impl<'a> Gif<'a> {
     }
 }
 
-/// Returns a side of a picture, or a position in it; sizes are far below the limit.
+/// Returns a side of a picture, or a position in it. Sizes are far below the limit.
 fn side(pixels: u32) -> u16 {
     u16::try_from(pixels).unwrap_or(u16::MAX)
 }
@@ -104,7 +104,7 @@ fn palette(colors: &[Rgb]) -> Vec<Rgb> {
         }
     };
     colors.iter().copied().for_each(&mut add);
-    // The middle step first: with many colors, few steps of each are better than all steps of a few.
+    // The middle step comes first, because with many colors a few steps of each are better than all steps of a few.
     for step in [4, 2, 6, 1, 3, 5, 7] {
         debug_assert!(step < COLOR_STEPS);
         colors.iter().for_each(|&color| add(color.mix(background, step)));

@@ -13,7 +13,7 @@ pub struct Rate(u16);
 pub const MAX_RATE: u16 = 240;
 
 impl Rate {
-    /// Creates a rate from 1 to [`MAX_RATE`]; `None` for other values.
+    /// Creates a rate from 1 to [`MAX_RATE`], or returns `None` for other values.
     #[must_use]
     pub const fn new(per_second: u16) -> Option<Self> {
         if per_second == 0 || per_second > MAX_RATE { None } else { Some(Self(per_second)) }

@@ -27,8 +27,8 @@ pub struct PolynomialPlot<'a> {
     pub title: &'a str,
     /// The polynomials, in one of four styles each.
     pub curves: &'a [PlottedPolynomial<'a>],
-    /// The intervals in which all are positive; `None` if they are not shown, as for an expected and an actual
-    /// polynomial.
+    /// The intervals in which all are positive. The value is `None` if they are not shown, as for an expected and an
+    /// actual polynomial.
     pub common: Option<&'a [Interval]>,
     /// The time of impact.
     pub impact: Option<f64>,
@@ -109,7 +109,7 @@ fn x(time: f64) -> f64 {
     LEFT + time * (RIGHT - LEFT)
 }
 
-/// Draws a curve on `[0, 1]`, scaled to its largest modulus; a positive factor moves no zero.
+/// Draws a curve on `[0, 1]`, scaled to its largest absolute value. A positive factor moves no zero.
 fn draw(curve: &PlottedPolynomial<'_>, ink: Ink, number: usize, sheet: &mut Sheet) {
     let times: Vec<f64> = (0..=SAMPLES).map(|k| f64::from(k) / f64::from(SAMPLES)).collect();
     let values: Vec<f64> = times.iter().map(|&time| evaluate(curve.coefficients, time)).collect();
@@ -155,7 +155,7 @@ fn derivative(coefficients: &[f64]) -> Vec<f64> {
     slopes
 }
 
-/// Draws a row of bars for the parts of sets of time in `[0, 1]`; a single time is a diamond.
+/// Draws a row of bars for the parts of sets of time in `[0, 1]`. A single time is drawn as a diamond.
 fn draw_sets(list: &[Interval], ink: Ink, top: f64, opacity: f64, sheet: &mut Sheet) {
     for interval in list {
         let (lo, hi) = (interval.lo.max(0.0), interval.hi.min(1.0));

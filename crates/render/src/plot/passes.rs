@@ -11,7 +11,7 @@ pub struct PassPlot<'a> {
     pub title: &'a str,
     /// The reference's number of detection passes of each step, from the first step on.
     pub expected: &'a [u32],
-    /// The trace's numbers of passes; `None` if the polynomials do not fill a whole number of passes.
+    /// The trace's numbers of passes, or `None` if the polynomials do not fill a whole number of passes.
     pub actual: &'a [Option<u32>],
 }
 

@@ -5,7 +5,7 @@ use super::{
 };
 use crate::number::{decade_range, format_short};
 
-/// A residual of every step, from the first step on.
+/// A residual of every step, beginning with the first step.
 #[derive(Debug, Clone, Copy)]
 pub struct Series<'a> {
     /// The name of the series, one or two words long.
@@ -19,11 +19,11 @@ pub struct Series<'a> {
 pub struct ResidualPlot<'a> {
     /// The plot's title.
     pub title: &'a str,
-    /// One to four series of residuals.
+    /// The series of residuals, one to four.
     pub series: &'a [Series<'a>],
     /// The tolerance of the residuals.
     pub tolerance: f64,
-    /// A step to be marked, from 1, with the reason.
+    /// A marked step, from 1, and the reason for the mark.
     pub mark: Option<(u32, &'a str)>,
 }
 
@@ -75,7 +75,7 @@ impl ResidualPlot<'_> {
     fn description(&self) -> String {
         let of = |Series { name, values }: &Series<'_>| {
             let (place, value) = find_worst(values, 0..values.len())?;
-            // NaN is not below the tolerance.
+            // A NaN is not below the tolerance.
             let above = values.iter().filter(|&&value| !(value < self.tolerance)).count();
             let (largest, steps, tolerance) = (format_short(value), values.len(), format_short(self.tolerance));
             Some(format!(
@@ -87,7 +87,7 @@ impl ResidualPlot<'_> {
     }
 }
 
-/// Returns the worst value in a range, and its index; NaN is worse than any number.
+/// Returns the worst value in a range, and its index. A NaN is worse than any number.
 fn find_worst(values: &[f64], range: std::ops::Range<usize>) -> Option<(usize, f64)> {
     let rank = |value: f64| if value.is_nan() { f64::INFINITY } else { value.abs() };
     let places = range.start.min(values.len())..range.end.min(values.len());

@@ -10,19 +10,19 @@ pub const WIDTH: f64 = 640.0;
 pub const LEFT: f64 = 64.0;
 pub const RIGHT: f64 = WIDTH - 16.0;
 
-/// The ends of the axis, for other code that draws on it.
+/// The ends of the axis, which other code needs to draw on it.
 pub const STEPS_AXIS: [f64; 2] = [LEFT, RIGHT];
 
-/// The ink of a mark: its class in the style sheet, and its color without one.
+/// The ink of a mark. It is a class in the style sheet, or a color without a style sheet.
 #[derive(Debug, Clone, Copy)]
 pub enum Ink {
-    /// The ink of axes.
+    /// The ink draws axes.
     Axis,
-    /// The ink of grid lines.
+    /// The ink draws grid lines.
     Grid,
-    /// The ink of wrong values, limits and impacts.
+    /// The ink draws wrong values, limits and impacts.
     Bad,
-    /// The ink of a series, from 0; after four the styles repeat.
+    /// The ink draws a series, numbered from 0. After four series the styles repeat.
     Series(usize),
 }
 
@@ -40,7 +40,7 @@ impl Ink {
         }
     }
 
-    /// Returns the dashes of a series' line.
+    /// Returns the dashes of the line of a series.
     const fn dash(self) -> &'static str {
         match self {
             Self::Series(number) => match number % 4 {
@@ -75,7 +75,7 @@ pub enum Tone {
 #[derive(Debug)]
 pub struct Sheet {
     svg: String,
-    /// Whether the page's style sheet has all styles, so that the markup does not need them.
+    /// Whether the page's style sheet contains all styles, so that the markup does not need them.
     is_styled: bool,
 }
 
@@ -128,7 +128,7 @@ impl Sheet {
         format!(" class=\"{class}\"{}", self.attribute_unless_styled("fill", color))
     }
 
-    /// Draws a thin straight line without dashes.
+    /// Draws a thin straight line, which has no dashes.
     pub fn draw_rule(&mut self, ink: Ink, from: [f64; 2], to: [f64; 2]) {
         self.draw_rules(ink, &[(from, to)]);
     }
@@ -193,7 +193,8 @@ impl Sheet {
         );
     }
 
-    /// Draws a marker. The series have different shapes: disc, square, triangle, diamond. A wrong value has a cross.
+    /// Draws a marker. The series have different shapes: disc, square, triangle and diamond. A wrong value is drawn as
+    /// a cross.
     pub fn draw_marker(&mut self, ink: Ink, [x, y]: [f64; 2]) {
         let path = match ink {
             Ink::Series(number) => match number % 4 {
@@ -213,7 +214,7 @@ impl Sheet {
         let _ = writeln!(self.svg, "<path{ink} d=\"{path}\"/>");
     }
 
-    /// Draws a line of text; `[x, y]` is on its base line.
+    /// Draws a line of text. The position `[x, y]` is on its base line.
     pub fn text(&mut self, [x, y]: [f64; 2], anchor: Anchor, tone: Tone, text: &str) {
         // A text starts at its position unless another alignment is set.
         let anchor = match anchor {
@@ -268,7 +269,7 @@ impl Sheet {
     }
 }
 
-/// The columns of the steps; plots of long runs show the worst of the steps that share a column.
+/// The columns of the steps. Plots of long runs show the worst of the steps that share a column.
 #[derive(Debug, Clone, Copy)]
 pub struct Columns {
     pub steps: usize,
@@ -302,7 +303,7 @@ impl Columns {
 
 /// Returns at most six round steps for the labels of an axis from 1 to `last`.
 pub fn ticks(last: usize) -> Vec<usize> {
-    // 1, 2, 5, 10, 20, 50 and so on.
+    // The units are 1, 2, 5, 10, 20, 50 and so on.
     let units = (0..18).flat_map(|power| [1, 2, 5].map(|digit| digit * 10_usize.pow(power)));
     let unit = { units }.find(|unit| last / unit <= 5).unwrap_or(last.max(1));
     let mut ticks: Vec<usize> = (1..).map(|k| k * unit).take_while(|&tick| tick <= last).collect();
