@@ -10,7 +10,7 @@ use fosssim_mistakes::diagnose::{self, is_named_in, reproduces};
 use fosssim_model::{scene::Scene, sim::PairKind};
 use fosssim_student::find;
 
-/// A difference is plain if it is more than this: more than the round-off of any program.
+/// The minimum difference that counts as plain. It exceeds the round-off of any program.
 const MIN_CLEAR_DIFFERENCE: f64 = 1e-6;
 
 /// The trace and the end of a program's run on a scene.
@@ -18,22 +18,22 @@ const MIN_CLEAR_DIFFERENCE: f64 = 1e-6;
 pub struct Observation {
     /// The trace, up to the place at which it ends.
     pub trace: Vec<u8>,
-    /// The way the program ended.
+    /// The way in which the program ended.
     pub ended: RunEnd,
 }
 
 /// The reason why a program is wrong.
 #[derive(Debug, Clone, PartialEq)]
 pub enum WrongReason {
-    /// The program does not end well: its failure, and the signal of a crash.
+    /// The program does not end well. The values are its failure, and the signal of a crash.
     Ended(FailureKind, Option<i32>),
-    /// The trace can't be read to its end.
+    /// The trace cannot be read to its end.
     BrokenTrace,
-    /// From some step on there are values that are no numbers.
+    /// The trace contains values that are not finite from some step on.
     NotFinite,
-    /// A likely mistake.
+    /// A likely mistake is the reason.
     Mistake(Box<Explanation>),
-    /// A finding that nothing explains: its kind, and the kind of its pair.
+    /// A finding that nothing explains is the reason. The values are its kind, and the kind of its pair.
     Finding(FindingKind, Option<PairKind>),
 }
 
@@ -45,7 +45,8 @@ impl WrongReason {
         FailureKind::from_end(ended).map(|failure| Self::Ended(failure, signal))
     }
 
-    /// Returns the reason why a program is wrong on a scene; `None` if it is right, or if only round-off decides that.
+    /// Returns the reason why a program is wrong on a scene, or `None` if it is right, or if only round-off decides
+    /// that.
     #[must_use]
     pub fn first_reason(scene: &Scene, seen: &Observation) -> Option<Self> {
         let (fault, detail) = find_reason(scene, seen)?;
@@ -69,11 +70,12 @@ impl WrongReason {
         match (self, detail) {
             (Self::Mistake(_), Some(FindingDetail::BeyondReach { .. })) => false,
             (Self::Mistake(mistake), Some(_)) => {
-                // The rows of the catalogue that it names; none if it is no row itself, nor a stage without code.
+                // The rows of the catalogue that the mistake names. There are none if it is neither a row nor a stage
+                // without code.
                 let is_named = mistake.is_unfinished() || find(&mistake.key).is_some();
                 let keys = std::iter::once(&mistake.key).chain(&mistake.same_as).map(String::as_str);
                 let keys: Vec<&str> = keys.filter(|key| is_named && find(key).is_some()).collect();
-                // Most attempts end here, long before every mistake of the catalogue was tried.
+                // Most attempts end here, long before every mistake of the catalogue has been tried.
                 if is_alone && !keys.is_empty() && !reproduces(scene, &seen.trace, &keys) {
                     return false;
                 }
@@ -87,15 +89,15 @@ impl WrongReason {
     }
 }
 
-/// Returns the reason that needs no explanation, and the first finding of a trace that can be read; `None` if nothing
-/// is wrong, or if round-off may decide that.
+/// Returns the reason that needs no explanation, and the first finding of a trace that can be read, or `None` if
+/// nothing is wrong, or if round-off may decide that.
 fn find_reason(scene: &Scene, seen: &Observation) -> Option<(WrongReason, Option<FindingDetail>)> {
     if let Some(end) = WrongReason::from_end(&seen.ended) {
         return Some((end, None));
     }
     let options = Options { threads: 1, uses_fair_rules: true, ..Options::default() };
     let outcome = judge(scene, &seen.trace[..], &options, &mut ());
-    // A judgement that takes too much work stops as well, and is no fault of the trace.
+    // A judgement that takes too much work stops as well, but this is not a fault of the trace.
     let is_unreadable = matches!(outcome.stop, Some(Stop::Trace { .. }));
     if is_unreadable || outcome.damage.is_some() || outcome.trailing_bytes {
         return Some((WrongReason::BrokenTrace, None));
@@ -109,7 +111,7 @@ fn find_reason(scene: &Scene, seen: &Observation) -> Option<(WrongReason, Option
     has_margin.then_some((finding, Some(first.detail)))
 }
 
-/// Returns whether a finding is about more than round-off; a NaN is plain, too.
+/// Returns whether a finding is about more than round-off. A NaN is plain as well.
 const fn is_plain(detail: FindingDetail) -> bool {
     use FindingDetail::{Coefficient, Position, Velocity, WrongNormal};
     match detail {

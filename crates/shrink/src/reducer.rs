@@ -1,4 +1,4 @@
-//! The search: attempts in a fixed order, until a whole pass of them helps nothing.
+//! Searches for a smaller scene by attempts in a fixed order, until a whole pass of attempts makes nothing smaller.
 use crate::{
     reductions::REDUCTIONS,
     size::{Size, is_clear, measure_size},
@@ -9,22 +9,23 @@ use fosssim_model::{
 };
 use std::collections::BTreeSet;
 
-/// A scene on which a program is wrong, made as small as it gets.
+/// A scene on which a program is wrong, after the search has made it as small as possible.
 #[derive(Debug, Clone, PartialEq)]
 pub struct SmallScene {
     /// The scene.
     pub scene: Scene,
     /// The wrong step of the scene with which the search began.
     pub step: u32,
-    /// Whether no single attempt makes it smaller; else the search was stopped.
+    /// Whether no single attempt makes the scene smaller. Otherwise the search was stopped.
     pub is_minimal: bool,
 }
 
-/// Runs the program: returns whether it is wrong for the reason, alone if that is requested; `None` ends the search.
+/// A function that runs the program, and returns whether the program is wrong for the reason, and for no other one if
+/// that is requested. The result `None` ends the search.
 pub type Holds<'a> = dyn FnMut(&Scene, bool) -> Option<bool> + 'a;
 
 /// Begins with the first of these steps' scenes on which the program is wrong for the reason alone, or else for the
-/// reason together with others, and makes it smaller; `None` if there is no such scene.
+/// reason together with others, and makes it smaller, or returns `None` if there is no such scene.
 pub fn reduce(beginnings: &[(u32, Scene)], assignment: Assignment, holds: &mut Holds<'_>) -> Option<SmallScene> {
     for is_alone in [true, false] {
         for (step, scene) in beginnings {
@@ -47,7 +48,7 @@ pub fn reduce(beginnings: &[(u32, Scene)], assignment: Assignment, holds: &mut H
     None
 }
 
-/// A search under way, with the best scene so far.
+/// A running search, with the best scene so far.
 struct Search<'a, 'b> {
     assignment: Assignment,
     is_alone: bool,
@@ -62,7 +63,8 @@ struct Search<'a, 'b> {
 }
 
 impl Search<'_, '_> {
-    /// Searches until a whole pass helps nothing; `None` if the search had to end before.
+    /// Searches until a whole pass of attempts makes nothing smaller, or returns `None` if the search had to end
+    /// before.
     fn run(&mut self) -> Option<()> {
         loop {
             let size = self.size;
@@ -79,8 +81,8 @@ impl Search<'_, '_> {
         }
     }
 
-    /// Takes the first of these scenes that is smaller, as sound and clear, and on which the program is wrong for the
-    /// reason; returns whether there is one, or `None` if the search must end.
+    /// Takes the first of these scenes that is smaller, at least as sound and clear, and on which the program is wrong
+    /// for the reason. Returns whether there is one, or `None` if the search must end.
     fn take(&mut self, attempts: Vec<Scene>) -> Option<bool> {
         for scene in attempts {
             if measure_size(&scene) >= self.size {

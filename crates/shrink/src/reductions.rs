@@ -1,4 +1,4 @@
-//! The attempts to make a scene smaller: fewer parts, plainer features, rounder numbers.
+//! Makes the attempts to reduce a scene: fewer parts, plainer features, rounder numbers.
 use crate::size::{NumberKind, list_numbers, set_steps};
 use fosssim_model::{
     assignments::Assignment,
@@ -9,7 +9,7 @@ use std::ops::Range;
 /// A kind of reduction: returns the scenes of attempt `index`, the best first, or `None` after the last attempt.
 pub(crate) type Reduction = fn(&Scene, Assignment, usize) -> Option<Vec<Scene>>;
 
-/// All kinds, in the order in which they are tried.
+/// All kinds of reductions, in the order in which they are tried.
 pub(crate) const REDUCTIONS: [Reduction; 4] = [remove_parts, simplify, move_and_round, round_number];
 
 /// Removes all parts but the first body, halves of them, then quarters, down to single ones. The parts are bodies,
@@ -17,7 +17,7 @@ pub(crate) const REDUCTIONS: [Reduction; 4] = [remove_parts, simplify, move_and_
 fn remove_parts(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let count = scene.particles.len() + scene.edges.len() + scene.half_planes.len() + scene.forces.len();
     let lengths = std::iter::successors(Some(count / 2), |length| Some(length / 2)).take_while(|length| *length > 0);
-    // From the end, so that the rest keeps its numbers as long as possible.
+    // Parts are removed from the end, so that the rest keeps its numbers as long as possible.
     let ranges = lengths.flat_map(|length| (0..count).step_by(length).rev().map(move |start| start..start + length));
     std::iter::once(1..count).chain(ranges).skip(index).map(|range| vec![without_parts(scene, &range)]).next()
 }
@@ -44,7 +44,7 @@ fn without_parts(scene: &Scene, parts: &Range<usize>) -> Scene {
     scene
 }
 
-/// Keeps some parts; returns the new number of each, if it has one.
+/// Keeps some parts, and returns the new number of each kept part.
 fn retain<Part>(parts: &mut Vec<Part>, mut stays: impl FnMut(&mut Part) -> bool) -> Vec<Option<usize>> {
     let (mut numbers, mut next) = (Vec::new(), 0..);
     parts.retain_mut(|part| {
@@ -75,7 +75,8 @@ fn simplify(scene: &Scene, assignment: Assignment, index: usize) -> Option<Vec<S
     (index == 0).then_some(all)
 }
 
-/// Moves a body or a half-plane to the origin, makes bodies faster, so that numbers have room, and rounds all numbers.
+/// Moves a body or a half-plane to the origin, makes bodies faster so that their numbers can be rounded, and rounds all
+/// numbers.
 fn move_and_round(scene: &Scene, _: Assignment, index: usize) -> Option<Vec<Scene>> {
     let bodies = scene.particles.iter().map(|particle| particle.position);
     let places = bodies.chain(scene.half_planes.iter().map(|plane| plane.point)).take(4);

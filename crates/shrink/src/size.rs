@@ -1,38 +1,40 @@
-//! Measures the complexity of a scene: how many parts, numbers and digits its reader must follow.
+//! Measures the complexity of a scene, which is the number of parts, numbers and digits that its reader must follow.
 use fosssim_model::{
     scene::{Collision, Force, Integrator, Scene},
     sim::{Detection, Observer, Pair, RootSearch, Simulation},
 };
 
-/// Only scenes with at most this many bodies and steps are simulated.
+/// The maximum number of bodies, and of steps, of scenes that are simulated.
 const MAX_SIMULATED_SIZE: usize = 8;
 /// The maximum number of digits of a number that people compute by hand.
 const HAND_DIGITS: usize = 3;
-/// The relative and absolute change of numbers that must not matter, and the factor by which it may grow.
+/// The relative and absolute change of numbers that must not change the result, and the factor by which the change may
+/// grow.
 const NUMBER_SHIFT: f64 = 1e-9;
 const MAX_GROWTH: f64 = 1e4;
 
 /// The kind of a number in a scene.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub(crate) enum NumberKind {
-    /// A coordinate of a place; a scene has no origin of its own.
+    /// The number is a coordinate of a place. A scene has no origin of its own.
     Place,
-    /// A component of a velocity.
+    /// The number is a component of a velocity.
     Velocity,
-    /// A number that is 0 at best, such as a thickness or a component of a force.
+    /// The number is 0 in the simplest case, such as a thickness or a component of a force.
     Addition,
-    /// A number that is 1 at best, such as a mass or the time step.
+    /// The number is 1 in the simplest case, such as a mass or the time step.
     Factor,
 }
 
 impl NumberKind {
-    /// Returns the simplest value, which needs no thought.
+    /// Returns the simplest value, with which a reader need not compute.
     pub(crate) fn simplest_value(self) -> f64 {
         f64::from(u8::from(self == Self::Factor))
     }
 }
 
-/// Returns all numbers of a scene in its order, the time step first. A caller that changes it sets the duration, too.
+/// Returns all numbers of a scene in its order, the time step first. A caller that changes the time step sets the
+/// duration as well.
 pub(crate) fn list_numbers(scene: &mut Scene) -> Vec<(NumberKind, &mut f64)> {
     use NumberKind::{Addition, Factor, Place, Velocity};
     let mut all = vec![(Factor, &mut scene.time_step)];
@@ -126,7 +128,7 @@ pub(crate) fn is_clear(scene: &Scene) -> bool {
     (1..=2_usize).all(|seed| {
         let mut shifted = scene.clone();
         for (index, (_, value)) in list_numbers(&mut shifted).into_iter().enumerate().skip(1) {
-            // Up or down, as if by chance (Knuth's multiplicative hashing).
+            // The number moves up or down, as if by chance (Knuth's multiplicative hashing).
             let is_up = (seed * 64 + index).wrapping_mul(0x9e37_79b9_7f4a_7c15) >> 63 == 0;
             *value += if is_up { NUMBER_SHIFT } else { -NUMBER_SHIFT } * (1.0 + value.abs());
         }
@@ -138,7 +140,7 @@ pub(crate) fn is_clear(scene: &Scene) -> bool {
 /// The reference's decision about each pair in the order of its detections, and all numbers of its last state.
 type RunResult = (Vec<(Pair, bool)>, Vec<f64>);
 
-/// Runs the reference; `None` if a step has no result.
+/// Runs the reference, or returns `None` if a step has no result.
 pub(crate) fn run(scene: &Scene) -> Option<RunResult> {
     #[derive(Default)]
     struct Decisions(Vec<(Pair, bool)>);

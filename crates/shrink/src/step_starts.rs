@@ -1,4 +1,4 @@
-//! Wrong steps as scenes of their own: the state before a step is the initial state.
+//! Makes scenes of wrong steps: the state before a step becomes the initial state.
 use crate::size::set_steps;
 use fosssim_model::{
     scene::{Display, Scene},
