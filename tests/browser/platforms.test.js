@@ -198,7 +198,7 @@ test("a course of a platform, from its registration to a link in it", async () =
   // There is no assignment yet, so it is created on the way.
   await page.getByLabel("Title").fill("Milestone one");
   await accessible(page);
-  await page.getByRole("button", { name: "Create it, and choose it" }).click();
+  await page.getByRole("button", { name: "Create the assignment, and choose it" }).click();
   await page.getByRole("heading", { name: "Milestone one" }).waitFor();
   await page.getByText("The platform's link now opens this assignment.").waitFor();
   await page.getByRole("link", { name: "Settings" }).click();

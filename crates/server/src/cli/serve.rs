@@ -144,7 +144,7 @@ async fn print_greeting(
     let mut output = std::io::stdout();
     writeln!(output, "Listening on {local}")?;
     if let Some(link) = link {
-        writeln!(output, "Sign in as administrator, once, at {public}/welcome/{}", link.reveal())?;
+        writeln!(output, "Sign in once as administrator at {public}/welcome/{}", link.reveal())?;
     }
     if let Some(program) = example {
         let link = app.example().await.map_err(|problem| anyhow!("{}: {}", problem.detail, problem.remedy))?;

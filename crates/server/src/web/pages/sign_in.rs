@@ -87,10 +87,9 @@ impl Answer {
         let fault: String = fault.chars().filter(|c| !c.is_control()).take(300).collect();
         Err(match fault.as_str() {
             "" => Problem::invalid("state, or the code or token, is missing"),
-            fault if fault.starts_with("access_denied") => refused(format!(
-                "the sign-in was stopped at the {service}, by you or by the {service} itself \
-                    ({fault})"
-            )),
+            fault if fault.starts_with("access_denied") => {
+                refused(format!("the sign-in was stopped by you or by the {service} ({fault})"))
+            }
             fault => refused(format!("the {service} says: {fault}")),
         })
     }

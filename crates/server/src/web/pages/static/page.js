@@ -18,7 +18,7 @@ if (state && state.dataset.follow) {
     if (ahead !== undefined)
       text = ahead ? `${ahead} submission${ahead === 1 ? "" : "s"} before yours.` : "You are next.";
     if (expected !== undefined) text += ` About ${expected} s.`;
-    if (submission.lacks_worker) text += " No worker is connected now, so it has to wait; staff sees this, too.";
+    if (submission.lacks_worker) text += " No worker is connected now, so it has to wait; staff can also see this.";
     state.querySelector("[role=status]").textContent = text;
     if (progress) Object.assign(state.querySelector("progress"), { max: progress.all, value: progress.done });
   };
