@@ -48,12 +48,12 @@ impl Display for SteplessFinding<'_> {
             FindingDetail::MissedCollision { expected } => {
                 let Impulse { pair, normal, time } = expected;
                 let (pair, time, normal) = (PairText(pair), ExactNumber(time), VectorText(normal.into()));
-                write!(f, "{pair} collide at time {time} with normal {normal}, but the trace misses it")
+                write!(f, "{pair} collide at time {time} with normal {normal}, but the trace has no such collision")
             }
             FindingDetail::SuperfluousCollision { actual } => {
                 let LoggedImpulse { normal, time, .. } = actual;
                 let (pair, time, normal) = (LoggedPair(&actual), ExactNumber(time), VectorText(normal.into()));
-                write!(f, "the trace has {pair} collide at time {time} with normal {normal}, but they do not")
+                write!(f, "the trace has a collision of {pair} at time {time} with normal {normal}, but there is none")
             }
             FindingDetail::WrongNormal { expected, actual, .. } => {
                 let pair = PairText(expected.pair);

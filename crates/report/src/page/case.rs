@@ -215,7 +215,7 @@ fn subject(finding: &Finding) -> String {
             format!("the contact of {}", PairText(expected.pair))
         }
         FindingDetail::MissedCollision { expected } => {
-            format!("{} collide, but the trace misses it", PairText(expected.pair))
+            format!("{} collide, but the trace has no such collision", PairText(expected.pair))
         }
         FindingDetail::Position { particle, .. } if finding.step > 0 => format!("where particle {particle} ends"),
         FindingDetail::Velocity { particle, .. } if finding.step > 0 => {
