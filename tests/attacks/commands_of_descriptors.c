@@ -1,4 +1,4 @@
-// promise: Descriptor commands that are not listed are rejected.
+// promise: Descriptor commands outside the filter's list are rejected.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {

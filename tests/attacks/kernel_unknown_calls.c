@@ -1,4 +1,4 @@
-// promise: System calls that are not listed do not exist for a program.
+// promise: System calls outside the filter's list do not exist for a program.
 // expect: exited 0
 #include "attack.h"
 int main(int argc, char **argv) {
