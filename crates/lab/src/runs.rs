@@ -50,7 +50,7 @@ impl WatchedScene {
     pub fn from_folder(folder: &Path) -> anyhow::Result<Vec<Self>> {
         let files =
             scene_files::list(folder, ".xml").with_context(|| format!("{}: can't be read", folder.display()))?;
-        ensure!(!files.is_empty(), "{}: no group of this folder holds a scene", folder.display());
+        ensure!(!files.is_empty(), "{}: no group of this folder contains a scene", folder.display());
         let watched = |SceneFile { name, path, .. }: SceneFile| -> anyhow::Result<Self> {
             let scene = original::read(&std::fs::read(&path)?).with_context(|| path.display().to_string())?.scene;
             let right = record_trace(&scene, Student::default());

@@ -4,7 +4,7 @@
 #[must_use]
 pub fn describe_right(steps: u32, count: fn(u64) -> String) -> String {
     match steps {
-        0 => "there are no steps, so nothing can be wrong".to_owned(),
+        0 => "there are no steps, so no step can be wrong".to_owned(),
         1 => "the only step is right".to_owned(),
         steps => format!("all {} steps are right", count(steps.into())),
     }

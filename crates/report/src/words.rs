@@ -173,7 +173,7 @@ fn describe_bad_trace(bad: &BadTrace) -> String {
         BadTrace::Unreadable { frame, step, cause, offset, damage } => {
             let what = match cause {
                 ReadFailure::State | ReadFailure::Impulses => "the trace ends too early",
-                ReadFailure::Memory => "a list in the trace claims more entries than the file contains",
+                ReadFailure::Memory => "a list in the trace declares more entries than the file contains",
                 ReadFailure::Limit => "the trace is beyond a limit of this grader",
                 ReadFailure::Io => "the trace could not be read",
             };
@@ -224,7 +224,7 @@ fn describe_unusable(why: &UnusableReason) -> String {
                 FolderContents::Others { names, more, elsewhere } => {
                     let more = if *more > 0 { format!(" and {more} more") } else { String::new() };
                     let elsewhere = elsewhere.as_ref().map(|path| format!("; {path} is not in the expected folder"));
-                    format!("{sought}; it holds {}{more}{}", names.join(", "), elsewhere.unwrap_or_default())
+                    format!("{sought}; it contains {}{more}{}", names.join(", "), elsewhere.unwrap_or_default())
                 }
             }
         }

@@ -37,7 +37,7 @@ pub(super) fn doctor() -> Result<u8> {
     let mut text = String::new();
     for report in &reports {
         let state = match (report.active, report.required) {
-            (true, _) => "holds",
+            (true, _) => "works",
             (false, true) => "MISSING",
             (false, false) if report.remedy.is_none() => "unused",
             (false, false) => "missing",

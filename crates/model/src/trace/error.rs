@@ -107,7 +107,7 @@ pub enum Malformation {
     },
     /// A count is too large for the rest of the trace.
     #[error(
-        "the {list} list claims {count} entries, at least {needs} bytes, but {left} are left; the trace is cut or of \
+        "the {list} list declares {count} entries, at least {needs} bytes, but {left} are left; the trace is cut or of \
          another scene"
     )]
     CountBeyondEnd {
@@ -130,7 +130,7 @@ pub enum Malformation {
     },
     /// The bytes end inside a polynomial's coefficients.
     #[error(
-        "polynomial {polynomial} claims {size} coefficient{} ({} bytes), but {left} bytes are left",
+        "polynomial {polynomial} declares {size} coefficient{} ({} bytes), but {left} bytes are left",
         if *.size == 1 { "" } else { "s" },
         8 * i64::from(*.size)
     )]
@@ -237,15 +237,15 @@ mod tests {
         let error = TraceError { offset: 72, frame: 4, step: 2, what };
         assert_eq!(
             error.to_string(),
-            "byte 72, record 4 (step 2): the impulse list claims 7 entries, at least 252 bytes, but 40 are left; the \
+            "byte 72, record 4 (step 2): the impulse list declares 7 entries, at least 252 bytes, but 40 are left; the \
              trace is cut or of another scene"
         );
         let what = Malformation::SizeBeyondEnd { polynomial: 3, size: i32::MAX, left: 0 };
         let error = TraceError { offset: 0, frame: 0, step: 0, what };
         assert_eq!(
             error.to_string(),
-            "byte 0, record 0 (initial state): polynomial 3 claims 2147483647 coefficients (17179869176 bytes), but 0 \
-             bytes are left"
+            "byte 0, record 0 (initial state): polynomial 3 declares 2147483647 coefficients (17179869176 bytes), but \
+             0 bytes are left"
         );
     }
 }

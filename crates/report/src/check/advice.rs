@@ -33,13 +33,13 @@ fn milestone_advice(finding: &Finding, collisions: CollisionType) -> Option<&'st
         ],
         (FindingDetail::Position { .. } | FindingDetail::Velocity { .. }, CollisionType::None) if finding.step > 0 => {
             &["the integrator or the forces: the step starts from the trace's own state, so errors of earlier steps \
-               are not to blame"]
+                are not the cause"]
         }
         (FindingDetail::Position { .. } | FindingDetail::Velocity { .. }, CollisionType::Penalty)
             if finding.step > 0 =>
         {
             &["the integrator or the forces, the penalty force among them: the step starts from the trace's own \
-               state, so errors of earlier steps are not to blame"]
+               state, so errors of earlier steps are not the cause"]
         }
         _ => return None,
     })
@@ -93,7 +93,7 @@ fn finding_advice(finding: &Finding, collisions: CollisionType) -> &'static [&'s
         ],
         FindingDetail::Position { .. } | FindingDetail::Velocity { .. } => {
             &["the integrator, the forces, or the response: the step starts from the trace's own state, so errors of \
-             earlier steps are not to blame"]
+                earlier steps are not the cause"]
         }
         FindingDetail::ContactTime { .. } => &[
             "the time of impact that is stored with the contact: the fraction of the step at which the objects touch",

@@ -259,9 +259,9 @@ enum StopKind {
     StateUnreadable,
     /// The impulses or polynomials of a record can't be read.
     ImpulsesUnreadable,
-    /// A list claims more entries than fit into memory.
+    /// A list declares more entries than fit into memory.
     ImpossibleCount,
-    /// A list claims more entries than the limits allow.
+    /// A list declares more entries than the limits allow.
     BeyondLimit,
     /// The operating system could not read more of the file.
     ReadError,

@@ -19,7 +19,7 @@ use std::{fmt::Display, iter};
 
 /// The advice for a trace that reaches a limit of this program.
 const LIMIT_ADVICE: &str =
-    "this is a limit of this program, which the original does not have: it says nothing about the trace";
+    "this is a limit of this program, which the original does not have: it is no fault of the trace";
 
 /// The advice for a step in which the reference's computation has no result.
 const NO_RESULT: &str = "the trace's own positions and velocities lead here; look for values that are not finite or \
@@ -112,7 +112,7 @@ pub(crate) fn render_headline(check: &Check<'_>) -> String {
     }
     let steps = count(u64::from(outcome.steps));
     let parity = match outcome.parity.overall {
-        Overall::Passed if outcome.steps == 0 => "the scene has no steps, so nothing can be wrong".to_owned(),
+        Overall::Passed if outcome.steps == 0 => "the scene has no steps, so no step can be wrong".to_owned(),
         Overall::Passed => format!("{} by the original's rules", share::describe_right(outcome.steps, count)),
         Overall::Failed if outcome.damaged_steps > 0 => describe_damage(outcome),
         Overall::Failed if outcome.parity.findings.wrong_steps == 0 => {

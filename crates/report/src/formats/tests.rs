@@ -144,7 +144,7 @@ fn prairielearn_says_that_groups_which_are_not_shown_count() {
 /// A fact about the upload is said once, at the top, and not of each scene.
 #[test]
 fn what_is_wrong_with_a_submission_itself_is_said_once() {
-    let sentence = "the upload has no program called FOSSSim; it holds main.cpp, fosssim-sample";
+    let sentence = "the upload has no program called FOSSSim; it contains main.cpp, fosssim-sample";
     for format in
         [Format::Text, Format::Junit, Format::Gradescope, Format::Prairielearn, Format::Github, Format::Markdown]
     {

@@ -16,11 +16,11 @@ fn what_is_there_instead_of_the_program_is_one_sentence() {
     let closed = FolderContents::Unreadable("permission denied".to_owned());
     assert_eq!(says(closed), "the upload has no program called FOSSSim: it can't be read: permission denied");
     let found = FolderContents::Others { names: names(&["fosssim-sample", "main.cpp"]), more: 0, elsewhere: None };
-    assert_eq!(says(found), "the upload has no program called FOSSSim; it holds fosssim-sample, main.cpp");
+    assert_eq!(says(found), "the upload has no program called FOSSSim; it contains fosssim-sample, main.cpp");
     let elsewhere = Some("work/build/FOSSSim".to_owned());
     assert_eq!(
         says(FolderContents::Others { names: names(&["a", "work/"]), more: 6, elsewhere }),
-        "the upload has no program called FOSSSim; it holds a, work/ and 6 more; \
+        "the upload has no program called FOSSSim; it contains a, work/ and 6 more; \
          work/build/FOSSSim is not in the expected folder"
     );
 }

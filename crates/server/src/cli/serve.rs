@@ -149,7 +149,7 @@ async fn print_greeting(
     if let Some(program) = example {
         let link = app.example().await.map_err(|problem| anyhow!("{}: {}", problem.detail, problem.remedy))?;
         if let Some(link) = link {
-            writeln!(output, "Sign in as a student, once, at {public}/welcome/{}", link.reveal())?;
+            writeln!(output, "Sign in once as a student at {public}/welcome/{}", link.reveal())?;
         }
         if !program.exists() {
             let place = program.to_str().context("the data folder's name is not UTF-8")?;

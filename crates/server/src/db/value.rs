@@ -59,7 +59,7 @@ impl Row {
     ///
     /// Fails if the column is NULL or has another type.
     pub fn int(&self, column: &str) -> Result<i64, DbError> {
-        self.maybe_int(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
+        self.maybe_int(column)?.ok_or_else(|| DbError::Other(format!("{column} is empty")))
     }
 
     /// Reads an integer, or `None` for NULL.
@@ -80,7 +80,7 @@ impl Row {
     ///
     /// Fails if the column is NULL or has another type.
     pub fn text(&self, column: &str) -> Result<String, DbError> {
-        self.maybe_text(column)?.ok_or_else(|| DbError::Other(format!("{column} holds nothing")))
+        self.maybe_text(column)?.ok_or_else(|| DbError::Other(format!("{column} is empty")))
     }
 
     /// Reads text, or `None` for NULL.

@@ -67,7 +67,7 @@ fn check_words(what: &str, text: &str, least: usize) -> Result<(), Problem> {
     let is_hidden = |c| identity::is_control(c) && !matches!(c, '\n' | '\r' | '\t');
     if let Some(hidden) = text.chars().find(|c| is_hidden(*c)) {
         let hidden = hidden.escape_unicode();
-        return Err(Problem::invalid(format!("{what} must not hold the invisible character {hidden}")));
+        return Err(Problem::invalid(format!("{what} must not contain the invisible character {hidden}")));
     }
     let is_fit = (least..=MAX_TEXT_LENGTH).contains(&length);
     ensure(is_fit, Problem::invalid(format!("{what} must have {least} to {MAX_TEXT_LENGTH} characters")))

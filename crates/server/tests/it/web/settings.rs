@@ -137,7 +137,7 @@ async fn nothing_is_overwritten_unseen(fresh: Fresh) {
     let mark = format!("/api/v1/courses/physics/submissions/{id}/mark");
     let hidden = r#"{"comment": "well\u200bdone"}"#;
     let refused = colleague.send("PUT", &mark, JSON, hidden.as_bytes()).expect(400).text();
-    assert!(refused.contains("must not hold the invisible character \\\\u{200b}"), "{refused}");
+    assert!(refused.contains("must not contain the invisible character \\\\u{200b}"), "{refused}");
     let seen = colleague.send("PUT", &mark, JSON, br#"{"comment": "well done"}"#).expect(200).json();
     let seen = seen["mark"]["marked_at"].as_i64().expect("a moment");
     let other = format!(r#"{{"comment": "poor", "marked_at": {}}}"#, seen - 1);
