@@ -1,4 +1,4 @@
-//! Once warm, a step of an explicit integrator allocates nothing, whatever the collision handling.
+//! After its first steps, an explicit integrator allocates no memory, with any collision handling.
 use std::{
     alloc::{GlobalAlloc, Layout, System},
     cell::Cell,

@@ -25,7 +25,7 @@ fn workspace() -> Workspace {
     workspace
 }
 
-/// The same where programs can be run.
+/// Returns the workspace if this machine can run programs.
 fn with_programs() -> Option<Workspace> {
     let workspace = workspace();
     let doctor = workspace.run(["doctor"]);
@@ -246,7 +246,7 @@ fn a_second_name_of_a_file_takes_nobodys_points() {
     }
     program(&workspace, "class/carol", 3);
     let link = |from: &str, to: &str| fs::hard_link(workspace.path(from), workspace.path(to)).expect("a hard link");
-    // As `cp -al` makes a backup.
+    // The folder is like a backup made by `cp -al`.
     fs::create_dir(workspace.path("backup")).expect("a folder");
     link("class/alice/FOSSSim", "backup/alice");
     link("class/carol", "backup/carol");
@@ -382,7 +382,7 @@ fn a_folder_of_results_leads_nowhere_else() {
         assert!(workspace.path("grades").join(name).symlink_metadata().expect("written").is_file(), "{name}");
     }
     assert_eq!(workspace.read("precious/file"), b"precious");
-    // Nor do its folders.
+    // Its folders do not lead to other places either.
     for folder in ["reports", "cards", "students"] {
         drop(fs::remove_dir_all(workspace.path("grades").join(folder)));
         symlink("../precious", workspace.path("grades").join(folder)).expect("a link");

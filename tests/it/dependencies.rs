@@ -22,7 +22,7 @@ fn metadata() -> &'static Value {
     })
 }
 
-/// All packages by their ids.
+/// Returns all packages by their ids.
 fn packages() -> BTreeMap<&'static str, &'static Value> {
     let packages = metadata()["packages"].as_array().expect("packages");
     packages.iter().map(|package| (string(&package["id"]), package)).collect()

@@ -57,7 +57,7 @@ fn explained(scenes: &[(String, Scene)], row: &Row) -> Vec<Vec<Explanation>> {
     found
 }
 
-/// Every third one: `scripts/explanation-matrix` asks about all.
+/// Every third mistake is explained here; `scripts/explanation-matrix` explains all of them.
 #[test]
 fn nine_of_ten_mistakes_are_named_first() {
     let scenes = suite();

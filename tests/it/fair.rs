@@ -28,7 +28,7 @@ const FIRST: [&str; 9] = [
     "IntegratorTests/implicit-euler-then-collisions",
 ];
 
-/// All built-in scenes by name; those of [`FIRST`] first.
+/// Returns all built-in scenes by name, beginning with those of [`FIRST`].
 pub fn assets() -> Vec<(String, Scene)> {
     let scene = |name: &str| original::read(library::scene(name).unwrap()).unwrap().scene;
     let mut scenes: Vec<(String, Scene)> = library::names().map(|name| (name.to_owned(), scene(name))).collect();
@@ -112,7 +112,7 @@ fn every_correct_variant_moves_as_the_correct_sample_and_passes_the_fair_rules()
     assert!(refused.is_empty(), "{refused:#?}");
 }
 
-/// All positions and velocities of a trace, with everything else left out.
+/// Returns only the positions and velocities of a trace.
 fn states(scene: &Scene, trace: &[u8]) -> Vec<f64> {
     let mut reader = Reader::from_slice(trace, Layout::for_scene(scene));
     let (mut frame, mut states) = (Frame::default(), Vec::new());

@@ -140,7 +140,7 @@ fn the_rules_decide_the_points_and_reports_say_where_they_differ() {
     assert!(both.out().contains("by the original's rules (the fair rules differ in "), "{}", both.shown());
     let scenes = String::from_utf8(workspace.read("out/scenes.csv")).expect("text");
     assert!(scenes.contains(",absolute_coefficients"), "{scenes}");
-    // The same folder: results by other rules are not taken for these.
+    // In the same folder, results by other rules are not used for these rules.
     let fair = grade(&["--rules", "fair"]);
     assert_eq!(fair.code, Some(0), "{}", fair.shown());
     let parity = grade(&["--rules", "parity"]);
@@ -297,7 +297,7 @@ fn a_folder_with_the_program_is_one_submission_and_results_and_links_are_none() 
         let rows = rows(&workspace.read("one/grades/grades.csv"));
         rows.into_iter().map(|(name, verdict, _)| format!("{name} {verdict}")).collect::<Vec<_>>()
     };
-    // Of two names of one file nobody can tell whose it is: both are graded, and staff is told.
+    // If one file has two names, its owner is unknown. Both entries are graded, and staff gets a warning.
     let passed_over = |name: &str| format!("{name} not graded");
     let graded = ["alice", "bob", "carol", "thief"].map(|name| format!("{name} run-time error"));
     let expected =

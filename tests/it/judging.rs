@@ -7,12 +7,12 @@ use fosssim_oracle::{
 };
 use rayon::prelude::*;
 
-/// Both ways say the same of a trace, to the last field.
+/// Both ways of judging give the same result for a trace, in every field.
 pub fn compare(name: &str, scene: &Scene, trace: &[u8]) {
     let [one, other] = [false, true].map(|one_by_one| {
         let options =
             Options { threads: 1, uses_fair_rules: true, judges_individually: one_by_one, ..Options::default() };
-        // As text, which compares NaN, too.
+        // The results are compared as text, because NaN does not equal NaN.
         format!("{:?}", replay::judge(scene, trace, &options, &mut ()))
     });
     assert!(one == other, "{name}:\n{one}\n{other}");

@@ -50,7 +50,7 @@ fn results(workspace: &Workspace, output: &str) -> BTreeSet<Vec<String>> {
     reader.records().map(|row| row.expect("a row").iter().take(4).map(str::to_owned).collect()).collect()
 }
 
-/// Nothing twice in the journal, and as much in it as in that of a grading that nobody disturbed.
+/// The journal contains no result twice, and as many results as that of an undisturbed grading.
 fn assert_undisturbed(workspace: &Workspace, output: &str, run: &Run) {
     assert_eq!(run.code, Some(0), "{}", run.shown());
     assert_eq!(results(workspace, output), results(workspace, "whole"), "{}", run.shown());

@@ -34,11 +34,11 @@ fn scenes() -> Vec<(&'static str, Scene, Vec<u8>)> {
 enum Recognized {
     /// No scene shows the mistake by more than round-off.
     Unseen,
-    /// It is never named.
+    /// The mistake is never named.
     Never,
-    /// It is among the mistakes that a trace can't tell apart from the one that is named.
+    /// The mistake is among those that a trace cannot distinguish from the named one.
     Among,
-    /// It is named.
+    /// The mistake is named.
     First,
 }
 

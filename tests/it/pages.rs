@@ -39,7 +39,7 @@ fn a_class_has_a_page_each_and_an_index_and_nothing_is_run_for_them_again() {
     assert!(body(&wrong).contains("id=\"reference-") && body(&wrong).contains("Coefficients"), "no polynomials");
     let right = text(&workspace, "class/reports/fosssim-sample.html");
     assert!(!body(&right).contains("class=\"stage\"") && body(&right).contains("scenes accepted</summary>"));
-    // All is there: nothing is run again, and the pages are the same, byte for byte.
+    // All results are stored, so no program is run again, and the pages are the same, byte for byte.
     let again = workspace.run(&words);
     let taken = again.err().lines().find(|line| line.starts_with("reused ")).expect("a line").to_owned();
     let numbers: Vec<&str> = taken.split(' ').filter(|word| word.parse::<u32>().is_ok()).collect();
@@ -51,7 +51,7 @@ fn a_class_has_a_page_each_and_an_index_and_nothing_is_run_for_them_again() {
     assert_eq!(text(&workspace, "class/reports/fosssim-sample.pe-square-no-eh.html"), wrong);
 }
 
-/// Each level of hints, through the whole program.
+/// Tests each level of hints through the whole program.
 #[test]
 fn a_page_tells_no_more_than_the_hints() {
     let Some(workspace) = grading::workspace() else { return };

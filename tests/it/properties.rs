@@ -51,7 +51,7 @@ fn a_run_can_be_cut_short_at_its_first_wrong_step() {
     );
 }
 
-/// Everything that a report shows; NaN is compared as text.
+/// Returns the contents of a report as text, so that NaN can be compared.
 fn told(outcome: &Outcome) -> String {
     let mut text = format!("{outcome:?}");
     let searches = text.rfind("searches").expect("the last field");

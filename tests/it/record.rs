@@ -86,7 +86,7 @@ fn scenes_that_cannot_be_recorded_are_named() {
 
 #[test]
 fn the_embedded_recordings_are_what_is_simulated_now() {
-    // Nothing of the checkout is in this folder, so the embedded scenes are checked.
+    // This folder contains no file of the checkout, so the embedded scenes are checked.
     let run = Workspace::new().run(["record", "--check"]);
     assert_eq!(run.code, Some(0), "{}", run.shown().chars().take(4000).collect::<String>());
 }

@@ -109,7 +109,7 @@ fn scenes_of_the_contest_are_recorded_byte_for_byte() {
     corpus::ran("scenes_of_the_contest_are_recorded_byte_for_byte", cases);
 }
 
-/// No certificate excludes an impact that the root finder finds, and asking it changes no byte.
+/// No certificate excludes an impact that the root finder finds, and the use of certificates changes no byte.
 #[test]
 fn certificates_agree_with_the_root_finder_on_every_course_scene() {
     let Some(folder) = corpus::folder() else { return };

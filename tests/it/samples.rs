@@ -84,7 +84,7 @@ fn is_state_mistake(row: &Row) -> bool {
     areas.contains(&row.area.as_str()) || row.id.starts_with("respond-")
 }
 
-/// All built-in scenes, in order.
+/// Returns all built-in scenes, in order.
 fn assets() -> Vec<PathBuf> {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("assets");
     let files = scene_files::list(&folder, ".xml").expect("assets");
@@ -150,7 +150,7 @@ fn the_catalogue_is_large_and_every_id_is_accepted() {
     for row in &rows {
         assert!(table.contains(&row.id) && table.contains(&row.explanation), "{}", row.id);
     }
-    // Each writes as a program what the library's student writes.
+    // Each program writes the same trace as the library's student.
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
     let read = original::read(&std::fs::read(&scene).expect("a readable scene")).expect("a scene").scene;
     let different: Vec<&str> = rows

@@ -454,7 +454,7 @@ fn a_program_cannot_have_the_grader_run_in_its_place() {
     let link = bench.folder.path().join("link");
     std::os::unix::fs::symlink(grader, &link).unwrap();
     assert_eq!(bench.run(link, &["--version"]).ended, RunEnd::CouldNotStart(StartProblem::GradersOwn));
-    // Not even a folder that it may read shows it the grader.
+    // The program does not see the grader even in a folder that it may read.
     let beside = Path::new(grader).parent().unwrap();
     let outcome = bench.finish(&bench.job("/bin/cat", &[grader]).readable([beside]).policy(Policy::Tools));
     assert!(outcome.ended != RunEnd::Exited(0) && outcome.stdout.bytes.is_empty(), "it read the grader");

@@ -1,4 +1,4 @@
-//! Every scene of the course, read by both readers.
+//! Reads every scene of the course with both readers.
 #![expect(clippy::disallowed_methods, reason = "the corpus is a folder of files")]
 
 use std::path::{Path, PathBuf};
@@ -7,7 +7,7 @@ use fosssim_oracle::scene::{self, original};
 
 use crate::corpus;
 
-/// All scene files below a folder, in a fixed order.
+/// Returns all scene files below a folder, in a fixed order.
 fn scene_files(folder: &Path, found: &mut Vec<PathBuf>) {
     let mut entries: Vec<PathBuf> =
         folder.read_dir().expect("a readable folder").map(|entry| entry.expect("a readable entry").path()).collect();

@@ -205,7 +205,7 @@ fn edited(text: &str, edits: Vec<(prop::sample::Index, usize, Vec<u8>)>) -> Vec<
     bytes
 }
 
-/// Both readers survive; what the strict one accepts is what the original reads, and what it refuses has a reason.
+/// No reader panics. The strict reader accepts only scenes that the original reads equally, and gives reasons.
 fn judge(bytes: &[u8]) -> Result<(), TestCaseError> {
     let original = original::read(bytes);
     match scene::read("scene", bytes) {

@@ -84,7 +84,7 @@ fn shards_put_together_are_a_grading_in_one_go() {
     assert_eq!(whole.code, Some(1), "{}", whole.shown());
     for shard in ["1/3", "2/3", "3/3"] {
         let run = workspace.run(["grade", "class", "--suite", "suite.toml", "--output", "parts", "--shard", shard]);
-        // Of the second both are right as far as these scenes show.
+        // Both entries of the second shard are right on these scenes.
         assert_eq!(run.code, Some(u8::from(shard != "2/3").into()), "{}", run.shown());
         assert!(
             run.err().contains(&format!("shard {}: 2 of 6 submissions", shard.replace('/', " of "))),

@@ -41,7 +41,7 @@ fn a_link_is_followed_and_the_mode_is_kept() {
     assert_eq!(workspace.read("real.bin"), trace_of(BOUNCE));
     assert!(workspace.path("link.bin").symlink_metadata().unwrap().is_symlink());
     assert_eq!(workspace.path("real.bin").metadata().unwrap().permissions().mode() & 0o777, 0o640);
-    // Nor does the umask take anything away.
+    // The umask does not remove permissions either.
     std::fs::set_permissions(workspace.path("real.bin"), std::fs::Permissions::from_mode(0o666)).unwrap();
     let script = "umask 077; exec \"$0\" simulate scene.xml -o real.bin";
     let mut shell = Command::new("sh");

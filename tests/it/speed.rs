@@ -41,7 +41,7 @@ fn a_fast_program_has_all_points_and_a_slow_one_those_for_being_right() {
         assert_eq!(found["runs"], 2);
         let of = |key: &str| found[key].as_f64().expect("a ratio");
         assert!(of("least_ratio") <= of("greatest_ratio") && (of("ratio") < 10.0) == (busy == 0), "{found}");
-        // Every report says where the points come from.
+        // Every report shows the origin of the points.
         let words = found["text"].as_str().expect("words").to_owned();
         assert!(words.contains("times the reference's processor time; 2 rounds gave"), "{words}");
         for format in ["text", "html", "gradescope", "prairielearn"] {

@@ -127,7 +127,7 @@ impl Run {
         String::from_utf8_lossy(&self.stderr).into_owned()
     }
 
-    /// Everything about the run as one text, for snapshots.
+    /// Returns the results of the run as one text, for snapshots.
     pub fn shown(&self) -> String {
         let code = self.code.map_or_else(|| "killed by a signal".to_owned(), |code| code.to_string());
         format!("exit code: {code}\n----- stdout -----\n{}----- stderr -----\n{}", self.out(), self.err())

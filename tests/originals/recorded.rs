@@ -1,4 +1,4 @@
-//! Every scene that comes with the program is recorded as its milestone's original records it.
+//! Checks that each built-in scene is recorded as by its milestone's original.
 use fosssim_oracle::{
     assignments::Assignment,
     suite::{library, recording::Recording},

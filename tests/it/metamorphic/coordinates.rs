@@ -27,7 +27,7 @@ use std::cell::Cell;
 /// A detection: the pair, its polynomials, and the time and normal of a hit.
 type Heard = (Pair, Vec<Polynomial>, Option<(f64, Vec2)>);
 
-/// Everything that a step tells.
+/// The results of a step.
 #[derive(Debug, Default, PartialEq)]
 struct Story {
     detections: Vec<Heard>,

@@ -1,4 +1,4 @@
-//! Every decision of whole simulations against the certified and the exact one.
+//! Compares every decision of whole simulations with the certified and the exact decision.
 use super::built_in;
 use fosssim_oracle::{
     num::{
@@ -18,9 +18,9 @@ use rayon::prelude::*;
 /// How the decisions of a scene compare.
 #[derive(Debug, Default, Clone)]
 struct Tally {
-    /// The same, certainly.
+    /// The decisions are certainly the same.
     same: u64,
-    /// Hang on round-off.
+    /// The decisions depend on round-off.
     borderline: u64,
     /// Another answer because `c t^m` counts as nowhere positive in the original (root-finder.md 17.1).
     alone: u64,

@@ -19,7 +19,7 @@ use proptest::{
     test_runner::{RngSeed, TestCaseResult, TestRunner},
 };
 
-/// All built-in scenes by name.
+/// Returns all built-in scenes by name.
 fn built_in() -> Vec<(&'static str, Scene)> {
     let scene = |name| original::read(library::scene(name).expect("a built-in scene")).expect("a sound scene").scene;
     library::names().map(|name| (name, scene(name))).collect()

@@ -1,4 +1,4 @@
-//! Nothing passes through anything in one step.
+//! No body passes through another one in one step.
 use super::{
     crowd::{TIME_STEP, scene},
     mended::{Mended, Quadratics},

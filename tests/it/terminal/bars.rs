@@ -30,7 +30,7 @@ fn interrupted(workspace: &Workspace, words: &[&str], at: &str) -> (String, Opti
     let mut command = workspace.command();
     command.args(words).env("TERM", "xterm").stdout(Stdio::null()).stderr(Stdio::from(side));
     let mut child = command.spawn().expect("the program");
-    // Its copies alone keep the other end open.
+    // Only its copies keep the other end open.
     drop(command);
     let (mut seen, mut buffer, mut sent) = (Vec::new(), [0; 4096], false);
     while let Ok(count @ 1..) = main.read(&mut buffer) {
@@ -53,7 +53,7 @@ fn left(seen: &str) -> &str {
 #[test]
 fn an_interrupt_leaves_no_bar_behind() {
     let workspace = Workspace::new();
-    // As good as endless.
+    // The number of steps is practically endless.
     workspace.write("scene.xml", DRIFT.replace("time=\"1\"", "time=\"100000000\""));
     let (seen, code) = interrupted(&workspace, &["simulate", "scene.xml"], " left");
     assert_eq!((code, left(&seen).trim()), (Some(130), ""), "{seen:?}");

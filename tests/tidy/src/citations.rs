@@ -34,7 +34,7 @@ fn sections(text: &str) -> BTreeSet<String> {
     sections
 }
 
-/// Everything that a text cites of the specification: document and sections.
+/// Returns the sections of the specification that a text cites, with their documents.
 fn citations(text: &str, documents: &BTreeMap<String, BTreeSet<String>>) -> Vec<(String, String)> {
     let mut found = Vec::new();
     // A citation may be broken over two lines of a comment.

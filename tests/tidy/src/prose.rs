@@ -45,7 +45,7 @@ fn paragraphs(text: &str) -> String {
     kept
 }
 
-/// Its sentences, in words.
+/// Returns the sentences of a text, each as its words.
 fn sentences(text: &str) -> Vec<Vec<&str>> {
     let mut sentences = vec![Vec::new()];
     for word in text.split_whitespace() {
@@ -211,7 +211,7 @@ fn settings_of_the_server_have_their_rows() {
     assert!(missing.is_empty(), "docs/server names no {missing:?}");
 }
 
-/// Every page of `docs` stands in its table of contents.
+/// Every page of `docs` is in the table of contents.
 #[test]
 fn the_table_of_contents_has_every_page() {
     let contents = text(&root().join("docs/SUMMARY.md"));

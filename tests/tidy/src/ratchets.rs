@@ -229,7 +229,7 @@ pub fn modules(source: &Path) -> Vec<PathBuf> {
     files
 }
 
-/// No compiler tells of a module that nobody declares.
+/// The compiler does not report a module that is not declared.
 #[test]
 fn every_source_is_compiled() {
     let sources = sources();

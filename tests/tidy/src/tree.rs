@@ -27,7 +27,7 @@ pub fn name(path: &Path) -> &str {
     path.strip_prefix(root()).expect("in the checkout").to_str().expect("a name")
 }
 
-/// All files below a folder whose names end like this, in their order.
+/// Returns all files below a folder whose names have the given end, in order.
 pub fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap_or_else(|error| panic!("{}: {error}", folder.display()));
     let mut paths: Vec<_> = entries.map(|entry| entry.expect("an entry").path()).collect();
@@ -37,7 +37,7 @@ pub fn files(folder: &Path, ending: &str) -> Vec<PathBuf> {
     found.filter(|path| path.to_string_lossy().ends_with(ending)).collect()
 }
 
-/// Every Rust file of the checkout.
+/// Returns every Rust file of the checkout.
 pub fn sources() -> Vec<PathBuf> {
     let found = SOURCES.iter().flat_map(|folder| files(&root().join(folder), ".rs"));
     found.chain([root().join("build.rs")]).collect()

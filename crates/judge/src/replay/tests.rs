@@ -40,7 +40,7 @@ fn a_batch_counts_all_lists() {
     }
 }
 
-/// As many contacts as fit into a record are told apart without comparing each with all others.
+/// The contacts of a full record are distinguished without comparing each with all others.
 #[test]
 fn a_crowd_of_contacts_is_judged() {
     let scene = crate::samples::scene(crate::samples::BOUNCE_SCENE);
@@ -66,7 +66,7 @@ fn a_record_beyond_the_memory_is_wrong_by_its_length_or_not_judged() {
     let mut recorder = Recorder::start(Vec::new(), layout, simulation.state());
     (0..2).for_each(|_| simulation.step(&mut recorder).expect("a step"));
     let right = recorder.finish().expect("memory").0;
-    // The same, with one polynomial more at the end of every list.
+    // The same trace, with a further polynomial at the end of every list.
     let (mut reader, mut writer) = (Reader::from_slice(&right, layout), Writer::new(Vec::new(), layout));
     let mut frame = Frame::default();
     while reader.next(&mut frame).expect("a frame") {

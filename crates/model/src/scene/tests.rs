@@ -13,7 +13,7 @@ fn judged(text: &str) -> String {
     }
 }
 
-/// The same for a scene with two particles; the elements start in line 4.
+/// Reads a scene with two particles in the same way. The elements start in line 4.
 fn with(inner: &str) -> String {
     judged(&format!("<scene>{START}{TWO}{inner}</scene>"))
 }

@@ -75,7 +75,7 @@ fn a_detection_has_its_formulas_and_letters_and_a_later_step_its_beginning() {
     let pair = Pair { kind: PairKind::ParticleHalfPlane, first: 0, second: 0 };
     let found = first_step(&scene, Some((pair, None)), 2).expect("a result");
     assert!(found.starts_with("Before step 2\n"), "{found}");
-    // No round-off of 3 - 0.09 - 3 is in it.
+    // The number contains no round-off of 3 - 0.09 - 3.
     assert_has(&found, &["0 (-0.09, 0) (3, 0)", "x, particle (3, 0) (-0.09, 0) 1"]);
     assert_has(&found, &["t^1: 2 (dx.n) ((p-x).n)", "with (dx.n) = -0.09, ((p-x).n) = -3, (n.n) = 1, r^2 = 1"]);
     assert_has(&found, &["-0.0081 t^2 + 0.54 t - 8"]);

@@ -1,4 +1,4 @@
-//! Every format: against its schema, and as a snapshot that people read.
+//! Checks every format against its schema, and as a snapshot that people read.
 use super::Format;
 use crate::grade::{add_warnings, csv_of_submissions, json_lines, samples};
 use crate::page::{Audience, GradePage};
@@ -30,7 +30,7 @@ fn assert_valid(name: &str, document: &str) {
     }
 }
 
-/// No control character but line break and tab, whatever a program or a name holds.
+/// Reports contain no control characters except line breaks and tabs, for all outputs and names.
 fn assert_harmless(document: &str) {
     let bad: Vec<char> = document.chars().filter(|c| c.is_control() && !matches!(c, '\n' | '\t' | '\r')).collect();
     assert!(bad.is_empty(), "{bad:?} in\n{document}");

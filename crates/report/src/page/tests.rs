@@ -116,7 +116,7 @@ fn a_wrong_state_comes_before_the_polynomials_that_follow_from_it() {
     }
 }
 
-/// Of a file that is no trace there is nothing else to say.
+/// The page about a file that is no trace contains no further statements.
 #[test]
 fn a_page_about_no_trace_has_no_verdicts_of_books() {
     let scene = asset("ContinuousTimeTests/head-on-equal-masses.xml");
@@ -383,7 +383,7 @@ fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     }
     // Other scenes with its cause are folded behind it.
     assert!(articles[0].contains("<details class=\"alike\"><summary>1 more scene with the same cause</summary>"));
-    // Both the mistake and its group lead there, and a terminal names the same scene.
+    // Both the mistake and its group link to that scene, and a terminal names the same scene.
     let text = crate::formats::Format::Text.render(&[grade.clone()]);
     assert!(text.contains(&format!("Scene to look at first\n  WA {small}: ")), "{text}");
     let place = format!("<a href=\"#scene-{}\">{}</a>", graded::scene_key(small), small.replace('/', "/<wbr>"));
@@ -414,7 +414,7 @@ fn with_results(marking: Marking, results: Vec<SceneResult>) -> fosssim_grading:
     score::grade_group("Group", marking, results.into_iter().map(|result| (result, false)).collect())
 }
 
-/// Nothing on a page to hand out tells of groups that students do not see: no name, no points, no mistake, no output.
+/// A page for students shows nothing about hidden groups: no name, no points, no mistake, no output.
 #[test]
 fn a_student_s_page_has_no_hidden_group() {
     let scene = asset("GeometricTests/pair-becomes-rigid.xml");

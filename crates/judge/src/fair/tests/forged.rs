@@ -143,7 +143,7 @@ fn a_borderline_contact_is_where_and_when_it_has_to_be() {
     }
 }
 
-/// All polynomials of all steps are empty, except for one that has a factor: it says nothing of the others' factors.
+/// All polynomials of all steps are empty, except for one that has a factor. It shows nothing about the others.
 #[test]
 fn one_factor_does_not_vouch_for_empty_logs() {
     for (name, scene) in assets() {
@@ -445,7 +445,7 @@ fn in_a_hybrid_steps_first_pass_formulas_are_charged() {
         let is_moved = vec![false; scene.particles.len()];
         let mut moved = Moved { context, is_moved, steps: vec![vec![]] };
         simulate(&scene, &mut moved);
-        // Every polynomial of pairs that have collided before in the first pass of their step.
+        // The polynomials of pairs that have collided before, in the first pass of their step.
         let trace = change_trace(&scene, |frames| {
             for (number, frame) in frames.iter_mut().enumerate() {
                 let collided = &moved.steps[number.div_ceil(2)];

@@ -33,7 +33,7 @@ fn trace(scene: &Scene, times: impl Fn(usize, usize) -> [f64; 2]) -> Vec<u8> {
     trace_within(scene, 1.05, times)
 }
 
-/// The same of a program that applies forces of balls that are nearer than `reach`.
+/// Returns the trace of a program that applies forces of balls that are nearer than `reach`.
 fn trace_within(scene: &Scene, reach: f64, times: impl Fn(usize, usize) -> [f64; 2]) -> Vec<u8> {
     let mut x: Vec<[f64; 2]> = scene.particles.iter().map(|ball| [ball.position.x, ball.position.y]).collect();
     let mut v: Vec<[f64; 2]> = scene.particles.iter().map(|ball| [ball.velocity.x, ball.velocity.y]).collect();

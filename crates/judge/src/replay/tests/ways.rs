@@ -25,7 +25,7 @@ const SPIN: &str = r#"<scene>
     <edge i="0" j="1" radius="0.1"/><halfplane px="0" py="-0.3" nx="0.1" ny="1"/>
 </scene>"#;
 
-/// Everything that both ways say, as text: it compares NaN, too.
+/// Returns the results of both ways as text, because texts with NaN can be compared.
 fn judged(scene: &Scene, trace: &[u8]) -> [String; 2] {
     [false, true].map(|one_by_one| {
         let options =

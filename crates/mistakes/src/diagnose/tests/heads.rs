@@ -65,7 +65,7 @@ fn two_mistakes_with_one_key_are_two() {
     traces.push(vec![edge.clone(), plane.clone()]);
     traces.extend(vec![vec![plane.clone()]; 2]);
     assert_eq!(heads(&traces), words(&[(&edge, 4), (&plane, 3)]));
-    // And of one polynomial, two forms are no two mistakes: a program has one formula.
+    // Two forms of one polynomial are not two mistakes, because a program has one formula.
     let other = letter(Subject::EdgeOverlap, "c");
     assert_eq!(heads(&[vec![edge.clone()], vec![edge.clone()], vec![other]]), words(&[(&edge, 2)]));
 }
@@ -84,7 +84,7 @@ fn the_words_are_the_majority_s_and_the_count_is_of_those_who_agree() {
     assert_eq!(heads(&traces), words(&[(&direction, 15), (&plane, 4)]));
 }
 
-/// With equal radii, half of their sum is one of them: the scenes with other radii know which.
+/// With equal radii, half of their sum is one of them. The scenes with other radii show which of the two is used.
 #[test]
 fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
     let half = letter(Subject::ParticleOverlap, "half");
@@ -92,7 +92,7 @@ fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
     let mut traces = vec![vec![half.clone()]; 3];
     traces.extend(vec![vec![row("pp-one-radius", &both)]; 4]);
     assert_eq!(heads(&traces), words(&[(&half, 7)]));
-    // Each of them says so.
+    // Each trace names this mistake.
     let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!(correct_trace(&traces[6], &likely, &[]).explanations[0].statement(), half.statement());
     // And a mistake of the catalogue explains polynomials that are as it makes them, whatever they look like alone.
@@ -194,10 +194,10 @@ fn mistakes_of_different_traces_are_no_rivals() {
     let told = explain_together([&[one.clone()][..], std::slice::from_ref(&other)], &[]);
     assert_eq!(told.len(), 2, "{told:#?}");
     assert!(told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
-    // Nor are mistakes that explain a trace together only.
+    // Mistakes that explain a trace only together are no rivals either.
     let told = explain_together([[one.clone(), other.clone()].as_slice()], &[]);
     assert!(told.len() == 2 && told.iter().all(|one| one.same_as.is_empty()), "{told:#?}");
-    // Each trace that allows both leaves them side by side.
+    // A trace that allows both mistakes lists both.
     let both = Explanation { same_as: vec![other.key.clone()], ..one.clone() };
     let told = explain_together([std::slice::from_ref(&both); 3], &[]);
     assert_eq!((told[0].key.as_str(), &told[0].same_as[..]), ("loop-one-more", std::slice::from_ref(&other.key)));
@@ -217,7 +217,7 @@ fn a_contact_vector_has_one_mistake() {
     assert_eq!(told_beside("pe-contact-nearest-end", "ph-contact-at-start").len(), 2, "another kind of pair");
 }
 
-/// All traces say together what each of them allows among others.
+/// All traces together name the mistake that each of them allows among others.
 #[test]
 fn forms_are_intersected_over_traces() {
     let of = |forms: [&str; 2]| {

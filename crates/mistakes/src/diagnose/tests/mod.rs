@@ -82,7 +82,7 @@ fn a_stage_of_which_a_trace_shows_something_is_not_empty() {
     assert!(told.iter().all(|one| !one.is_unfinished() && one.key != "failsafe-empty"), "{told:#?}");
 }
 
-/// Of a trace that is too long to be kept the beginning is explained, and nobody is told that it is too short.
+/// If a trace is too long to be kept, its beginning is explained, and the report does not call it too short.
 #[test]
 fn a_trace_that_was_kept_in_part_is_explained() {
     let row = student::find("pe-radius-not-squared").expect("it is known");

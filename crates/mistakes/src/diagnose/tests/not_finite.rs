@@ -41,13 +41,13 @@ fn first(frames: &[LenientFrame], start: usize, holds: impl Fn(&LenientFrame) ->
 fn told(scene: &Scene, frames: Vec<LenientFrame>) -> NonFiniteValue {
     let trace = written(scene, frames);
     let all = explain(scene, &trace);
-    // Nothing but that: the steps before are right, and what follows from NaN speaks for nothing.
+    // There is no other explanation: the steps before are right, and steps with NaN prove nothing.
     let [Explanation { topic: ExplanationTopic::NotFinite(found), .. }] = &all[..] else { panic!("{all:#?}") };
     assert_eq!(explain_source(scene, Source::from_trace(&trace))[0].topic, all[0].topic);
     *found
 }
 
-/// All that follows is NaN, as in a program.
+/// Makes all later values NaN, as a program would.
 fn spoil(frames: &mut [LenientFrame], bodies: &[usize]) {
     for frame in frames {
         for &body in bodies {

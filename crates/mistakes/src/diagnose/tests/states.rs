@@ -1,4 +1,4 @@
-//! Of states that no known mistake explains, the first thing that is wrong is told.
+//! If no known mistake explains wrong states, the first wrong quantity is reported.
 use crate::diagnose::{
     ChangeCause, ChangeRatio, ChangedParticles, Detail, Explanation, ExplanationTopic, Quantity, StageDetail,
     StageFault, WrongChange, WrongDecisions, explain, explain_together,

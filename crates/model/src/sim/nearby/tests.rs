@@ -1,4 +1,4 @@
-//! Nothing that is near is left out, few others are tested, and memory is bounded.
+//! No nearby pair is left out, few other pairs are tested, and memory is bounded.
 use super::*;
 use crate::scene::CollisionDetection;
 use crate::sim::{

@@ -1,4 +1,4 @@
-//! Everything that explanations can say.
+//! Tests all sentences that explanations can contain.
 use super::*;
 use fosssim_mistakes::diagnose::{
     Amount, ChangeCause, ChangeRatio, ChangedParticles, ChangedQuantity, CoefficientGuess, Guess, ListGuess, LoopEnd,
@@ -32,7 +32,7 @@ fn explanation(key: &str, about: ExplanationTopic, details: Vec<Detail>) -> Expl
     }
 }
 
-/// All guesses about the coefficients of a polynomial.
+/// Returns all guesses about the coefficients of a polynomial.
 fn guesses() -> Vec<Guess> {
     let of_power = |power: usize| Guess::Coefficients { powers: vec![power], wrong: CoefficientGuess::Zero };
     ListGuess::ALL
@@ -63,7 +63,7 @@ fn changes() -> [WrongChange; 4] {
     ]
 }
 
-/// All that can be wrong with a stage.
+/// Returns all faults that a stage can have.
 fn faults() -> Vec<StageFault> {
     let changed = |body, quantity| ChangedQuantity { kind: PairKind::ParticleEdge, body, quantity };
     let position = vec![changed(0, Quantity::Position)];
@@ -125,7 +125,7 @@ fn faults() -> Vec<StageFault> {
     faults
 }
 
-/// All that can be said of polynomials and stages, one explanation each.
+/// Returns one explanation for each statement about polynomials and stages.
 fn all() -> Vec<Explanation> {
     let edge = Subject::all_of_kind(PairKind::ParticleEdge).to_vec();
     let of =

@@ -17,7 +17,7 @@ use std::{collections::BTreeSet, fs, path::Path};
 /// Scenes of more bodies take long to be simulated with all mistakes.
 const MOST_PARTICLES: usize = 20;
 
-/// So do many steps of an integrator that solves systems.
+/// Scenes with more steps of an integrator that solves systems also take long.
 const MOST_STEPS: f64 = 8.0;
 
 /// The scenes of these milestones and their probe scenes, with their names.

@@ -11,11 +11,11 @@ use fosssim_student::{Area, CATALOGUE, FALSE_POSITIVES, Object, Row, RowKind, St
 /// The style of the scenes.
 #[derive(Debug, Clone, Copy, PartialEq)]
 enum Style {
-    /// Everything moves, and nothing is like anything else.
+    /// All bodies move, and no two quantities are equal.
     General,
-    /// The same with a small step, so that leading coefficients are small or dropped.
+    /// All bodies move as before, in a small step, so that leading coefficients are small or dropped.
     Slow,
-    /// As courses have them: equal radii, unit normals, edges whose endpoints are fixed.
+    /// The scenes are as in courses: equal radii, unit normals, edges whose endpoints are fixed.
     Plain,
 }
 

@@ -236,7 +236,7 @@ fn the_right_quintic_is_as_good_as_the_supplied_one() {
     assert_eq!(explain(&samples(PairKind::ParticleEdge, 300, student)), []);
 }
 
-/// Every way to write a polynomial down gives what the fair rules expect, the right quintic included.
+/// Every formula of a polynomial gives the polynomial that the fair rules expect, including the right quintic.
 #[test]
 fn the_tables_are_the_formulas_of_the_fair_rules() {
     let mut numbers = Numbers(5);
