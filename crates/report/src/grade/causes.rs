@@ -1,9 +1,9 @@
 //! Groups the scenes of a submission by the cause of their verdicts, and selects the scene that shows each cause best.
 //! All reports use this order and these scenes.
-use super::find_likely_mistakes;
 use crate::words;
 use fosssim_findings::{Grade, Reason, SceneGrade, Verdict};
 use fosssim_mistakes::diagnose::{Explanation, is_named_in};
+use fosssim_mistakes::together::find_likely_mistakes;
 use std::{cmp::Reverse, collections::BTreeMap};
 
 /// Scenes whose verdicts have the same cause. The first one shows the cause best, and the others are in the suite's

@@ -325,13 +325,10 @@ impl FromRow for Change {
     }
 }
 
-/// Collects sentences about values that differ.
-fn differ(found: &mut Vec<String>) -> impl FnMut(&str, String, String) {
-    |what, old, new| {
-        if old != new {
-            found.push(format!("{what}: {old} before, {new} now"));
-        }
-    }
+/// Returns sentences about the values that differ.
+fn list_changed<const N: usize>(values: [(&str, String, String); N]) -> impl Iterator<Item = String> {
+    let changed = values.into_iter().filter(|(_, old, new)| old != new);
+    changed.map(|(what, old, new)| format!("{what}: {old} before, {new} now"))
 }
 
 /// Returns the name of rules in settings.
@@ -348,20 +345,16 @@ fn describe_rules(rules: &Option<String>) -> String {
 impl Settings {
     /// Returns what differs in the way of grading.
     pub(crate) fn grading_changes(&self, new: &Self) -> Vec<String> {
-        let mut found = Vec::new();
-        let mut differ = differ(&mut found);
-        let suite = |settings: &Self| match settings.suite_archive.as_deref() {
-            Some(digest) => format!("your own ({})", digest.get(..12).unwrap_or(digest)),
-            None => settings.suite.clone(),
-        };
-        let or_suite = |hints: &Option<String>| hints.clone().unwrap_or_else(|| "the suite's".to_owned());
-        differ("suite", suite(self), suite(new));
-        differ("rules", describe_rules(&self.rules), describe_rules(&new.rules));
-        differ("hints", or_suite(&self.hints), or_suite(&new.hints));
-        differ("program", self.program.clone(), new.program.clone());
-        differ("seconds", self.seconds.to_string(), new.seconds.to_string());
-        drop(differ);
-        found
+        let suite = |one: &Self| one.suite_archive.clone().unwrap_or_else(|| one.suite.clone());
+        let hints = |one: &Self| one.hints.clone().unwrap_or_else(|| "the suite's".to_owned());
+        let changed = list_changed([
+            ("suite", suite(self), suite(new)),
+            ("rules", describe_rules(&self.rules), describe_rules(&new.rules)),
+            ("hints", hints(self), hints(new)),
+            ("program", self.program.clone(), new.program.clone()),
+            ("seconds", self.seconds.to_string(), new.seconds.to_string()),
+        ]);
+        changed.collect()
     }
 }
 
@@ -370,18 +363,15 @@ fn differences(row: &Row) -> Result<Vec<String>, DbError> {
     let (Some(old_version), Some(old_task)) = (row.maybe_text("old_version")?, row.maybe_text("old_task")?) else {
         return Ok(vec!["there was no earlier grade".to_owned()]);
     };
-    let mut why = Vec::new();
-    let new_version = row.text("new_version")?;
-    if old_version != new_version {
-        why.push(format!("version {old_version} before, {new_version} now"));
-    }
+    let mut why: Vec<String> = list_changed([("version", old_version, row.text("new_version")?)]).collect();
     let read = |text: &str| serde_json::from_str::<Task>(text).ok();
     if let (Some(old), Some(new)) = (read(&old_task), read(&row.text("new_task")?)) {
-        let mut differ = differ(&mut why);
-        differ("suite", old.suite.short(), new.suite.short());
-        differ("rules", describe_rules(&old.rules), describe_rules(&new.rules));
-        differ("seconds", old.seconds.to_string(), new.seconds.to_string());
-        differ("program", old.program, new.program);
+        why.extend(list_changed([
+            ("suite", old.suite.short(), new.suite.short()),
+            ("rules", describe_rules(&old.rules), describe_rules(&new.rules)),
+            ("seconds", old.seconds.to_string(), new.seconds.to_string()),
+            ("program", old.program, new.program),
+        ]));
     }
     if why.is_empty() {
         let words = "graded in the same way, with another result: the program's output varies, or it was slow";
