@@ -137,7 +137,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByRole("heading", { name: "Physics <b>of</b> spheres" }).waitFor();
   await page.getByLabel("Name in addresses").fill("m1");
   await page.getByLabel("Title").fill("Milestone one");
-  await page.getByRole("button", { name: "Make the assignment" }).click();
+  await page.getByRole("button", { name: "Create the assignment" }).click();
   await page.getByLabel("Suite file").setInputFiles(join(folder, "suite.tar.gz"));
   await page.getByRole("button", { name: "Upload the suite" }).click();
   assert.match(await page.getByLabel("Suite").locator("option:checked").innerText(), /^One \(yours of .* UTC\)$/);
@@ -148,6 +148,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   // A class comes in by a file, which is looked at first.
   await page.goto(`${address}/c/physics/members`);
   const table = { name: "class.csv", mimeType: "text/csv", buffer: Buffer.from("Login,Name,Group\neve,Eve,7\n") };
+  await page.getByRole("link", { name: "Import a class" }).click();
   await page.getByLabel("Table").setInputFiles(table);
   await page.getByRole("button", { name: "Read the table" }).click();
   await page.getByText("Columns that are not used: Group.").waitFor();
@@ -155,9 +156,10 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByRole("button", { name: "Import these members" }).click();
   await page.getByRole("link", { name: "All links as a table" }).waitFor();
   await page.goto(`${address}/c/physics/members`);
+  await page.getByRole("link", { name: "Add a person" }).click();
   await page.getByLabel("Login", { exact: true }).fill("ada");
   await page.getByLabel("Name", { exact: true }).fill("Ada");
-  await page.getByRole("button", { name: "Save" }).click();
+  await page.getByRole("button", { name: "Add", exact: true }).click();
   const invitation = await page.locator("[role=status] code").innerText();
   // Members are counted, and shown by their role.
   await page.getByText("2 students, 0 staff").waitFor();
@@ -240,6 +242,7 @@ test("a course from the first link to a regrade", { skip: !sandbox && "no sandbo
   await page.getByText("Both are right on the same scenes").waitFor();
   await accessible(page);
   await page.goto(`${address}/c/physics/a/m1/class`);
+  await page.getByRole("link", { name: "Regrade" }).click();
   await page.getByLabel("Reason").fill("Nobody should fail this");
   await page.getByRole("button", { name: "Regrade all without" }).click();
   await page.waitForURL(/regrades\/\d+$/);

@@ -103,6 +103,7 @@ fn read(text: &str) -> Result<Vec<MemberLine>, Problem> {
             Some(field(3).to_lowercase()).filter(|role| !role.is_empty()).unwrap_or_else(|| "student".to_owned());
         let checked = check_member(&login, &name, &role);
         let error = match checked {
+            Err(_) if login.is_empty() => Some("this line has no login".to_owned()),
             Err(problem) => Some(problem.detail),
             Ok(()) if !logins.insert(login.clone()) => Some("the login appears twice in the table".to_owned()),
             Ok(()) if unused.is_none() => Some("this line has more fields than name, login, email and role".to_owned()),
