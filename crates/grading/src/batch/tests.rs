@@ -338,7 +338,7 @@ fn bytes_behind_the_last_record_have_one_consequence_whoever_ends_first() {
         ("right-then-byte-sleeps", Verdict::TimeLimit, Verdict::TimeLimit),
         ("right-then-byte-crashes", Verdict::RuntimeError, Verdict::RuntimeError),
         ("right-then-byte-fails", Verdict::RuntimeError, Verdict::RuntimeError),
-        // Beyond the limit nobody waits for the program's end, so it can't count.
+        // Beyond the limit the grader does not wait for the program's end, so the end cannot count.
         ("right-then-flood-exits", parity, fair),
         ("right-then-flood-stopped", parity, fair),
         ("right-then-flood-unread", parity, fair),

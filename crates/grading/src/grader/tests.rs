@@ -103,7 +103,7 @@ fn where_results_have_no_room_grading_stops_and_says_so_and_keeps_what_it_has() 
     assert_eq!((stopped.points, stopped.is_incomplete(), stopped.verdict), (None, true, Verdict::NotRun));
     assert_eq!((small.len(), stage.started_count()), (3, 4), "the fourth result was one too many");
     assert_eq!(told.len(), plan.scenes().count(), "every scene is told of all the same");
-    // A teacher who makes room goes on from there.
+    // After a teacher has freed space, the grading continues there.
     let (resumed, _, _) = grade(&grader, &submission, &small);
     assert_eq!((resumed.count_reused(), stage.started_count()), (3, 5));
 }

@@ -6,7 +6,7 @@ use crate::{finding::FindingKind, rules::Ruling, samples::change_trace};
 use fosssim_model::trace::{Frame, Reader, Recorder, Writer};
 use fosssim_num::vector::Vec2;
 
-/// Enough balls that a pass logs more than the reader's window holds.
+/// The number of balls for which a pass logs more bytes than the reader's window has.
 fn crowd() -> Scene {
     let ball = |number: usize| {
         format!(r#"<particle m="1" px="{number}" py="0" vx="0" vy="0.{number:03}" fixed="0" radius="0.1"/>"#)
@@ -19,7 +19,7 @@ fn crowd() -> Scene {
     fosssim_model::scene::read("crowd", xml.as_bytes()).expect("a scene").scene
 }
 
-/// Memory: a batch holds as many records as fit, whatever their lists hold.
+/// A batch contains as many records as fit into its memory, for lists of every size.
 #[test]
 fn a_batch_counts_all_lists() {
     let scene = crate::samples::scene(crate::samples::BOUNCE_SCENE);
@@ -120,7 +120,7 @@ fn a_step_without_result_ends_nothing_but_the_originals_rules() {
         let parity = judge(false, &trace);
         assert_eq!(format!("{:?}", parity.parity), format!("{:?}", both.parity));
         assert_eq!((parity.steps_judged, parity.ruling(Book::Parity)), (1, Ruling::WrongAnswer));
-        // A trace that can't be read is bad, whatever was found before.
+        // A trace that cannot be read is bad, regardless of earlier findings.
         assert_eq!(judge(true, &trace[..trace.len() - 40]).ruling(Book::Fair), Ruling::BadTrace);
     }
 }

@@ -26,7 +26,7 @@ fn each_level_decides_what_it_is_made_for() {
         (&[&[1.0, 2.0, -2.0]], None),
         (&[&[1.0, 1.0, 1.0, 1.0, -5.0], &[1.0, 2.0]], Some(Level::Bernstein)),
         (&[&[1.0, 1.0, 1.0, 1.0, -5.0], &[1e-9, 1.0, 1.0, 1.0, 1.0]], Some(Level::Bernstein)),
-        // Far zeros: the leading coefficient is too small beside the others.
+        // The zeros are far, because the leading coefficient is much smaller than the others.
         (&[&[1e-12, 0.0, 0.1, -1e15]], None),
         // The original samples the gap after its first zero, -5.5, at the double zero -4.5, where rounding decides.
         (&[&[-4.0, -58.0, -279.0, -445.5]], None),

@@ -117,7 +117,7 @@ fn searches_that_would_never_end_are_typed_outcomes() {
             coefficients[place] = value;
             assert_eq!(zeros(&coefficients), Err(DoesNotTerminate), "{coefficients:?}");
             if place < 3 {
-                // The closed forms take anything.
+                // The closed forms accept all numbers.
                 assert_eq!(zeros(&coefficients[..3]).map(|zeros| zeros.count()), Ok(2), "{coefficients:?}");
             }
         }
@@ -130,7 +130,7 @@ fn the_steps_of_all_stages_are_counted() {
     assert_eq!(steps(&[1.0, -3.0, 2.0]), 0, "a closed form");
     let ordinary = steps(&[1.0, -6.0, 11.0, -6.0]);
     assert!((5..100).contains(&ordinary), "{ordinary}");
-    // The bound divides by ten until it comes near a zero of 1e-300.
+    // The bound is divided by ten until it is near a zero of 1e-300.
     let small = steps(&[1.0, 1.0, 1e-300, 1e-300]);
     assert!(small > ordinary + 100, "{small}");
 }

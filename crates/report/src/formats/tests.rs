@@ -121,7 +121,7 @@ fn prairielearn_follows_its_schema() {
     insta::assert_snapshot!("grade_prairielearn", Format::Prairielearn.render(&[samples::failing_grade()]));
 }
 
-/// Half of the score beside the word "accepted" needs its reason.
+/// If half of the score is next to the word "accepted", the reason must be given.
 #[test]
 fn prairielearn_says_that_groups_which_are_not_shown_count() {
     let mut grade = samples::accepted_grade();
@@ -184,7 +184,7 @@ fn an_untouched_template_is_told_in_ten_lines() {
     );
 }
 
-/// One scene alone takes a loop that is one round short for an empty one: no format says what all scenes together deny.
+/// One scene confuses a loop that is one round short with an empty loop. No format shows what all scenes contradict.
 #[test]
 fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
     let mut grade = samples::accepted_grade();
@@ -220,7 +220,7 @@ fn what_all_scenes_settle_stands_in_every_scene_of_every_format() {
     assert_eq!(text.matches("1 scene like Detection/a").count(), 2, "{text}");
 }
 
-/// Where a program crashes stands in every format at the top.
+/// Every format shows the place of a crash at the top.
 #[test]
 fn what_failing_scenes_have_in_common_is_told_in_every_format() {
     let mut grade = samples::accepted_grade();
@@ -304,7 +304,7 @@ fn text_csv_and_github_read_well() {
     insta::assert_snapshot!("grade_markdown", Format::Markdown.render(&all()));
 }
 
-/// A program that was run on a hidden scene chooses how it fails on a visible one. Of that its verdict may be told.
+/// A program that was run on a hidden scene can choose its failure on a visible one. Only the verdict may be shown.
 #[test]
 fn with_hidden_groups_students_are_told_nothing_that_a_program_chose() {
     let failing = |choice: u32| {

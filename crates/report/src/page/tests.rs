@@ -231,7 +231,7 @@ fn drawn(scene: &Scene, id: &str, hints: Hints) -> (Option<Card>, SceneResult) {
     (card, result)
 }
 
-/// A group of ten points, of whose scenes students are told this much.
+/// Returns a group of ten points whose scenes have this level of hints.
 fn marking(hints: Hints) -> Marking {
     Marking {
         points: 10.0,
@@ -259,7 +259,7 @@ fn page_of(results: Vec<SceneResult>, card: Option<&Card>) -> String {
     GradePage { grade: &grade, card: &|_| card.cloned(), class: None, reader: Audience::Staff }.html()
 }
 
-/// The pages of a submission for staff and for students who are told this much.
+/// Returns the pages of a submission for staff, and for students with this level of hints.
 fn graded(scene: &Scene, id: &str, hints: Hints) -> [String; 2] {
     let ((own, mut result), (full, _)) = (drawn(scene, id, hints), drawn(scene, id, Hints::Full));
     (result.card, result.card_for_students) = (Some("full".to_owned()), own.is_some().then(|| "own".to_owned()));
@@ -351,7 +351,7 @@ fn a_page_stays_below_its_budget_and_says_what_it_leaves_out() {
     }
 }
 
-/// A named mistake comes before what is not explained, and of its scenes that with the fewest findings.
+/// A named mistake comes before unexplained scenes. Of its scenes, the one with the fewest findings comes first.
 #[test]
 fn the_most_telling_scene_is_opened_first_and_links_lead_to_it() {
     let named = |scene: &str, id: &str| {
@@ -463,7 +463,7 @@ fn a_student_s_page_has_no_hidden_group() {
     }
 }
 
-/// A course's words on a mistake and a group stand beside them; its link can be followed, and text stays text.
+/// A course's words are next to their mistake or group. The link can be followed, and text is never markup.
 #[test]
 fn a_course_adds_its_own_words() {
     let (_, result) =

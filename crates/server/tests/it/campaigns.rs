@@ -48,7 +48,7 @@ async fn a_class_is_graded_again_beside_uploads(fresh: Fresh) {
     let all = rows::count(1200);
     rows::fill(&fresh.database, assignment(&fresh).await, 100, all).await;
     let ada = server.member(&admin, "physics", "ada", "student");
-    // Somebody hands in all the while: the longest wait is that for the regrade to begin.
+    // A student submits the whole time, so the longest wait is that for the beginning of the regrade.
     let stop = std::sync::Arc::new(std::sync::atomic::AtomicBool::new(false));
     let uploading = std::thread::spawn({
         let stop = stop.clone();
@@ -104,7 +104,7 @@ async fn a_class_is_graded_again_beside_uploads(fresh: Fresh) {
     assert!(halves.await >= all / 2);
     let told = number(&fresh, "SELECT count(*) AS n FROM event WHERE kind = 'grade changed'");
     assert_eq!(told.await, changed);
-    // Changes are told page by page.
+    // Changes are listed page by page.
     let (mut seen, mut after) = (0, serde_json::json!(0));
     while !after.is_null() {
         let page = admin.get(&format!("{path}?after={after}")).expect(200).json();
@@ -123,10 +123,10 @@ async fn a_result_and_the_end_of_its_regrade_do_not_wait_for_each_other(fresh: F
     server.course(&admin, "physics");
     server.member(&admin, "physics", "ada", "student").submit("physics", &program("AC", 1));
     let id = admin.post_json(BASE, r#"{"reason": "to see"}"#).expect(201).json()["id"].clone();
-    // A worker holds the job of the regrade and is about to write its result, ...
+    // A worker has the job of the regrade and is about to write its result.
     let mut worker = fresh.database.begin().await.expect("a transaction");
     worker.one("SELECT id FROM job WHERE campaign IS NOT NULL {for update}", values![]).await.expect("a job");
-    // ... when the regrade is given up, which cancels its jobs.
+    // The regrade is discarded at this moment, which cancels its jobs.
     let discarding = std::thread::spawn(move || admin.post_json(&format!("{BASE}/{id}/discard"), ""));
     if fresh.database.dialect() == Dialect::Postgres {
         let waiting = "SELECT count(*) AS n FROM pg_stat_activity

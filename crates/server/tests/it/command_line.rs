@@ -1,4 +1,4 @@
-//! Commands that can't do what they are asked say why, and make nothing.
+//! Commands that cannot succeed give the reason, and create no files.
 use std::{
     fs,
     net::TcpListener,

@@ -14,7 +14,7 @@ use std::collections::BTreeMap;
 /// How often PostgreSQL has read each of the large tables from its beginning to its end.
 async fn whole_reads(address: &Address) -> BTreeMap<String, i64> {
     let database = Database::open(address).await.expect("a database");
-    // One connection for all that is asked here.
+    // All queries of this test use one connection.
     let mut transaction = database.begin().await.expect("a transaction");
     // Processes of the database tell what they did when they end, if not before.
     let start = std::time::Instant::now();

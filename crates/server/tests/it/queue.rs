@@ -106,7 +106,7 @@ async fn a_job_comes_and_goes_with_its_upload(fresh: Fresh) {
     let job =
         NewJob { lane: Lane::Grading, submission: None, campaign: None, turn: Turn::Student(1), payload: "never seen" };
     queue::enqueue(&mut transaction, &job).await.expect("a job");
-    // The upload fails here: nobody commits.
+    // The upload fails here, so there is no commit.
     drop(transaction);
     assert_eq!(claim(database, "w").await, None);
     let number = enqueue(database, Turn::Student(1)).await;
@@ -282,7 +282,7 @@ async fn uploads_go_before_regrades_but_not_for_ever(fresh: Fresh) {
     let regrades = [enqueue(database, Turn::Campaign(1)).await, enqueue(database, Turn::Campaign(1)).await];
     let upload = enqueue(database, Turn::Student(1)).await;
     assert_eq!(claim(database, "w").await.map(|claimed| claimed.lease.job), Some(upload));
-    // After a while a regrade's turn comes before uploads that have just arrived, but not all of the regrade at once.
+    // After some time a regrade precedes uploads that have just arrived, but not all its jobs do so together.
     let_pass(database, Duration::from_secs(1801)).await;
     let uploads = [enqueue(database, Turn::Student(2)).await, enqueue(database, Turn::Student(3)).await];
     assert_eq!(claim_all(database).await, [regrades[0], uploads[0], uploads[1], regrades[1]]);

@@ -1,4 +1,4 @@
-//! Files that are too old are not kept any longer, and nothing else goes away.
+//! Files that are too old are removed, and no other files.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     server::{Server, program},
@@ -48,7 +48,7 @@ async fn old_uploads_go_and_grades_stay(fresh: Fresh) {
     // Reports that say the same of others lie in the store once, and stay.
     assert!(found.artifacts >= 2, "the upload and its grade: {found:?}");
     assert_eq!(give_up(1).await, retention::RemovalCounts::default(), "once");
-    // The grade stands, with its history; the bytes are gone, and that is said.
+    // The grade and its history remain. The bytes are removed, and the page states this.
     let path = |id: i64, rest: &str| format!("/api/v1/courses/physics/submissions/{id}{rest}");
     let submission = ada.get(&path(old, "")).expect(200).json();
     assert_eq!(submission["grade"]["points"], "40");
@@ -99,12 +99,12 @@ fn what_somebody_stores_meanwhile_is_not_lost() {
         }
         assert_eq!(store.give_up(day, |digests| named(digests, |_| false)).await.expect("done"), 1, "the old part");
         assert!(!part("1").exists() && part("2").exists());
-        // A file that is put aside lies there for a day, and is read meanwhile.
+        // A file that is set aside remains for a day, and can still be read.
         assert_eq!(crate::support::bytes(&store, &one).await, b"one");
         age(&place("aside", &one), 25);
         assert_eq!(store.give_up(day, |digests| named(digests, |_| false)).await.expect("done"), 1);
         assert!(!store.has(&one).await.expect("the store") && store.has(&two).await.expect("the store"));
-        // A file that a server had put aside before it died comes back when it is named.
+        // A file that a server set aside before it was killed is restored when a row names it.
         age(&place("sha256", &two), 48);
         std::fs::create_dir_all(place("aside", &two).parent().expect("a folder")).expect("a folder");
         std::fs::rename(place("sha256", &two), place("aside", &two)).expect("moved");

@@ -1,4 +1,4 @@
-//! Workers do not wait behind everybody who hands in.
+//! Workers do not wait for all people who submit.
 use crate::support::engines::{Fresh, on_both_engines};
 use fosssim_server::db::Dialect;
 use std::sync::{
@@ -8,7 +8,7 @@ use std::sync::{
 
 on_both_engines!(workers_go_before_requests);
 
-/// Waits until this many have asked for a transaction.
+/// Waits until this many requests want a transaction.
 async fn asked(count: &AtomicUsize, wanted: usize) {
     while count.load(Ordering::SeqCst) < wanted {
         tokio::task::yield_now().await;
@@ -24,7 +24,7 @@ async fn workers_go_before_requests(fresh: Fresh) {
     for _ in 0..others {
         held.push(fresh.database.begin().await.expect("a transaction"));
     }
-    // Twenty requests wait, and then a worker comes.
+    // Twenty requests wait before a worker's request arrives.
     let (order, asks) = (Arc::new(Mutex::new(Vec::new())), Arc::new(AtomicUsize::new(0)));
     let task = |who: &'static str, database: fosssim_server::db::Database| {
         let (order, asks) = (order.clone(), asks.clone());

@@ -4,7 +4,7 @@ use std::path::Path;
 #[path = "../../../../fuzz/uploads.rs"]
 mod entries;
 
-/// Changed seeds that are tried; `FOSSSIM_FUZZ` asks for more.
+/// The number of changed seeds that are tried. `FOSSSIM_FUZZ` sets a larger number.
 const TRIES: usize = 4000;
 
 /// The same numbers on every run: what fails once fails again.

@@ -107,7 +107,7 @@ const TOUCH: &str = r#"<scene><duration time="1"/><integrator type="explicit-eul
     <particle m="1" px="0.6" py="0.8" vx="-1.08" vy="-1.44" fixed="0" radius="0.1"/>
     <halfplane px="0" py="0" nx="0.3" ny="0.4"/></scene>"#;
 
-/// Answers the first decision that it is asked about as it likes.
+/// Replaces the first decision with the given one.
 struct Answer(Option<Decision>);
 
 impl StepController for Answer {
@@ -165,7 +165,7 @@ fn one_factor_does_not_vouch_for_empty_logs() {
     }
 }
 
-/// Garbage of ordinary size, beside one polynomial with so large a factor that garbage would be its round-off.
+/// Random coefficients of ordinary size, and one polynomial with so large a factor that they could be its round-off.
 #[test]
 fn a_large_factor_does_not_vouch_for_garbage() {
     for (name, scene) in assets() {
@@ -215,7 +215,7 @@ fn polynomials_that_hang_on_factors_count_in_their_steps() {
     let first = judged.findings.first_divergence.expect("the first empty polynomial");
     assert_eq!((judged.findings.wrong_steps, first.step), (4, 1), "{judged:?}");
     assert!(matches!(first.detail, FindingDetail::Coefficient { .. }), "{first:?}");
-    // The fourth step's end is wrong, too: the empty polynomial of the second still comes first.
+    // The fourth step's end is wrong as well, but the empty polynomial of the second step still comes first.
     let judged = fair(
         &scene,
         &change_trace(&scene, |frames| {
@@ -407,7 +407,7 @@ const STRETCHED: &str = r#"<scene><duration time="0.4"/><integrator type="explic
     <particle m="1" px="0.4" py="7" vx="0.1" vy="0.3" fixed="0" radius="0.1"/>
     <edge i="0" j="1" radius="0.1"/><edge i="3" j="4" radius="0.1"/></scene>"#;
 
-/// The two forms of the approach differ in t^3 only, which a small factor takes away.
+/// The two forms of the approach differ only in t^3, and a small factor makes the library drop that coefficient.
 #[test]
 fn what_is_gone_is_no_mixture_of_forms() {
     struct Edges(f64);

@@ -1,4 +1,4 @@
-//! Traces whose numbers no simulation should hold: judging them has to come to an end, with a verdict.
+//! Judges traces with numbers that no simulation should contain. Judging must end, with a verdict.
 use crate::{
     fair::FairVerdict,
     samples::{BOUNCE_SCENE, ZONES_SCENE, change_trace, judge_by_both, scene},

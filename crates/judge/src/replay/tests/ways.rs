@@ -6,7 +6,7 @@ use crate::{
 };
 use fosssim_model::{scene::Scene, sim::RootSearch, trace::Frame};
 
-/// A ball beside a half-plane, so far away that the original rejects its own polynomials.
+/// A ball next to a half-plane, so far from the origin that the original rejects its own polynomials.
 const LARGE: &str = r#"<scene>
     <duration time="1"/><integrator type="explicit-euler" dt="0.1"/><collision type="continuous-time" COR="1"/>
     <particle m="1" px="0" py="7654321.123" vx="0" vy="-1" fixed="0" radius="0.25"/>

@@ -132,7 +132,7 @@ fn damaged_traces_are_read_as_far_as_they_go() {
         assert!(keys.iter().all(|key| key == "pp-no-two"), "cut at {length}: {keys:?}");
         assert!(length < 1000 || keys.len() == 1, "cut at {length}");
     }
-    // Nonsense in every place: whatever is said, it is said in the end.
+    // The trace has nonsense in every place. An explanation is not required, but the search must end.
     for place in (0..trace.len()).step_by(trace.len() / 23) {
         let mut damaged = trace.clone();
         damaged[place] ^= 0xff;
@@ -156,7 +156,7 @@ fn made(scene: &Scene, ids: &[&str]) -> Vec<u8> {
     student::record_trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
-/// Explanations of a program that makes all of these name each of them, as made or as not to be told from another.
+/// If a program makes all of these mistakes, explanations name each of them, or list it as indistinguishable.
 fn are_named(scene: &Scene, ids: &[&str]) {
     let found = explain(scene, &made(scene, ids));
     assert_eq!(found.len(), ids.len(), "{ids:?}: {found:#?}");

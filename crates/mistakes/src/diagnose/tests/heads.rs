@@ -95,7 +95,7 @@ fn what_is_named_is_tried_on_all_traces_before_a_second_is() {
     // Each trace names this mistake.
     let likely = explain_together(traces.iter().map(Vec::as_slice), &[]);
     assert_eq!(correct_trace(&traces[6], &likely, &[]).explanations[0].statement(), half.statement());
-    // And a mistake of the catalogue explains polynomials that are as it makes them, whatever they look like alone.
+    // A mistake of the catalogue explains the polynomials that it makes, even if they look like another mistake alone.
     let mut like = letter(Subject::ParticleOverlap, "other");
     like.claims.push("ParticleOverlap/pp-one-radius/".to_owned());
     let known = row("pp-one-radius", &both[..1]);
@@ -157,7 +157,7 @@ fn forms_that_differ_have_their_polynomial_in_common() {
     assert_eq!(correct_trace(&traces[1], &likely, &[]).explanations[0].statement(), forms[1].statement());
 }
 
-/// Polynomials that are told beside something else are not told again.
+/// Polynomials that are reported with another mistake are not reported again.
 #[test]
 fn what_is_told_second_is_not_told_once_more() {
     let (empty, cut) = (row("failsafe-empty", &[]), letter(Subject::EdgeOverlap, "a"));
@@ -246,7 +246,7 @@ fn what_the_starter_leaves_is_not_written_yet() {
     assert_eq!(told[0].same_as, ["ph-zero", "loop-empty-succeeds"]);
 }
 
-/// A stage that may be empty, or mistaken in another way by all traces, is told as both.
+/// If all traces allow that a stage is empty or has another mistake, both are reported.
 #[test]
 fn an_empty_stage_has_rivals_too() {
     let rival = "loop-always-succeeds".to_owned();

@@ -1,4 +1,4 @@
-//! Programs with several mistakes, asked about on the probe scenes.
+//! Explains programs with several mistakes on the probe scenes.
 use super::naming::is_in_other_words;
 use super::{Explanation, ExplanationTopic, explain, explain_kept_trace, explain_together, probe_scenes};
 use fosssim_judge::kept_trace::KeptTrace;
@@ -33,7 +33,7 @@ fn a_mistake_beside_another_is_told_once() {
     assert_eq!(keys, ["failsafe-empty", "pe-radii-squared-apart"], "{told:#?}");
 }
 
-/// One of many traces that looks as if a stage were empty, beside a mistake that all of them show.
+/// One of many traces suggests that a stage is empty, in addition to a mistake that all of them show.
 #[test]
 fn one_of_many_traces_makes_no_stage_empty() {
     let said = |ids: &[&str]| {

@@ -1,4 +1,4 @@
-//! Where numbers end is told with its step and stage, and what is no number accuses of nothing.
+//! The first value that is not finite is reported with its step and stage, and such values prove no other mistake.
 use crate::diagnose::{
     Explanation, ExplanationTopic, NanStage, NonFiniteValue, explain, non_finite::explain_source, sampling::Source,
 };
@@ -33,7 +33,7 @@ fn written(scene: &Scene, frames: Vec<LenientFrame>) -> Vec<u8> {
     writer.finish().expect("written").0
 }
 
-/// The first record from `start` on of which this holds.
+/// Returns the index of the first record from `start` on for which `holds` returns true.
 fn first(frames: &[LenientFrame], start: usize, holds: impl Fn(&LenientFrame) -> bool) -> usize {
     start + frames[start..].iter().step_by(2).position(holds).expect("such a record")
 }

@@ -72,7 +72,7 @@ fn is_near(scene: &Scene, margin: f64, pair: Pair) -> bool {
             let edge = scene.edges[second];
             let (x1, x2, x3) = (place(first), place(edge.first), place(edge.second));
             let alpha = (x1 - x2).dot(&(x3 - x2)) / (x3 - x2).dot(&(x3 - x2));
-            // A force keeps a NaN, a response takes 0 for it.
+            // A force keeps a NaN, and a response uses 0 instead.
             [alpha, if alpha.is_nan() { 0.0 } else { alpha }]
                 .iter()
                 .any(|&alpha| length((x2 + alpha.clamp(0.0, 1.0) * (x3 - x2)) - x1) < (radius + edge.radius) + margin)

@@ -21,7 +21,7 @@ fn a_record_may_hold_what_the_scenes_passes_log() {
 
 #[test]
 fn polynomials_beyond_the_limit_are_counted_and_not_kept() {
-    // More than the window holds, of every size, then another record.
+    // The lists exceed the window and have polynomials of every size. Another record follows.
     let polynomials: Vec<Vec<f64>> = (0..60_000).map(|number| vec![1.5; number % 9]).collect();
     let list: Vec<&[f64]> = polynomials.iter().map(Vec::as_slice).collect();
     let bytes = [record(&list), record(&[&[2.0]])].concat();
@@ -61,7 +61,7 @@ fn a_monstrous_polynomial_is_kept_in_part() {
     assert_eq!(frame.polynomials.get(2), [2.0]);
 }
 
-/// A record without particles that holds these polynomials.
+/// Returns a record without particles that contains these polynomials.
 fn record(polynomials: &[&[f64]]) -> Vec<u8> {
     let mut frame = Frame::default();
     polynomials.iter().for_each(|p| frame.polynomials.push(p));

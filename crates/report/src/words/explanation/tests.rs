@@ -237,7 +237,7 @@ fn lines_of_all_sorts() -> Vec<Detail> {
     polynomials.chain(others).chain(stages.map(Detail::Stage)).collect()
 }
 
-/// Hints below `full` let no sentence through that gives a formula away, whatever is explained.
+/// With hints below `full`, no sentence of any explanation reveals a formula.
 #[test]
 fn no_sentence_gives_a_formula_away() {
     let known = all_rows().map(|row| explanation(row.id, ExplanationTopic::Mistake, Vec::new()));

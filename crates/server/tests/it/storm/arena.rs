@@ -1,4 +1,4 @@
-//! Where a storm takes place: a database, a data folder, workers, and the list of what was handed in.
+//! The place of a storm: a database, a data folder, workers, and the list of submissions.
 use super::grader;
 use crate::support::cluster::Cluster;
 use fosssim_server::{
@@ -141,7 +141,7 @@ impl Arena {
             program: "FOSSSim".to_owned(),
             seconds: 600,
         };
-        // Nobody knows whether a commit that failed stands: the same number again is refused then.
+        // It is unknown whether a failed commit was written. If so, the same number is rejected.
         let number = i64::try_from(self.accepted.len()).expect("few");
         let start = Instant::now();
         while let Err(error) = self.try_to_hand_in(number, &task).await {
@@ -295,7 +295,7 @@ impl Arena {
         found
     }
 
-    /// Graders that nobody waits for.
+    /// The graders whose end no process waits for.
     fn running_graders(&self) -> Vec<String> {
         let name = self.grader.to_str().expect("a plain path");
         let processes = fs::read_dir("/proc").expect("/proc").flatten();

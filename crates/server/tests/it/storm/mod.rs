@@ -12,7 +12,7 @@ mod weather;
 use arena::{Arena, Expected};
 use weather::{Size, Weather};
 
-/// Everything that was handed in, and everything that must be true afterwards.
+/// All submissions, and all conditions that must be true afterwards.
 async fn storm(mut arena: Arena, name: &str) {
     let size = Size::from_environment();
     let start = std::time::Instant::now();

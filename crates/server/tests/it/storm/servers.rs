@@ -142,7 +142,7 @@ fn engine(fresh: &Fresh) -> &'static str {
     }
 }
 
-/// A small storm is enough here, if nobody asks for another: a server's start takes longer than a worker's.
+/// A small storm is enough by default, because a server's start takes longer than a worker's.
 fn size() -> Size {
     let is_asked = std::env::var_os("FOSSSIM_STORM").is_some();
     if is_asked { Size::from_environment() } else { Size { submissions: 24, kills: 6 } }

@@ -50,7 +50,7 @@ impl<'a> Weather<'a> {
         usize::try_from(self.random >> 33).expect("31 bits") % below
     }
 
-    /// Hands everything in, bit by bit, while workers are killed, frozen and cut off.
+    /// Submits everything gradually, while workers are killed, frozen and disconnected.
     pub(super) async fn blow(mut self) -> Seen {
         let mut handed_in = 0;
         while handed_in < self.size.submissions || self.seen.kills < self.size.kills {

@@ -196,7 +196,7 @@ impl Shared {
         let door = lock("door");
         door.lock().expect("the door");
         if is_running(&folder.join("data")) {
-            // A loaded machine takes its time to answer; whose data others use are never thrown away.
+            // A busy machine answers slowly. Data that other tests use are never removed.
             programs.wait_until_ready(&folder);
         } else {
             drop(fs::remove_dir_all(folder.join("data")));
@@ -238,7 +238,7 @@ impl Shared {
 fn is_running(data: &Path) -> bool {
     let Ok(file) = fs::read_to_string(data.join("postmaster.pid")) else { return false };
     let number = file.lines().next().unwrap_or_default();
-    // One that ended, and that its parent has not asked about, is still listed.
+    // A process that has ended is still listed until its parent has queried it.
     let state = fs::read_to_string(format!("/proc/{number}/stat")).unwrap_or_default();
     state.contains("(postgres)") && !state.contains("(postgres) Z")
 }

@@ -1,4 +1,4 @@
-//! A file system that is soon full, and what lies in a server's folders.
+//! A small file system, and the contents of a server's folders.
 use super::server::Server;
 use fosssim_testing::{Need, skip};
 use std::{

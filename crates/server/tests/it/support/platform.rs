@@ -105,7 +105,7 @@ pub(crate) struct Inside {
     /// The grade book: of each column and person the newest score.
     pub(crate) grade_book: BTreeMap<(String, String), Value>,
     pub(crate) line_items: Vec<Value>,
-    /// Whether it takes a while to make a column.
+    /// Whether the platform creates columns slowly.
     pub(crate) slow_columns: bool,
     pub(crate) members: Vec<Value>,
     tool: String,

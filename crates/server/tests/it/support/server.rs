@@ -133,7 +133,7 @@ impl Server {
             Address::Postgres(url) => url.clone(),
         };
         let options: Vec<String> = options.iter().map(|option| (*option).to_owned()).collect();
-        // An address of its own: nobody else takes its port while it is started again.
+        // The server has a separate address, so no other process takes its port during a restart.
         static COUNT: AtomicU32 = AtomicU32::new(1);
         let [_, of_process, high, low] =
             (std::process::id() << 16 | COUNT.fetch_add(1, Ordering::Relaxed)).to_be_bytes();
@@ -254,7 +254,7 @@ impl Server {
         (self.child, self.output) = (child, output);
     }
 
-    /// Somebody without anything.
+    /// A person without any rights.
     pub(crate) fn visitor(&self) -> Client {
         Client { url: self.url.clone(), headers: Vec::new() }
     }
@@ -438,7 +438,7 @@ impl Answer {
     }
 }
 
-/// An archive that holds zeros, and how many MiB.
+/// Returns an archive with this many MiB of zeros.
 pub(crate) fn bomb(mebibytes: usize) -> Vec<u8> {
     let mut tar = tar::Builder::new(flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best()));
     let mut header = tar::Header::new_gnu();

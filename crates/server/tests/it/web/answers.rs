@@ -1,4 +1,4 @@
-//! The words that people are told: which file an assignment takes, when they may go on, and where they get from here.
+//! Tests texts for people: the files that an assignment accepts, the time of the next try, and links to other pages.
 use crate::support::{
     engines::{Fresh, on_sqlite},
     server::{Answer, Client, JSON, Server, program},
@@ -83,7 +83,7 @@ async fn the_hourly_limit_says_until_when(fresh: Fresh) {
     let wait: u64 = refused.header("retry-after").and_then(|wait| wait.parse().ok()).expect("seconds");
     assert!((400..=600).contains(&wait), "ten minutes are left of the hour: {wait}");
     assert!(refused.text().contains("the next one is possible from 20"), "{}", refused.text());
-    // They hold for students.
+    // The limits apply to students.
     let page = admin.get("/c/physics/a/m1").expect(200).text();
     assert!(!page.contains("in an hour"), "{page}");
 }

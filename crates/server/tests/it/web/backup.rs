@@ -1,4 +1,4 @@
-//! Backup and restore, as commands beside a server that runs.
+//! Tests the commands for backup and restore while a server runs.
 use crate::support::{
     engines::{Fresh, on_both_engines, run},
     server::{Server, program},

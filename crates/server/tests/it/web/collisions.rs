@@ -13,7 +13,7 @@ const BASE: &str = "/api/v1/courses/physics";
 /// How often each does what it does.
 const ROUNDS: usize = 15;
 
-/// Does something again and again; everything has to be answered.
+/// Repeats a request. Every request must be answered.
 fn often(mut act: impl FnMut(usize) -> Vec<u16>) {
     for round in 0..ROUNDS {
         let failed: Vec<u16> = act(round).into_iter().filter(|status| *status >= 500).collect();

@@ -1,4 +1,4 @@
-//! The moment at which an upload arrives is what counts for its due date, however long the rest takes.
+//! The time at which an upload's head arrives counts for its due date, regardless of the duration of the rest.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Answer, Client, JSON, Server, program},
@@ -47,7 +47,7 @@ async fn work_that_came_in_time_is_in_time(fresh: Fresh) {
     while now().await <= due_at {
         std::thread::yield_now();
     }
-    // Clocks of two processes differ by the time that a question takes: in favor of who sends.
+    // The clocks of two processes differ by the time of a query, in favor of the sender.
     let start = Instant::now();
     while eve.send("POST", SUBMISSIONS, &[], &body).status != 409 {
         assert!(start.elapsed() < Duration::from_secs(60), "the assignment is never due");

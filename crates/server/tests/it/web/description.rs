@@ -1,4 +1,4 @@
-//! The description of the API holds together: what a validator asks for, and that it says who gets in.
+//! The description of the API is consistent: it satisfies a validator, and states the rights for each operation.
 use super::roles::{For, ROUTES};
 use fosssim_server::web;
 use serde_json::{Map, Value};
@@ -98,7 +98,7 @@ fn it_says_who_gets_in() {
         match whom {
             For::All => assert!(names.is_empty(), "{method} {path}: {names:?}"),
             For::Workers => assert_eq!(names, ["worker"], "{method} {path}"),
-            // Tokens can't do everything that somebody at a browser can.
+            // Tokens have fewer rights than a person at a browser.
             _ => assert!(names.contains(&"session") && !names.contains(&"worker"), "{method} {path}: {names:?}"),
         }
     }

@@ -49,7 +49,7 @@ async fn a_course_from_the_first_link_to_the_grades(fresh: Fresh) {
     bob.get(&format!("/api/v1/courses/physics/submissions/{first}/files/report.txt")).expect(404);
     teacher.get(&format!("/api/v1/courses/physics/submissions/{first}")).expect(200);
 
-    // The report is a part of the page without its scripts, and a page of nobody for itself.
+    // The report is a part of the page without its scripts. As a separate page it has no rights.
     let page = ada.get(&format!("/c/physics/s/{second}")).expect(200).text();
     assert!(page.contains("<p>100 points</p>") && !page.contains("document.cookie"), "{page}");
     let report = ada.get(&format!("/api/v1/courses/physics/submissions/{second}/files/report.txt")).expect(200);
@@ -236,7 +236,7 @@ async fn a_regrade_changes_nothing_until_it_is_applied(fresh: Fresh) {
     admin.post_json(&format!("{base}/{id}/discard"), "").expect(409);
     assert_eq!(ada.wait_for_grade("physics", whole)["grade"]["points"], "20");
     assert_eq!(ada.wait_for_grade("physics", late)["grade"]["points"], "30");
-    // The student is told why, and new submissions are graded the new way.
+    // The student sees the reason, and new submissions are graded in the new way.
     let history = ada.get(&format!("/api/v1/courses/physics/submissions/{whole}/history")).expect(200).json();
     assert_eq!(history[1]["reason"], "the rules were too kind");
     assert_eq!([&history[1]["old_points"], &history[1]["new_points"]], ["40", "20"]);

@@ -28,12 +28,12 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
         teacher.get(&path(hidden)).expect(200);
         ada.get(&path(open)).expect(200);
     }
-    // Which scenes an attempt has changed is told where nothing of both attempts is hidden.
+    // The scenes that an attempt has changed are shown only if no part of both attempts is hidden.
     let page = |by: &Client| by.get(&format!("/c/physics/s/{open}")).expect(200).text();
     assert!(!page(&ada).contains("Since submission") && !page(&ada).contains("Secret"), "{}", page(&ada));
     let words = "Since submission 1, these became right: Secret/scene. No longer right: Group/scene.";
     assert!(page(&teacher).contains(words), "{}", page(&teacher));
-    // Nothing that a student is told changes with what is hidden: not points, counts, verdicts, digests or sizes.
+    // Hidden parts change nothing that a student sees: no points, counts, verdicts, digests or sizes.
     let other = ada.submit("physics", b"#!grade RTE 7 Secret/scene 1\n");
     ada.wait_for_grade("physics", other);
     let told = |by: &Client, id: i64| {
@@ -48,7 +48,7 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
         for own in ["result", "task", "by_what"] {
             history[own].take();
         }
-        // How long the hidden groups took is told neither.
+        // The duration of the hidden groups is not shown either.
         assert_eq!([graded, changed], [told["is_withheld"] == true; 2]);
         (grade, history, told["is_withheld"].take())
     };
@@ -65,7 +65,7 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     let page = ada.get(&format!("/c/physics/s/{other}")).expect(200).text();
     assert!(!page.contains("RTE") && page.contains("10 of 10 points"), "{page}");
     assert_eq!(told(&teacher, other).0["points"], "7");
-    // Once staff has published, everything shows.
+    // After staff has published the groups, everything is shown.
     ada.send("PUT", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(403);
     teacher.post_form("/c/physics/a/m1/publish", "").expect(303);
     assert_eq!(told(&ada, other), told(&teacher, other));
@@ -73,7 +73,7 @@ async fn reports_that_tell_of_hidden_groups_are_for_staff(fresh: Fresh) {
     ada.get(&format!("/api/v1/courses/physics/submissions/{hidden}/files/grade.json")).expect(200);
     teacher.send("DELETE", "/api/v1/courses/physics/assignments/m1/published", &[], b"").expect(200);
     assert_eq!(told(&ada, other).0, grade);
-    // A grade of an older version is looked at when it is asked for.
+    // A grade of an older version is examined when it is requested.
     let mut transaction = fresh.database.begin().await.expect("a transaction");
     transaction.execute("UPDATE result SET shown = NULL", &[]).await.expect("as before");
     transaction.commit().await.expect("a commit");

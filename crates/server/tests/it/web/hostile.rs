@@ -70,7 +70,7 @@ fn other_sites_can_change_nothing() {
             &[("Origin", "null")],
             &[("Origin", "http://evil.example")],
             &[("Origin", "http://127.0.0.1:1")],
-            // The browser's own word counts before anything else.
+            // The browser's own header has precedence.
             &[("Sec-Fetch-Site", "cross-site"), ("Origin", &host)],
         ] {
             assert_eq!(post(headers), 403, "{headers:?}");
@@ -171,7 +171,7 @@ fn bodies_that_are_too_large_or_too_slow_are_given_up() {
             let answer = Answer::read(&mut stream).expect("an answer");
             assert_eq!(answer.status, 408, "{path}: {}", answer.text());
         }
-        // Nothing of all that lies around.
+        // No further files are left behind.
         let left = std::fs::read_dir(server.folder.join("incoming")).expect("a folder").count();
         assert_eq!(left, 0);
         assert_eq!(ada.get(SUBMISSIONS).expect(200).json(), serde_json::json!([]));
@@ -358,7 +358,7 @@ fn addresses_lead_nowhere_else() {
             assert!(matches!(answer.status, 400 | 404), "{path}: {}", answer.status);
             assert!(!answer.text().contains("root:"), "{path}");
         }
-        // Names of files, and of whatever is in headers, become plain.
+        // Names of files and all values in headers are converted to plain characters.
         let path = format!("{SUBMISSIONS}?name=a%0d%0aSet-Cookie:%20x=1%22;%20filename=evil.html");
         let sent = ada.send("POST", &path, &[], &program("AC", 2)).expect(201).json();
         assert_eq!(sent["file_name"], "a__Set-Cookie__x_1___filename_evil.html");

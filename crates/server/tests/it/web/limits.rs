@@ -107,7 +107,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     let second = ada.submit("physics", &large(2, 2));
     ada.wait_for_grade("physics", second);
     let before = stored(&server);
-    // It is told before it is too late: to staff of the course always, to others from four fifths on.
+    // The page shows the use in time: to staff of the course always, to others from four fifths on.
     let words = |by: &Client| by.get("/c/physics").expect(200).text();
     assert!(words(&ada).contains("reports of you: 4 MiB of 5 MiB. When the space is used up"), "{}", words(&ada));
     assert!(!words(&eve).contains("Stored uploads"), "{}", words(&eve));
@@ -117,7 +117,7 @@ async fn quotas_count_what_is_kept(fresh: Fresh) {
     let answer = ada.send("POST", SUBMISSIONS, &[], &large(2, 3)).expect(507).json();
     assert_eq!(answer["type"], "urn:fosssim:quota", "{answer}");
     assert!(answer["detail"].as_str().is_some_and(|detail| detail.contains("4 MiB of 5 MiB")), "{answer}");
-    // By a form, whose size nobody knows before it came.
+    // The upload is sent by a form, whose size is unknown until it has arrived.
     let form = [
         b"--x\r\nContent-Disposition: form-data; name=\"file\"; filename=\"F\"\r\n\r\n",
         &large(2, 3)[..],

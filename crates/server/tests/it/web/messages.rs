@@ -183,7 +183,7 @@ fn a_message_is_believed_once_and_in_the_browser_that_asked() {
             let begun = platform::Begun { state, cookie: late.cookie.clone(), nonce };
             come(&server, &begun, &token).expect(status);
         }
-        // A platform that nobody registered leads nowhere.
+        // A platform that is not registered is rejected.
         let unknown = server.visitor().get("/lti/login?iss=https%3A%2F%2Fevil.example&login_hint=x").expect(403);
         assert!(unknown.header("location").is_none() && unknown.text().contains("has registered this platform"));
         // A failure of the platform is said.

@@ -33,7 +33,7 @@ async fn a_digest_opens_no_suite_of_another_course(fresh: Fresh) {
     let path = "/api/v1/courses/a/assignments/m1";
     let set = teacher.send("PUT", &format!("{path}/suite"), &[], &suite()).expect(200).json();
     let digest = set["settings"]["suite_archive"].as_str().expect("a digest").to_owned();
-    // Students learn nothing of it, by whatever door.
+    // Students get no information about it by any route.
     let id = ada.submit("a", &program("WA", 1));
     ada.wait_for_grade("a", id);
     for door in [

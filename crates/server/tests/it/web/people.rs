@@ -54,7 +54,7 @@ async fn being_in_two_courses_takes_nothing_away(fresh: Fresh) {
     assert_eq!(courses(&ada), 1);
     new_link(&colleague, "other", "ada").expect(404);
     new_link(&teacher, "physics", "ada").expect(200);
-    // The administrator adds her, and from then on nobody's staff signs in as her, nor signs her out.
+    // The administrator adds her. From then on, no staff can sign in as her or sign her out.
     let ada = server.visitor().welcome(&secret(&add(&admin, "other", "ada", "student")["link"]));
     assert_eq!(courses(&ada), 2);
     for (staff, course) in [(&teacher, "physics"), (&colleague, "other")] {
@@ -142,7 +142,7 @@ async fn a_session_lasts_from_the_last_visit(fresh: Fresh) {
     let cookie = session.get("/").expect(200).header("set-cookie").expect("a cookie").to_owned();
     let kept = &session.headers[0].1;
     assert!(cookie.starts_with(kept.as_str()) && cookie.contains("Max-Age=1209600"), "{cookie}");
-    // A request that forgot to say who asks is told so, and one from another site that.
+    // A request without a sign-in, and one from another site, are rejected with different reasons.
     let json = [JSON[0]];
     server.visitor().send("POST", "/api/v1/tokens", &json, br#"{"name": "x"}"#).expect(401);
     let headers = [JSON[0], ("Sec-Fetch-Site", "cross-site"), ("Cookie", kept.as_str())];
@@ -170,7 +170,7 @@ async fn ways_in_are_counted_by_network_and_bounded(fresh: Fresh) {
     }
     ada.get("/api/v1/me").expect(401);
     server.with_token(&token).get("/api/v1/me").expect(200);
-    // A network that tries too much shuts itself out, and nobody else.
+    // A network that tries too often is blocked, and no other network is.
     let tried = (0..3000).map(|_| sign_in("2001:db8::1", "fso_none")).find(|status| *status != 401);
     assert_eq!(tried, Some(429));
     assert_eq!(sign_in("2001:db8::2", &token), 429);

@@ -47,7 +47,7 @@ pub(super) fn connect(server: &Server, platform: &Platform) -> Client {
 
 async fn a_course_of_a_platform(fresh: Fresh) {
     let (server, admin, platform) = start(&fresh, &["--tries", "1"]).await;
-    // Before somebody who teaches has opened the link, nobody gets in, and nobody is remembered.
+    // Before a teacher has opened the link, nobody can sign in, and no account is made.
     let begun = begin(&server, &platform);
     let token = KEYS[0].sign(&platform.claims(&begun.nonce, "ada", LEARNER));
     let early = come(&server, &begun, &token).expect(403).text();
@@ -77,7 +77,7 @@ async fn a_course_of_a_platform(fresh: Fresh) {
         ada.wait_for_grade("physics", id);
     }
     platform.wait_for("ada", |score| score["scoreGiven"] == 80.0);
-    // The grader's own failure is nobody's zero, and takes nothing away.
+    // The grader's own failure is never sent as a zero, and reduces no score.
     let (eve, _) = arrive(&server, &platform, ("eve", LEARNER), |_| {});
     let failed = eve.submit("physics", b"#!grade JE 0\n");
     assert_eq!(eve.wait_for_grade("physics", failed)["state"], "buried");
@@ -89,7 +89,7 @@ async fn a_course_of_a_platform(fresh: Fresh) {
     let tried = teacher.submit("physics", &program("AC", 100));
     teacher.wait_for_grade("physics", tried);
 
-    // A regrade that is applied sends what counts from then on: everything is worth half by these rules.
+    // An applied regrade sends the new scores. By these rules every score is half as large.
     let base = "/api/v1/courses/physics/assignments/m1";
     let wish = r#"{"reason": "other rules", "settings": {"rules": "parity", "per_hour": 0}}"#;
     let regrade = teacher.post_json(&format!("{base}/regrades"), wish).expect(201).json();
@@ -113,12 +113,12 @@ async fn a_course_of_a_platform(fresh: Fresh) {
     assert_eq!([&scores[0]["login"], &scores[0]["platform"]], ["ada", "lms"]);
     let page = teacher.get("/c/physics/a/m1/class").expect(200).text();
     assert!(page.contains("40 of 100") && page.contains("staff must check it"), "{page}");
-    // Sent once more, it is newer than everything before.
+    // A score that is sent again is newer than all earlier ones.
     let before = platform.wait_for("ada", |_| true)["timestamp"].clone();
     teacher.post_form("/c/physics/a/m1/scores", "").expect(303);
     platform.wait_for("ada", |score| score["timestamp"].as_str() > before.as_str());
 
-    // Somebody's platform is shut: nobody comes, and nothing goes there.
+    // The platform is disconnected, so nobody can sign in from it, and no scores are sent to it.
     admin.send("DELETE", "/api/v1/platforms/lms", &[], b"").expect(204);
     let query = format!("iss={}&login_hint=x", platform.url.replace(':', "%3A"));
     server.visitor().get(&format!("/lti/login?{query}")).expect(403);
@@ -159,7 +159,7 @@ async fn a_platform_with_troubles(fresh: Fresh) {
             inside.scores.iter().filter(|(_, score)| score["scoreGiven"] == 40.0).map(|(_, score)| score).collect();
         assert!(of_forty.iter().all(|score| score["timestamp"] == of_forty[0]["timestamp"]), "{of_forty:?}");
     }
-    // A column on a host that is not configured is never asked, and staff reads why.
+    // A column on a host that is not configured is never requested, and staff sees the reason.
     let elsewhere = |claims: &mut Value| {
         claims[RESOURCE]["id"] = json!("other");
         claims[CUSTOM] = json!({"assignment": "m1"});
@@ -229,7 +229,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
         lines
     };
     assert_eq!(sorted(members()), all);
-    // A student of whom the roster tells first is the same when they come.
+    // A student who is first known from the roster has the same account at the first visit.
     let (bob, _) = arrive(&server, &platform, ("bob", LEARNER), |_| {});
     bob.get("/c/physics").expect(200);
     // Staff made one of them staff here, and somebody of no platform a student: both stay what they are.
@@ -242,7 +242,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
     platform.inside().members.retain(|member| member["user_id"] != "carol");
     let read = teacher.post_json("/api/v1/courses/physics/roster", "").expect(200).json();
     assert_eq!([&read["members"], &read["left"]], [4, 1]);
-    // Nobody is put out by a filter or a fault of the platform, and never who asks.
+    // A filter or a fault of the platform removes nobody, and the person who reads the roster is never removed.
     let whole = std::mem::take(&mut platform.inside().members);
     for question in ["", "?confirm=true"] {
         let path = format!("/api/v1/courses/physics/roster{question}");
@@ -265,7 +265,7 @@ async fn rosters_are_read_to_their_end(fresh: Fresh) {
     let (now_staff, _) = arrive(&server, &platform, ("ada", INSTRUCTOR), |_| {});
     ada.get("/api/v1/me").expect(401);
     now_staff.get("/api/v1/courses/physics/members").expect(200);
-    // Nobody does everything here by a platform's word.
+    // A platform cannot make anybody an administrator of this server.
     let account = now_staff.get("/api/v1/me").expect(200).json()["login"].as_str().expect("a login").to_owned();
     let wish = br#"{"name": "Ada", "is_admin": true}"#;
     admin.send("PUT", &format!("/api/v1/accounts/{account}"), JSON, wish).expect(200);
@@ -348,7 +348,7 @@ fn links_are_chosen_in_the_platform() {
         };
         let (_, place) = arrive(&server, &platform, ("ada", LEARNER), chosen);
         assert_eq!(place, "/c/physics/a/m1");
-        // Students choose nothing, and nobody chooses for another.
+        // Students cannot choose an assignment, and nobody can choose for another person.
         let begun = begin(&server, &platform);
         let mut claims = platform.claims(&begun.nonce, "ada", LEARNER);
         wanted(&mut claims);
@@ -362,7 +362,7 @@ fn links_are_chosen_in_the_platform() {
         assert_eq!((&two["title"], &two["visible"]), (&json!("Milestone two"), &json!(false)));
         let (teacher, place) = arrive(&server, &platform, ("teacher", INSTRUCTOR), wanted);
         teacher.post_form(&format!("{place}/assignment"), made).expect(409);
-        // The answer goes to the platform and nowhere else.
+        // The answer is sent only to the platform.
         let elsewhere = |claims: &mut Value| {
             wanted(claims);
             claims["https://purl.imsglobal.org/spec/lti-dl/claim/deep_linking_settings"]["deep_link_return_url"] =
@@ -372,7 +372,7 @@ fn links_are_chosen_in_the_platform() {
         let refused = teacher.post_form(&format!("{place}/assignment"), "assignment=m1").expect(403).text();
         assert!(refused.contains("is not configured"), "{refused}");
 
-        // A new key is told of beside the one that signs.
+        // A new key is published next to the key that signs.
         admin.post_json("/api/v1/platform-keys", "").expect(204);
         let newly = server.visitor().get("/lti/keys.json").expect(200).json();
         assert_eq!(newly["keys"].as_array().map(Vec::len), Some(2));
@@ -396,7 +396,7 @@ fn frames_and_cookies_are_as_platforms_need_them() {
         for word in ["; Path=/", "; HttpOnly", "; SameSite=None", "; Secure", "; Partitioned", "; Max-Age=600"] {
             assert!(cookie.contains(word), "{cookie}");
         }
-        // In a frame there is a button that opens a window, and it asks the same there.
+        // In a frame, a button opens a window, which sends the same request.
         let query = format!("iss={}&login_hint=a%22%3E&client_id={CLIENT}", platform.url.replace(':', "%3A"));
         let framed = server.visitor().send("GET", &format!("/lti/login?{query}"), &[("Sec-Fetch-Dest", "iframe")], b"");
         let framed = framed.expect(200);

@@ -61,7 +61,7 @@ async fn people_sign_in(fresh: Fresh) {
     let wish = br#"{"name": "X", "role": "student"}"#;
     admin.send("PUT", "/api/v1/courses/physics/members/ada", JSON, wish).expect(200);
     ada.get("/c/physics").expect(200);
-    // By the subject she is known again, whatever else is said; another subject is somebody else.
+    // She is recognized only by the subject. Another subject is another person.
     let (again, _) = sign_in(&server, &provider, "ada", |claims| claims["preferred_username"] = json!("Countess"));
     assert_eq!(login(&again), "ada");
     let (other, _) = sign_in(&server, &provider, "x-1", |claims| claims["email"] = json!("ada@uni.example"));
@@ -75,7 +75,7 @@ async fn people_sign_in(fresh: Fresh) {
     transaction.execute(statement, values![&provider.url]).await.expect("a row");
     transaction.commit().await.expect("a commit");
     assert_eq!(login(&sign_in(&server, &provider, "root", |_| {}).0), "root");
-    // Some providers say of people only when they are asked, and of nobody else.
+    // Some providers give data about people only on request.
     let quiet = |claims: &mut Value| {
         claims.as_object_mut().expect("claims").retain(|name, _| name != "email" && name != "name");
     };

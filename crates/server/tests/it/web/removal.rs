@@ -1,4 +1,4 @@
-//! Things that are removed are gone, with all that is kept of them, and harm nothing that goes on.
+//! A removal deletes all data of the removed thing, and does not disturb running work.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Client, Server, program},
@@ -40,7 +40,7 @@ async fn what_is_removed_is_gone(fresh: Fresh) {
         std::thread::sleep(std::time::Duration::from_millis(20));
     }
     teacher.post_json(&format!("{regrade}/{id}/apply"), "").expect(200);
-    // A submission, by its page, whose form names what is meant.
+    // A submission is removed on its page, whose form names it.
     let page = |by: &Client| by.get(&format!("/c/physics/s/{}", ids[0])).expect(200).text();
     assert!(page(&teacher).contains("permanently deleted") && !page(&ada).contains("permanently deleted"));
     teacher.post_form(&format!("/c/physics/s/{}/remove", ids[0]), "confirm=999").expect(400);

@@ -283,7 +283,7 @@ fn every_route_serves_whom_it_should_and_nobody_else() {
         for (method, path, whom) in ROUTES {
             for (role, client) in &clients {
                 let page = !path.starts_with("/api") && !path.ends_with("/health");
-                // A body that is never understood: who gets in is told so, and nothing is changed.
+                // The body is never valid. People with the right get that answer, and no data changes.
                 let headers: &[(&str, &str)] = if page {
                     &[("Content-Type", "application/x-www-form-urlencoded"), ("Sec-Fetch-Site", "same-origin")]
                 } else if path.ends_with("/submissions") || path.ends_with("/suite") {

@@ -55,7 +55,7 @@ fn a_full_disk_heals() {
         let filler = disk.path().join("filler");
         let mut file = std::fs::File::create(&filler).expect("a file");
         while file.write_all(&[1; 4096]).is_ok() {}
-        // Every upload that is tried meanwhile is refused, and told why.
+        // Every upload in the meantime is rejected with a reason.
         for number in 0..4 {
             let course = format!(r#"{{"slug": "full{number}", "title": "{}"}}"#, "x".repeat(150));
             assert!(admin.post_json("/api/v1/courses", &course).status >= 500);
@@ -78,7 +78,7 @@ fn a_full_disk_heals() {
     });
 }
 
-/// While another server takes over, a database is read-only: that is said, and over as soon as it is.
+/// While another server takes over, a database is read-only. The answers state this, and end with that state.
 #[test]
 fn a_database_that_was_read_only_is_written_again_at_once() {
     run(async {

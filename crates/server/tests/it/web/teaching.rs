@@ -1,4 +1,4 @@
-//! Teaching by hand: a class by a table, more time, other points, an answer.
+//! Tests the work of staff: the import of a class, more time, other points, an answer.
 use crate::support::{
     engines::{Fresh, on_both_engines},
     server::{Client, JSON, Server, program},
@@ -19,7 +19,7 @@ async fn a_class_comes_in_by_a_table(fresh: Fresh) {
     let csv = [("Content-Type", "text/csv")];
     let path = "/api/v1/courses/physics/members";
     let members = || teacher.get(path).expect(200).json().as_array().expect("a list").len();
-    // A line that is wrong is told by its number, and then nothing is done.
+    // A wrong line is reported with its number, and no member is added.
     let wrong = teacher.send("POST", path, &csv, b"Ada,ada\nEve,e v e\n").expect(200).json();
     assert!(wrong[0]["error"].is_null() && wrong[1]["error"].is_string() && wrong[1]["line"] == 2, "{wrong}");
     let page =
@@ -142,7 +142,7 @@ async fn staff_overrules_answers_and_gives_time(fresh: Fresh) {
     assert!(ada.get("/c/physics/a/m1").expect(200).text().contains("2096-01-01 00:00 UTC"));
     teacher.post_form("/c/physics/a/m1/students/ada/extension", "due=&due_zone=0").expect(303);
     ada.send("POST", upload, &[], &program("AC", 90)).expect(409);
-    // Nothing of it is left when the person goes.
+    // No data about it remains when the person is removed.
     teacher.send("PUT", extension, JSON, br#"{"due_at": "2096-01-01T00:00Z"}"#).expect(204);
     admin.send("DELETE", "/api/v1/accounts/ada/data", &[], b"").expect(204);
 }
@@ -170,7 +170,7 @@ fn check_request_and_unusable(teacher: &Client, eve: &Client, mended: i64) {
     assert!(page.contains("because nothing ran") && !page.contains("o longer right"), "{page}");
 }
 
-/// Two submissions stand beside each other, by number or by login.
+/// Two submissions are compared, by number or by login.
 fn check_beside(teacher: &Client, [one, other, mended]: [i64; 3]) {
     for with in [other.to_string(), "ada".to_owned()] {
         let page = teacher.get(&format!("/c/physics/s/{one}/beside?with={with}")).expect(200).text();
@@ -210,7 +210,7 @@ async fn late_work_is_taken_and_costs_points(fresh: Fresh) {
     assert!(page.contains("76 of 100 points") && page.contains("2 days late, which deducts 20 %"), "{page}");
     assert!(teacher.get("/c/physics/a/m1/class").expect(200).text().contains("76 of 100"), "staff sees the same");
     assert!(teacher.get("/api/v1/courses/physics/assignments/m1/export").expect(200).text().contains(",76,"));
-    // More time for one makes it early, and points by hand cost nothing.
+    // With more time for one student the submission is not late, and points by hand are not reduced.
     let extension = "/api/v1/courses/physics/assignments/m1/extensions/ada";
     teacher.send("PUT", extension, JSON, br#"{"due_at": "2096-01-01T00:00Z"}"#).expect(204);
     assert_eq!((&seen()["grade"]["points"], seen()["late"].is_null()), (&"95".into(), true));

@@ -104,7 +104,7 @@ fn the_database_is_copied_before_its_tables_change() {
         assert!(!backups.join("version-1-7.db.partial").exists());
         let copies = || -> Vec<_> {
             let entries = std::fs::read_dir(&backups).expect("a folder").map(|entry| entry.expect("an entry").path());
-            // SQLite keeps files of its own beside a database that is open.
+            // SQLite keeps further files next to an open database.
             entries.filter(|path| path.extension().is_some_and(|extension| extension == "db")).collect()
         };
         let made = copies();

@@ -63,7 +63,7 @@ fn trace(scene: &Scene, ids: &[&str]) -> Vec<u8> {
     student::record_trace(scene, student).unwrap_or_else(|(bytes, _)| bytes)
 }
 
-/// Whether explanations name a mistake, told or as not to be told apart.
+/// Returns whether explanations name a mistake, as reported or as indistinguishable.
 fn names(told: &[Explanation], id: &str) -> bool {
     told.iter().any(|one| one.key == id || one.same_as.iter().any(|other| other == id))
 }

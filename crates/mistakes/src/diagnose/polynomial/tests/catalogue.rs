@@ -54,7 +54,7 @@ fn scene(numbers: &mut Numbers, style: Style) -> Scene {
     }
 }
 
-/// The number of polynomials that a student hands over for a pair.
+/// Returns the number of polynomials that a student passes on for a pair.
 fn passed_on(row: &Row, kind: PairKind) -> usize {
     match row.id {
         "handover-position-only" => kind.polynomial_count() - 1,
@@ -150,7 +150,7 @@ fn mistakes() -> impl Iterator<Item = &'static Row> {
     CATALOGUE.iter().filter(|row| row.kind == RowKind::Wrong).filter(is_asked)
 }
 
-/// Where nothing is like anything else, every mistake is told once and reproduced completely.
+/// If no two quantities are equal, every mistake is reported once and reproduced completely.
 #[test]
 fn mistakes_of_the_catalogue_are_explained() {
     for (row, style) in mistakes().flat_map(|row| [(row, Style::General), (row, Style::Slow)]) {

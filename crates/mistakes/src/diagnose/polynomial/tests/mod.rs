@@ -1,4 +1,4 @@
-//! Students with one mistake each, on random motions: the explanation has to name it and reproduce everything.
+//! Explains students with one mistake each on random motions. The explanation must name it and reproduce everything.
 mod catalogue;
 
 use super::*;
@@ -196,7 +196,7 @@ fn weight(power: usize, letters: &str, actual: f64, expected: f64) -> impl Fn(&P
     }
 }
 
-/// That something stands for this letter of the assignment's formula.
+/// Returns the guess that another quantity replaces this letter of the assignment's formula.
 fn stands(subject: Subject, letter: &'static str, stand: Substitute) -> impl Fn(&PolynomialDetail) -> bool {
     let reading = Reading { subject, number: 0 };
     move |detail| *detail == PolynomialDetail::StandsFor { reading, letter: letter.into(), stand: stand.clone() }
@@ -372,7 +372,7 @@ fn wrong_radii_are_named() {
     }
 }
 
-/// A mistake in the inputs shows in several polynomials and is told once.
+/// A mistake in the inputs shows in several polynomials, and is reported once.
 #[test]
 fn wrong_inputs_are_one_explanation_for_all_polynomials() {
     type Change = fn(&mut [PointMotion; 3]);

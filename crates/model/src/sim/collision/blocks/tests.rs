@@ -35,7 +35,7 @@ impl Observer for Log {
     }
 }
 
-/// Steps a scene both ways and compares everything that comes of it. Gives the number of pairs.
+/// Simulates a scene both ways and compares all results. Returns the number of pairs.
 fn compare(scene: &Scene) -> u64 {
     let [mut lanes, mut single] = [(); 2].map(|()| Simulation::new(scene, RootSearch::OnDemand));
     single.disable_lanes();

@@ -99,7 +99,7 @@ fn bodies_that_begin_at_the_same_place_keep_the_order_of_the_search_before() {
     let scene = scene(first.chunks(2).map(|c| particle((c[0], c[1]), (0.0, 0.0), 1.0, 0.1)).collect());
     assert_eq!(searched(&scene, &[&then]), [[0, 1], [0, 2], [1, 2]]);
     assert_eq!(searched(&scene, &[&first, &then]), [[0, 1], [1, 2], [0, 2]]);
-    // An order that was written down goes on alike.
+    // A run that continues from a copied order is the same.
     let mut pairs = PenaltyPairs::new(&scene, 0.0, CollisionDetection::Contest);
     let mut order = SweepOrder::default();
     pairs.visit(&first, |_| {});
