@@ -164,7 +164,7 @@ function showMarks(suite, grade, rows, strange) {
     el(
       "details",
       { class: "card mistake", open: causes.length === 1 },
-      el("summary", {}, words, el("span", { class: "hint" }, ` (${counted(own.length, "scene")})`)),
+      el("summary", {}, el("b", {}, words), el("span", { class: "hint" }, ` (${counted(own.length, "scene")})`)),
       el("ul", {}, ...own.map((row) => el("li", {}, look(row, row.scene)))),
     ),
   );
